@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fricmb.integrate import Integrator
+    from fricmb._simulate._arguments import Span
+    from fricmb.integrate import Integrator, Trajectory
     from fricmb.scene import Scene
     from fricmb.solution import Solution
 
@@ -28,6 +29,9 @@ def simulate(
     observe: Iterable[str] | None = None,
     step: float | None = None,
     progress: bool = False,
+    dense: bool | None = None,
+    chunk: float | None = None,
+    on_chunk: Callable[[Solution], object] | None = None,
 ) -> Solution:
     """Simulate a scene.
 
@@ -58,10 +62,19 @@ def simulate(
         Step of a method with a fixed one.
     progress : bool
         Show a bar on the terminal.
+    dense : bool, optional
+        Whether to keep what lies between the times of the solution (``sol(t)``, ``sol.at``).  Default: yes, unless
+        ``t_eval`` is given and the run is so long that this would take more than some 60 megabytes.
+    chunk : float, optional
+        Time from one call of ``on_chunk`` to the next; default: a hundredth of the run.
+    on_chunk : callable, optional
+        Called with a Solution of each part of the run, to be written to disk, say; its energies count from that part's
+        start.  Nothing of it is kept: memory does not grow with the length of the run.
 
     Returns
     -------
     Solution
+        With ``on_chunk`` that of the last part.
 
     Raises
     ------
@@ -75,6 +88,7 @@ def simulate(
 
     with CompileWatch() as watch:
         from fricmb._simulate._arguments import check_span, check_step, check_tolerance, number
+        from fricmb._simulate._keep import check_keep, run
         from fricmb._simulate._mechanics import prepare
         from fricmb._simulate._method import find_integrator
         from fricmb._simulate._progress import progress_bar
@@ -88,8 +102,11 @@ def simulate(
         tolerance = check_tolerance(rtol, atol, problem.n)
         integrator, why = find_integrator(method, problem)
         fixed = check_step(step, integrator.adaptive, integrator.name, span.t_end - span.t_start)
+        keep = check_keep(dense, chunk, on_chunk, span)
+
+        def finish(trajectory: Trajectory, part: Span) -> Solution:
+            return make_solution(mechanics, trajectory, part, integrator.name, why, begin, watch.seconds)
+
         with progress_bar(progress, span.t_start, span.t_end) as forward:
-            trajectory = integrator.integrate(
-                problem, start, span.t_end, tolerance=tolerance, step=fixed, t_eval=span.t_eval, progress=forward
-            )
-        return make_solution(mechanics, trajectory, span, integrator.name, why, begin, watch.seconds)
+            options = {"tolerance": tolerance, "step": fixed, "progress": forward}
+            return run(keep, integrator, problem, start, span, finish, **options)

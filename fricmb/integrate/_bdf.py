@@ -103,6 +103,7 @@ class Bdf(Integrator):
     name: ClassVar[str] = "bdf"
     order: ClassVar[str] = "1 to 5"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
+    pauses: ClassVar[bool] = True
 
     stages: int | None = None
 
@@ -116,6 +117,7 @@ class Bdf(Integrator):
         step: float | None = None,
         t_eval: Floats | None = None,
         progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
         stages = self.stages or (3 if tolerance.rtol > 1e-4 else 5 if tolerance.rtol > 1e-9 else 7)
@@ -130,7 +132,7 @@ class Bdf(Integrator):
             hist = history(problem, t_end - start.t, spectral)
             clock = clock_of(run)
             code = FULL
-            while code == FULL:
+            while code == FULL and not run.is_full(memory):
                 code = drive_bdf(
                     run.packed, run.scratch, run.y, run.end, one, multi, acc, hist, run.rest, run.old, run.rows,
                     clock, run.address,
@@ -138,4 +140,4 @@ class Bdf(Integrator):
                 run.collect()
                 if progress is not None:
                     progress(float(run.y.t[0]))
-        return run.trajectory(None if code == DONE else FAILURES[code])
+        return run.trajectory(None if code in (DONE, FULL) else FAILURES[code])

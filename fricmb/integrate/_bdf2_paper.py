@@ -49,6 +49,7 @@ class Bdf2Paper(Integrator):
         step: float | None = None,
         t_eval: Floats | None = None,
         progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`; ``step`` is required.
 

@@ -82,6 +82,10 @@ class Collector:
         code = begin(self.packed, self.scratch, self.y, self.rest, self.old, given, self.rows, self.address)
         return (DONE, FAIL_MODES, FAIL_REDUNDANT)[code]
 
+    def is_full(self, memory: float | None) -> bool:
+        """Whether the rows so far use up the memory (bytes) that they may."""
+        return memory is not None and sum(chunk[0].nbytes for chunk in self._chunks) >= memory
+
     def collect(self) -> None:
         """Empty the room for rows."""
         k, e = self.rows.used

@@ -37,12 +37,15 @@ class Integrator(ABC):
         For people ("1 to 5", "9").
     takes : frozenset of str
         Parts of a problem it can run: of "linear", "ports", "nonlinear", "constraints".
+    pauses : bool
+        Whether a run returns early where ``memory`` is used up, so that long runs need no more.
     """
 
     name: ClassVar[str]
     adaptive: ClassVar[bool] = True
     order: ClassVar[str]
     takes: ClassVar[frozenset[str]]
+    pauses: ClassVar[bool] = False
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
@@ -61,10 +64,13 @@ class Integrator(ABC):
         step: float | None = None,
         t_eval: Floats | None = None,
         progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
     ) -> Trajectory:
         """Run from ``start`` to ``t_end``.
 
         ``t_eval``: the times that will be asked for, if known (an integrator may keep these alone).
+        ``memory``: bytes of rows after which the run returns before ``t_end``, to go on from its ``end`` (given only to
+        an integrator that ``pauses``).
         ``progress(t)`` is called now and then.  A run that cannot go on returns what it has, with ``failure`` set;
         non-finite numbers are never returned.
         """

@@ -28,6 +28,7 @@ class Radau(Integrator):
     name: ClassVar[str] = "radau"
     order: ClassVar[str] = "2s - 1"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
+    pauses: ClassVar[bool] = True
 
     stages: int | None = None
 
@@ -41,6 +42,7 @@ class Radau(Integrator):
         step: float | None = None,
         t_eval: Floats | None = None,
         progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
         s = self.stages or (3 if tolerance.rtol > 1e-4 else 5 if tolerance.rtol > 1e-9 else 7)
@@ -51,11 +53,11 @@ class Radau(Integrator):
         if code == DONE:
             clock = clock_of(run)
             code = FULL
-            while code == FULL:
+            while code == FULL and not run.is_full(memory):
                 code = drive(
                     run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
                 )
                 run.collect()
                 if progress is not None:
                     progress(float(run.y.t[0]))
-        return run.trajectory(None if code == DONE else FAILURES[code])
+        return run.trajectory(None if code in (DONE, FULL) else FAILURES[code])

@@ -1,9 +1,10 @@
 """What a run found: motion, contacts, transitions, energies.  Knows nothing of scenes."""
 
+from fricmb.integrate._long import take
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._names import Motion, Names
-from fricmb.solution._run import Mechanics, Origin, Piece, Record, Run, first_bad, take, times_inside
+from fricmb.solution._run import Mechanics, Origin, Piece, Record, Run, first_bad, times_inside
 from fricmb.solution._solution import Solution
 from fricmb.solution._stats import Stats
 

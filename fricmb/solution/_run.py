@@ -11,6 +11,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate import Problem, Samples, Start, Trajectory
+from fricmb.integrate._long import concatenate, take
 from fricmb.integrate._problem import Floats, Ints
 
 #: A time this far outside a run, relative to the run's times, is its end: accumulated steps of a t_eval.
@@ -229,20 +230,6 @@ def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Float
         bad = low if low < t_start - margin else high
         raise SceneError(f"{name}: the time {bad:.17g} is outside the run, which goes from {t_start:g} to {t_end:.17g}")
     return times.clip(t_start, t_end)
-
-
-def take(samples: Samples, columns: Any) -> Samples:
-    """A part of the times."""
-    return Samples(**{f.name: getattr(samples, f.name)[..., columns] for f in fields(Samples)})
-
-
-def concatenate(parts: list[Samples]) -> Samples:
-    """One after the other."""
-    if len(parts) == 1:
-        return parts[0]
-    return Samples(
-        **{f.name: np.concatenate([getattr(part, f.name) for part in parts], axis=-1) for f in fields(Samples)}
-    )
 
 
 def is_finite(samples: Samples) -> bool:

@@ -53,6 +53,7 @@ class Collocation(Integrator):
     name: ClassVar[str] = "collocation"
     order: ClassVar[str] = "7 to 17"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports"})
+    pauses: ClassVar[bool] = True
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
@@ -74,10 +75,11 @@ class Collocation(Integrator):
         step: float | None = None,
         t_eval: Floats | None = None,
         progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         with _running:
-            return _run_single(problem, start, t_end, tolerance, self.nodes, self.safety, progress)
+            return _run_single(problem, start, t_end, tolerance, self.nodes, self.safety, progress, memory)
 
 
 #: Tables and work arrays are kept with the problem, for one run at a time.
@@ -113,7 +115,7 @@ def _set_state(problem: Problem, run: Run, start: Start, tolerance: Tolerance) -
 
 def _run_single(
     problem: Problem, start: Start, t_end: float, tolerance: Tolerance, count: int | None, safety: float,
-    progress: Callable[[float], None] | None,
+    progress: Callable[[float], None] | None, memory: float | None = None,
 ) -> Trajectory:  # fmt: skip
     s = nodes_for(tolerance.rtol) if count is None else count
     held = run_of(problem, s)
@@ -124,6 +126,8 @@ def _run_single(
         code = run_single(run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.sx[0] + pause)
         if code == FULL:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
+            if memory is not None and 2 * sum(x.nbytes for x in rows) > memory:
+                break
             run = held[0] = with_rows(run, Rows(*[np.concatenate([x, np.zeros_like(x)]) for x in rows]))
         elif code == PAUSE and progress is not None:
             progress(float(run.sx[0]))
@@ -139,6 +143,6 @@ def _run_single(
         t=float(run.sx[0] + run.sx[1]), q=run.sd[0] + run.sd[1], v=run.sd[2].copy(), z=np.zeros(0),
         mode=np.array([mode], np.int8), direction=run.sm[1].copy(),
     )  # fmt: skip
-    failure = None if code == DONE else _FAILURES[code]
+    failure = None if code in (DONE, FULL) else _FAILURES[code]
     rows = Rows(run.steps[:n_rows].copy(), run.kinds[:n_rows].copy(), run.phases[:phases].copy(), events)
     return SingleRun(problem, s, rows, transitions, counters, end, failure)

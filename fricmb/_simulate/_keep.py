@@ -1,0 +1,84 @@
+"""What of a run is kept: all of it, the values at certain times, or one part at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb._simulate._arguments import Span, number
+from fricmb.errors import SceneError
+from fricmb.integrate import Integrator, Problem, Start, Trajectory
+from fricmb.integrate._long import MEMORY, pieces, run_kept
+from fricmb.integrate._problem import Floats
+from fricmb.solution import Solution
+
+#: Bytes of rows at a time where no dense output is wanted.
+SMALL = 3e7
+
+
+@dataclass(frozen=True, kw_only=True)
+class Keep:
+    """``dense``: the dense output, too (None: while it is small); ``on_chunk`` gets each ``chunk`` of time instead."""
+
+    dense: bool | None
+    chunk: float
+    on_chunk: Callable[[Solution], object] | None
+
+
+def check_keep(dense: Any, chunk: Any, on_chunk: Any, span: Span) -> Keep:
+    """Check the arguments of these names."""
+    if dense not in (None, True, False):
+        raise SceneError(f"dense: got {dense!r}; expected True, False or None")
+    if on_chunk is not None and not callable(on_chunk):
+        raise SceneError(f"on_chunk: got {on_chunk!r}; expected a function of one argument, the Solution of a part")
+    if chunk is not None and on_chunk is None:
+        raise SceneError(f"chunk: got {chunk!r} without on_chunk; expected both or neither")
+    length = span.t_end - span.t_start
+    if chunk is None:
+        return Keep(dense=dense, chunk=length / 100.0, on_chunk=on_chunk)
+    accepted = f"a positive time of at least a millionth of the run's length {length:g}"
+    return Keep(dense=dense, chunk=number("chunk", chunk, accepted, lambda x: x >= 1e-6 * length), on_chunk=on_chunk)
+
+
+def run(
+    keep: Keep, integrator: Integrator, problem: Problem, start: Start, span: Span,
+    finish: Callable[[Trajectory, Span], Solution], **options: Any,
+) -> Solution:  # fmt: skip
+    """Integrate and make the solution; ``finish`` makes one from a trajectory, ``options`` are the integrator's."""
+    if keep.on_chunk is not None:
+        return _stream(keep.on_chunk, keep.chunk, integrator, problem, start, span, finish, **options)
+    if keep.dense or (keep.dense is None and span.t_eval is None):
+        trajectory = integrator.integrate(problem, start, span.t_end, t_eval=span.t_eval, **options)
+    else:
+        memory = MEMORY if keep.dense is None else SMALL
+        trajectory = run_kept(integrator, problem, start, span.t_end, t_eval=span.t_eval, memory=memory, **options)
+    return finish(trajectory, span)
+
+
+def _stream(
+    on_chunk: Callable[[Solution], object], chunk: float, integrator: Integrator, problem: Problem, start: Start,
+    span: Span, finish: Callable[[Trajectory, Span], Solution], **options: Any,
+) -> Solution:  # fmt: skip
+    count = int((span.t_end - span.t_start) / chunk)
+    inner = span.t_start + chunk * np.arange(1, count + 1, dtype=np.float64)
+    stops: Floats = np.append(inner[inner < span.t_end - 1e-9 * chunk], span.t_end).astype(np.float64)
+    solution = None
+    for part in pieces(integrator, problem, start, stops, memory=MEMORY, **options):
+        solution = finish(part, _part_of(span, part))
+        on_chunk(solution)
+    if solution is None:
+        raise SceneError("t_end: the run has no length")
+    return solution
+
+
+def _part_of(span: Span, part: Trajectory) -> Span:
+    """The times within a part: the later one has a time where two meet."""
+    t_start, t_end = float(part.t[0]), float(part.t[-1])
+    times = span.t_eval
+    if times is not None:
+        last = t_end >= span.t_end
+        times = times[(times >= t_start) & ((times <= t_end) if last else (times < t_end))]
+    return Span(t_start=t_start, t_end=t_end, t_eval=times)
