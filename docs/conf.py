@@ -1,5 +1,6 @@
 """Sphinx configuration."""
 
+import os
 import re
 import warnings
 from importlib.metadata import version as installed_version
@@ -10,17 +11,24 @@ copyright = "2026, The fricmb developers"
 release = version = installed_version("fricmb")
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.md5", "gallery/**/*.json"]
+exclude_patterns = ["_build", "gallery/*.ipynb", "gallery/*.zip", "gallery/*.py", "gallery/*.json", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.md5", "gallery/**/*.json"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
+
+# Tutorials are notebooks in Markdown: their code runs here, and what it prints and draws is what the page shows.
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_merge_streams = True
+os.environ.pop("MPLBACKEND", None)  # pictures go into the pages
 
 autosummary_generate = True
 autodoc_typehints = "none"  # types stand in the numpydoc sections
