@@ -18,7 +18,8 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "gallery/*.ipynb", "gallery/*.zip", "gallery/*.py", "gallery/*.json", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.md5", "gallery/**/*.json"]
+exclude_patterns = ["_build"]
+exclude_patterns += [f"gallery/{deep}*.{kind}" for deep in ("", "**/") for kind in ("ipynb", "py", "md5", "json", "zip")]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3

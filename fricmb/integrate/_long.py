@@ -83,6 +83,8 @@ def pieces(
             if trajectory.failure is not None:
                 return
             start = trajectory.end
+            if not integrator.pauses:  # a fixed step ends a little before or after
+                break
 
 
 def run_kept(
@@ -99,7 +101,7 @@ def run_kept(
     before = Losses(friction=np.zeros(problem.n_c))
     stops = np.array([t_end])
     for part in pieces(integrator, problem, start, stops, memory=memory, t_eval=t_eval, **options):
-        last = part.failure is not None or part.end.t >= t_end
+        last = part.failure is not None or part.end.t >= t_end or not integrator.pauses
         if last and not kept:
             return part
         samples = with_losses(values_of(part, t_eval, last), before)

@@ -82,3 +82,12 @@ def test_a_callback_gets_every_part(brake):
 def test_bad_arguments_are_named(brake, arguments, message):
     with pytest.raises(fm.SceneError, match=message):
         fm.simulate(brake, t_end=1.0, **arguments)
+
+
+def test_a_fixed_step_that_ends_beside_the_end(brake):
+    # 0.005 summed up 4000 times is not 20
+    sol = fm.simulate(brake, t_end=20.0, t_eval=[0.0, 20.0], method="bdf2-paper", step=5e-3)
+    assert sol.t.tolist() == [0.0, 20.0]
+    parts = []
+    fm.simulate(brake, t_end=20.0, method="bdf2-paper", step=5e-3, chunk=10.0, on_chunk=parts.append)
+    assert len(parts) == 2
