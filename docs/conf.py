@@ -19,7 +19,8 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 exclude_patterns = ["_build"]
-exclude_patterns += [f"gallery/{deep}*.{kind}" for deep in ("", "**/") for kind in ("ipynb", "py", "md5", "json", "zip")]
+KINDS = "ipynb", "py", "md5", "json", "zip"
+exclude_patterns += [f"gallery/{deep}*.{kind}" for deep in ("", "**/") for kind in KINDS]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
