@@ -1,5 +1,25 @@
-"""Times on this machine: start-up, and the brake beside what people use today."""
+"""Error against run time, and stability: fricmb's integrators and the solvers of others on problems with known answers.
 
-from fricmb.bench._measure import Figure, brake_times, start_up_times
+``fricmb bench`` and ``fricmb bench stability`` on the command line; here the parts of which they are made.
+"""
 
-__all__ = ["Figure", "brake_times", "start_up_times"]
+import lazy_loader as lazy
+
+__getattr__, __dir__, __all__ = lazy.attach(
+    __name__,
+    submod_attrs={
+        "_case": ["SceneCase"],
+        "_cell": ["Outcome", "measure_cell"],
+        "_method": ["Method"],
+        "_metrics": ["Metrics", "measure"],
+        "_own": ["Own", "own_methods"],
+        "_reference": ["Reference", "Transitions"],
+        "_report": ["report"],
+        "_run": ["Run", "Setting"],
+        "_scenes": ["SCENES"],
+        "_startup": ["start_up_times"],
+        "_store": ["Store"],
+        "_suite": ["Options", "fingerprint", "names", "run"],
+        "_tables": ["scoreboard", "tolerance_statistic"],
+    },
+)

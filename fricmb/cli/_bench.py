@@ -4,34 +4,77 @@ from __future__ import annotations
 
 import argparse
 import json
-import platform
-from collections.abc import Iterator
-from dataclasses import asdict
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
-import fricmb as fm
-from fricmb.bench import Figure, brake_times, start_up_times
+from fricmb.bench import (
+    Options,
+    Store,
+    fingerprint,
+    names,
+    report,
+    run,
+    scoreboard,
+    start_up_times,
+    tolerance_statistic,
+)
+from fricmb.errors import unknown_name
 
 
 def bench(options: argparse.Namespace) -> int:
-    """Measure and print as it comes."""
-    figures = []
-    if not options.json:
-        print(f"fricmb on {platform.platform()}, Python {platform.python_version()}; best wall times of several tries")
-        print(f"{'seconds':>10}  {'error':>8}")
-    for figure in _measured(options.quick):
-        figures.append(figure)
-        if not options.json:
-            error = "" if figure.error is None else f"{figure.error:.1e}"
-            print(f"{figure.seconds:10.4f}  {error:>8}  {figure.name}", flush=True)
+    """Measure, with a bar; write the report and the numbers."""
+    known = names()
+    for name in options.scene:
+        if name not in known:
+            raise unknown_name("--scene", name, known)
+    chosen = Options(quick=options.quick, scenes=tuple(options.scene), limit=options.limit)
+    store = Store(options.out / "cells.jsonl", fingerprint(chosen))
+    if options.again:
+        store.clear()
+    with _bar() as progress:
+        result = run(chosen, store, progress)
+    if not options.quick and not options.scene:
+        result["start_up"] = start_up_times()
+    _write(options.out, "report.html", report(result))
+    _write(options.out, "result.json", json.dumps(result, indent=1))
     if options.json:
-        print(json.dumps([asdict(figure) for figure in figures], indent=2))
+        print(json.dumps(result))
+    else:
+        _summary(result, options.out)
     return 0
 
 
-def _measured(quick: bool) -> Iterator[Figure]:
-    methods = [name for name in ("auto", "bdf") if name == "auto" or name in fm.integrators]
-    if quick:
-        yield from brake_times(cases=("2",), methods=methods, rtols=(1e-6,))
-        return
-    yield from start_up_times()
-    yield from brake_times(methods=methods)
+@contextmanager
+def _bar() -> Iterator[Callable[[int, int, str], None]]:
+    """A progress bar on stderr."""
+    from tqdm import tqdm
+
+    with tqdm(unit="cell", file=sys.stderr, dynamic_ncols=True) as bar:
+
+        def progress(done: int, total: int, what: str) -> None:
+            bar.total = total
+            bar.set_postfix_str(what, refresh=False)
+            bar.update(done - bar.n)
+
+        yield progress
+
+
+def _write(folder: Path, name: str, text: str) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_text(text, encoding="utf-8")
+
+
+def _summary(result: dict[str, Any], out: Path) -> None:
+    print(f"{'scene':22} {'error':>6}  {'auto':>10}  {'best peer':>10}   (milliseconds)")
+    for row in scoreboard([*result["cells"], *result["daes"]]):
+        if row["auto"] or row["own"] or row["peer"]:
+            own, peer = row["auto"] or row["own"], row["peer"]
+            times = [f"{1e3 * cell['seconds']:10.3g}" if cell else f"{'-':>10}" for cell in (own, peer)]
+            print(f"{row['case']:22} {row['level']:6.0e}  {times[0]}  {times[1]}   {peer['method'] if peer else ''}")
+    found = tolerance_statistic(result["cells"])
+    if found["runs"]:
+        print(f"error / (rtol growth) within 0.01 to 100: {100 * found['within']:.0f} % of {found['runs']} runs")
+    print(f"written: {out / 'report.html'}, {out / 'result.json'}")

@@ -144,8 +144,20 @@ def _add_plan(commands: _Commands) -> None:
 
 
 def _add_bench(commands: _Commands) -> None:
-    sub = _command(commands, "bench", "measure start-up and run times on this machine", "_bench:bench")
-    sub.add_argument("--quick", action="store_true", help="the brake's case 2 alone")
+    sub = _command(
+        commands, "bench", "measure error against run time of all integrators and peers", "_bench:bench"
+    )
+    sub.add_argument("--quick", action="store_true", help="a few scenes and settings, in under a minute")
+    sub.add_argument(
+        "--scene", action="append", default=[], metavar="NAME", help="only this scene of the suite; may be repeated"
+    )
+    sub.add_argument(
+        "--limit", type=float, default=60.0, metavar="S", help="seconds until a run is ended (default: %(default)g)"
+    )
+    sub.add_argument("--again", action="store_true", help="measure again what an earlier run has left in the folder")
+    sub.add_argument(
+        "--out", type=Path, default=Path("fricmb-out/bench"), metavar="DIR", help="folder (default: %(default)s)"
+    )
     sub.add_argument("--json", action="store_true", help="print the figures as JSON")
 
 

@@ -1,0 +1,109 @@
+"""Solvers of implicit equations of index 1: ``solve_dae`` and its nearest peer, on the same compiled residual."""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+
+import fricmb as fm
+from fricmb.bench._cell import Outcome, one_line
+from fricmb.bench._daes import DaeCase
+from fricmb.bench._metrics import Metrics
+from fricmb.bench._peers import PeerError
+from fricmb.bench._reference import Floats
+from fricmb.bench._run import Setting
+from fricmb.errors import FricmbError
+
+TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+#: Absolute tolerance of a component: this, times rtol, times its size at the end.
+FLOOR = 1e-2
+
+
+class DaeMethod(ABC):
+    """Base: solve the case, return the state at its end and counters."""
+
+    name: str
+    peer: bool
+
+    @abstractmethod
+    def solve(self, case: DaeCase, rtol: float) -> tuple[Floats, dict[str, int]]:
+        """The solution at ``case.t_end``; raises where the solver gives up."""
+
+    def settings(self, quick: bool) -> list[Setting]:
+        """Tolerances from loose to tight."""
+        return [Setting(rtol=rtol) for rtol in (TOLERANCES[1:6:2] if quick else TOLERANCES)]
+
+
+@dataclass(frozen=True)
+class SolveDae(DaeMethod):
+    """``fm.solve_dae``."""
+
+    name: str = "solve_dae"
+    peer: bool = False
+
+    def solve(self, case: DaeCase, rtol: float) -> tuple[Floats, dict[str, int]]:
+        """Run it with the residual alone; derivatives by differences."""
+        sol: Any = fm.solve_dae(
+            case.residual, (0.0, case.t_end), case.y0, case.yp0, rtol=rtol, atol=FLOOR * rtol * case.size,
+            t_eval=[case.t_end],
+        )  # fmt: skip
+        if not sol.success:
+            raise fm.FricmbError(sol.message)
+        counters = {"n_steps": sol.nsteps, "n_rejected": sol.nrejected, "n_rhs": sol.nfev, "n_jac": sol.njev}
+        return sol.y[:, -1], {**counters, "n_lu": sol.nlu}
+
+
+@dataclass(frozen=True)
+class IdaDae(DaeMethod):
+    """IDA of SUNDIALS through scikit-sundae."""
+
+    name: str = "IDA"
+    peer: bool = True
+
+    def solve(self, case: DaeCase, rtol: float) -> tuple[Floats, dict[str, int]]:
+        """Run it with the residual alone; derivatives by differences."""
+        from sksundae.ida import IDA
+
+        compiled = case.residual
+
+        def residual(t: float, y: Floats, yp: Floats, out: Floats) -> None:
+            compiled(t, y, yp, out)
+
+        solver = IDA(
+            residual, rtol=rtol, atol=FLOOR * rtol * case.size, max_num_steps=10_000_000,
+            algebraic_idx=list(case.algebraic) or None,
+        )  # fmt: skip
+        sol = solver.solve(np.array([0.0, 0.5 * case.t_end, case.t_end]), case.y0, case.yp0)
+        if not sol.success:
+            raise PeerError(f"IDA: {sol.message}")
+        return np.asarray(sol.y)[-1], {"n_rhs": int(sol.nfev), "n_jac": int(sol.njev)}
+
+
+def dae_methods() -> list[DaeMethod]:
+    """What is installed."""
+    return [SolveDae(), *([IdaDae()] if find_spec("sksundae") else [])]
+
+
+def measure_dae(case: DaeCase, method: DaeMethod, setting: Setting) -> Outcome:
+    """Run a cell: error of the state at the end, relative in each component, and the least time of several."""
+    known: dict[str, Any] = {"case": case.name, "method": method.name, "setting": setting, "peer": method.peer}
+    rtol = 1e-6 if setting.rtol is None else setting.rtol
+    times: list[float] = []
+    try:
+        while len(times) < 2 or (sum(times[1:]) < 0.5 and len(times) < 6):
+            begin = time.perf_counter()
+            y, counters = method.solve(case, rtol)
+            times.append(time.perf_counter() - begin)
+    except (FricmbError, ArithmeticError, ValueError, RuntimeError, TypeError) as error:
+        return Outcome(**known, failure=one_line(error))
+    worst = float((np.abs(y - case.end) / case.size).max())
+    state = worst if np.isfinite(worst) else float("inf")
+    best = min(times)
+    return Outcome(
+        **known, metrics=Metrics(state=state, grown=state), seconds=best, first=times[0] - best, counters=counters
+    )

@@ -1,0 +1,108 @@
+"""Pictures of the report, as inline SVG."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+Rows = Sequence[dict[str, Any]]
+
+_OWN = {"auto": "k", "bdf": "C0", "radau": "C2", "collocation": "C3", "bdf2-paper": "C5"}
+_MORE = ("C4", "C6", "C8", "C9")
+_PEERS = {"scipy LSODA": "s", "scipy BDF": "^", "scipy Radau": "v", "scipy DOP853": "d", "CVODE": "P", "IDA": "X"}
+
+
+def _style(method: str, peer: bool) -> dict[str, Any]:
+    if peer:
+        marker = _PEERS.get(method, "*")
+        grey = 0.45 + 0.08 * (list(_PEERS).index(method) if method in _PEERS else 6) / 2
+        return {"color": str(grey), "marker": marker, "linestyle": ":", "linewidth": 1.0, "markersize": 5}
+    colour = _OWN.get(method) or _MORE[hash(method) % len(_MORE)]
+    if method == "auto":
+        return {"color": colour, "marker": "o", "linestyle": "-", "linewidth": 2.4, "markersize": 4, "alpha": 0.5}
+    return {"color": colour, "marker": ".", "linestyle": "-", "linewidth": 1.2, "markersize": 6}
+
+
+def _figure(width: float = 6.4, height: float = 4.2) -> Any:
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def svg(figure: Any) -> str:
+    """The figure as an SVG element without a header; its text stays text."""
+    import matplotlib as mpl
+
+    stream = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "fricmb"}):
+        figure.savefig(stream, format="svg", metadata={"Date": None})
+    text = stream.getvalue()
+    return text[text.index("<svg") :]
+
+
+def _lines(axes: Any, rows: Rows, x: str, quantity: str) -> None:
+    for method in dict.fromkeys(row["method"] for row in rows):
+        mine = [row for row in rows if row["method"] == method and row["metrics"]]
+        points = [(row["metrics"][quantity], row[x] if x == "seconds" else row["counters"].get(x)) for row in mine]
+        points = [(e, s) for e, s in points if e is not None and s and np.isfinite(e)]
+        if points:
+            errors, values = (np.array(column, float) for column in zip(*points, strict=True))
+            peer = bool(mine[0]["peer"])
+            style = _style(method, peer)
+            axes.loglog(values, np.maximum(errors, 1e-16), label=method, zorder=1 if peer else 2, **style)
+
+
+def work_precision(rows: Rows, title: str) -> Any:
+    """State error and transition-time error against wall time."""
+    has_times = any(row["metrics"] and row["metrics"]["time"] is not None for row in rows)
+    figure = _figure(9.6 if has_times else 6.4)
+    panels = figure.subplots(1, 2 if has_times else 1, squeeze=False, sharex=True)[0]
+    labels = (("state", "state error"), ("time", "error of transition times / duration"))
+    for axes, (quantity, label) in zip(panels, labels, strict=False):
+        _lines(axes, rows, "seconds", quantity)
+        axes.set_xlabel("wall time [s]")
+        axes.set_ylabel(label)
+        axes.grid(True, which="major", linewidth=0.3)
+    handles, names = panels[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside right upper", fontsize=8, frameon=False)
+    figure.suptitle(title, fontsize=10)
+    return figure
+
+
+def convergence(rows: Rows, family: str) -> Any:
+    """State error against the number of steps for the formulas of one family, with the fitted orders."""
+    figure = _figure()
+    axes = figure.subplots()
+    for i, row in enumerate(rows):
+        p = row["order"]
+        label = row["method"] if p is None else f"{row['method']}: order {p:.1f}"
+        axes.loglog(row["steps"], np.maximum(row["errors"], 1e-16), marker=".", linewidth=1, color=f"C{i}", label=label)
+    axes.set_xlabel("steps")
+    axes.set_ylabel("state error")
+    axes.set_title(f"{family}: a slipping mass on a plane, without transitions", fontsize=10)
+    axes.grid(True, linewidth=0.3)
+    axes.legend(fontsize=8, frameon=False)
+    return figure
+
+
+def cost_against_size(rows: Rows, fits: dict[str, float | None], case: str, title: str) -> Any:
+    """Wall time of a run against n."""
+    figure = _figure(7.0)
+    axes = figure.subplots()
+    for method in dict.fromkeys(row["method"] for row in rows):
+        mine = [row for row in rows if row["method"] == method and row.get("seconds")]
+        if not mine:
+            continue
+        power = fits.get(f"{case}/{method}")
+        label = method if power is None else f"{method}: n^{power:.1f}"
+        style = _style(method, method == "CVODE")
+        axes.loglog([row["n"] for row in mine], [row["seconds"] for row in mine], label=label, **style)
+    axes.set_xlabel("n")
+    axes.set_ylabel("wall time of the run [s]")
+    axes.set_title(title, fontsize=10)
+    axes.grid(True, linewidth=0.3)
+    figure.legend(loc="outside right upper", fontsize=8, frameon=False)
+    return figure

@@ -1,0 +1,158 @@
+"""The report: one HTML file that needs no network."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from fricmb.bench import _plots as plots
+from fricmb.bench._size import fits
+from fricmb.bench._tables import LEVELS, scoreboard, tolerance_statistic
+
+_STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+table { border-collapse: collapse; margin: 1rem 0; font-size: 13px; }
+td, th { border-bottom: 1px solid #ddd; padding: .2rem .6rem; text-align: right; vertical-align: top; }
+td:first-child, th:first-child, td.text { text-align: left; }
+svg { max-width: 100%; height: auto; } .bad { color: #b00; } .good { color: #080; } .note { color: #666; }
+details { margin: .5rem 0; } summary { cursor: pointer; }
+"""
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """An HTML table; strings are escaped, a pair (text, class) sets the class of its cell."""
+    lines = ["<table><tr>", *(f"<th>{html.escape(name)}</th>" for name in head), "</tr>"]
+    for row in rows:
+        lines.append("<tr>")
+        for value in row:
+            text, kind = value if isinstance(value, tuple) else (value, "")
+            lines.append(f'<td class="{kind}">{html.escape(shown(text))}</td>')
+        lines.append("</tr>")
+    return "".join(lines) + "</table>\n"
+
+
+def shown(value: Any) -> str:
+    """A value in few characters."""
+    if value is None:
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.2g}"
+    return str(value)
+
+
+def page(title: str, parts: Iterable[str]) -> str:
+    """A whole HTML page."""
+    head = f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{html.escape(title)}</title>"
+    return f"{head}<style>{_STYLE}</style><h1>{html.escape(title)}</h1>\n" + "\n".join(parts) + "</html>\n"
+
+
+def report(result: dict[str, Any]) -> str:
+    """The report of a result of :func:`fricmb.bench.run`."""
+    return page("fricmb: error against run time", _parts(result))
+
+
+def _parts(result: dict[str, Any]) -> Iterator[str]:
+    about = result["about"]
+    versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
+    yield f"<p>{html.escape(about['date'])}, {html.escape(about['machine'])}; {html.escape(versions)}.</p>"
+    yield _NOTES
+    yield "<h2>Time to reach an error</h2>" + scoreboard_table(result)
+    yield "<h2>What a tolerance means</h2>" + _tolerance(result)
+    yield "<h2>Work and precision</h2>"
+    for case in dict.fromkeys(cell["case"] for cell in [*result["cells"], *result["daes"]]):
+        rows = [cell for cell in [*result["cells"], *result["daes"]] if cell["case"] == case]
+        title = result["titles"].get(case, case)
+        yield f"<h3>{html.escape(title)}</h3>"
+        if any(row["metrics"] for row in rows):
+            yield plots.svg(plots.work_precision(rows, title))
+        yield f"<details><summary>all runs</summary>{_runs(rows)}</details>"
+    yield "<h2>Order of convergence</h2>"
+    formulas = [row for row in result["orders"] if "steps" in row]
+    for family in dict.fromkeys(row["method"].partition(",")[0] for row in formulas):
+        rows = [row for row in formulas if row["method"].partition(",")[0] == family]
+        yield plots.svg(plots.convergence(rows, family))
+    yield "<h2>Cost against size</h2>" + "".join(_sizes(result))
+    yield "<h2>Not run</h2>" + table(
+        ("scene", "method", "why"), ((row["case"], row["method"], (row["why"], "text")) for row in result["refusals"])
+    )
+
+
+_NOTES = """<p class="note">State error: largest error of a position or velocity over the grid of the reference, each
+signal over its largest value. References: event-driven solutions in 30-digit arithmetic, closed forms, published
+digits. Peers run the same scene with friction smoothed over a slip speed eps (times the largest speed), with a
+compiled right-hand side and the analytic Jacobian; eps goes from 1e-2 to 1e-7, the tolerance a hundredth of it.
+Their transitions are where the slip speed crosses 10 eps. Times: least of several runs in one process, compilation
+apart.</p>"""
+
+
+def scoreboard_table(result: dict[str, Any]) -> str:
+    """Milliseconds to each level: auto, best of fricmb, best peer."""
+    board = scoreboard([*result["cells"], *result["daes"]])
+    head = ["scene", *(f"{who}, {level:g}" for level in LEVELS for who in ("auto", "best peer"))]
+    rows = []
+    for case in dict.fromkeys(entry["case"] for entry in board):
+        row: list[Any] = [case]
+        for entry in (entry for entry in board if entry["case"] == case):
+            auto, peer = entry["auto"] or entry["own"], entry["peer"]
+            first = auto is not None and (peer is None or auto["seconds"] <= peer["seconds"])
+            row.append((_ms(auto), "good" if first else ""))
+            row.append(_ms(peer) + (f" {peer['method']}" if peer else ""))
+        rows.append(row)
+    return table(head, rows) + "<p class='note'>milliseconds; - : not reached by any setting that was tried.</p>"
+
+
+def _ms(cell: dict[str, Any] | None) -> str:
+    return "-" if cell is None else f"{1e3 * cell['seconds']:.3g}"
+
+
+def _tolerance(result: dict[str, Any]) -> str:
+    found = tolerance_statistic(result["cells"])
+    if not found["runs"]:
+        return "<p>no runs</p>"
+    text = (
+        f"<p>error / (rtol growth) of auto lies within 0.01 to 100 in {100 * found['within']:.0f} % of {found['runs']} "
+        f"runs, and is not above 100 in {100 * found['not_above']:.0f} %. The others:</p>"
+    )
+    rows = ((x["case"], x["rtol"], x["used"], x["ratio"], (x["why"], "text")) for x in found["exceptions"])
+    return text + table(("scene", "rtol", "integrator", "ratio", "what"), rows)
+
+
+_COLUMNS = ("state", "time", "missed", "false", "force", "creep", "energy")
+
+
+def _runs(rows: Iterable[dict[str, Any]]) -> str:
+    costs = ("steps", "evaluations", "factorizations", "failure")
+    head = ("method", "setting", "ms", "compile s", "MB", *_COLUMNS, *costs)
+    return table(head, (_run(row) for row in rows))
+
+
+def _run(row: dict[str, Any]) -> list[Any]:
+    metrics = row["metrics"] or {}
+    setting = ", ".join(f"{key} {value:g}" for key, value in row["setting"].items() if value is not None)
+    used = f" ({row['used']})" if row["used"] not in ("", row["method"]) else ""
+    counters = row["counters"]
+    return [
+        row["method"] + used,
+        setting,
+        None if row["seconds"] is None else 1e3 * row["seconds"],
+        row["first"],
+        row["memory"],
+        *((metrics.get(key), "bad" if key in ("missed", "false") and metrics.get(key) else "") for key in _COLUMNS),
+        counters.get("n_steps"),
+        counters.get("n_rhs"),
+        counters.get("n_lu"),
+        (row["failure"], "text bad"),
+    ]
+
+
+def _sizes(result: dict[str, Any]) -> Iterator[str]:
+    powers = fits(result["sizes"])
+    for case in dict.fromkeys(row["case"] for row in result["sizes"]):
+        rows = [row for row in result["sizes"] if row["case"] == case]
+        title = result["titles"].get(case, case)
+        yield plots.svg(plots.cost_against_size(rows, powers, case, title))
+        head = ("method", "n", "run s", "building the scene s", "transitions", "error", "failure")
+        keys = ("method", "n", "seconds", "build", "events", "error", "failure")
+        every = table(head, ([row.get(key) for key in keys] for row in rows))
+        yield f"<details><summary>all runs</summary>{every}</details>"

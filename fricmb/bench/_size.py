@@ -1,0 +1,122 @@
+"""Cost against size: chains of blocks with stick-slip, and a body of many modes with one contact."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import fricmb as fm
+from fricmb import models
+from fricmb.bench._cell import one_line
+from fricmb.bench._fit import exponent
+from fricmb.bench._reference import shipped
+from fricmb.bench._smooth import smooth
+from fricmb.errors import FricmbError
+
+RTOL = 1e-4
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeCase:
+    """Scenes that grow: ``build(n)``, run to ``t_end``, at ``sizes``."""
+
+    name: str
+    title: str
+    build: Callable[[int], fm.Scene]
+    t_end: float
+    sizes: tuple[int, ...]
+    quick: int = 2
+
+
+def modal_belt(n: int) -> fm.Scene:
+    """A clamped bar by its first n longitudinal modes, its free end rubbing on a moving belt.
+
+    Frequencies (2 k - 1) pi/2, damping ratio 0.002, unit modal masses, shapes of alternating sign at the end:
+    stick-slip with a vibration of many modes after each release.
+    """
+    k = np.arange(1, n + 1)
+    tip = math.sqrt(2.0) * np.where(k % 2 == 1, 1.0, -1.0)
+    bar = fm.ModalBody(
+        "bar", frequencies=(2 * k - 1) * math.pi / 2, damping_ratios=0.002, shapes={"tip": tip[None, :]}, axes="x"
+    )
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    law = fm.laws.Coulomb(mu_s=1.0, mu_k=0.6)
+    sole = fm.Contact("sole", bar.point("tip"), belt, law=law, normal_force=1.0)
+    return fm.Scene(f"bar of {n} modes", [bar, belt, sole])
+
+
+SIZES = (
+    SizeCase(
+        name="chain", title="chain of n blocks on a belt, t = 20", build=models.stick_slip_chain, t_end=20.0,
+        sizes=(10, 30, 100, 300, 1000, 3000, 10_000, 30_000, 100_000),
+    ),
+    SizeCase(
+        name="modes", title="bar of n modes with one contact, t = 20", build=modal_belt, t_end=20.0,
+        sizes=(5, 16, 50, 160, 500, 1600, 5000),
+    ),
+)  # fmt: skip
+
+
+def size_methods(case: SizeCase) -> list[str]:
+    """Integrators of variable step, and CVODE for the chain."""
+    own = ["auto", *(name for name, kind in fm.integrators.items() if kind.adaptive)]
+    return [*own, "CVODE"] if case.name == "chain" else own
+
+
+def measure_size(name: str, method: str, n: int) -> dict[str, Any]:
+    """One run at one size: seconds of the run alone and of building the scene, transitions, error where known."""
+    case = next(case for case in SIZES if case.name == name)
+    found: dict[str, Any] = {"case": name, "method": method, "n": n}
+    try:
+        begin = time.perf_counter()
+        scene = case.build(n)
+        found["build"] = time.perf_counter() - begin
+        run = _cvode if method == "CVODE" else _own
+        return found | run(case, scene, method, n)
+    except (FricmbError, ArithmeticError, ValueError, RuntimeError, MemoryError) as error:
+        return found | {"failure": one_line(error)}
+
+
+def _own(case: SizeCase, scene: fm.Scene, method: str, n: int) -> dict[str, Any]:
+    times = np.linspace(0.0, case.t_end, 41)
+    fm.simulate(scene, t_end=case.t_end * 1e-4, rtol=RTOL, method=method)  # loads, plans
+    begin = time.perf_counter()
+    sol = fm.simulate(scene, t_end=case.t_end, rtol=RTOL, method=method, t_eval=times)
+    seconds = time.perf_counter() - begin
+    return {
+        "seconds": seconds, "events": len(sol.events), "steps": sol.stats.n_steps, "used": sol.stats.method,
+        "energy": float(np.abs(sol.energy.residual).max()), "error": _error(case, n, sol.q),
+    }  # fmt: skip
+
+
+def _cvode(case: SizeCase, scene: fm.Scene, method: str, n: int) -> dict[str, Any]:
+    """CVODE with a band, friction smoothed over slip speeds of 1e-4: about 1 % on the chain of 10."""
+    from fricmb.bench._sundials import Cvode
+
+    smoothed = smooth(scene, 1e-4, case.t_end)
+    times = np.linspace(0.0, case.t_end, 41)
+    begin = time.perf_counter()
+    answer = Cvode().solve(smoothed, times, 1e-6, np.full(len(smoothed.start), 1e-8), steps=False)
+    seconds = time.perf_counter() - begin
+    return {"seconds": seconds, "used": "CVODE", "error": _error(case, n, smoothed.split(answer.y)[0])}
+
+
+def _error(case: SizeCase, n: int, q: np.ndarray) -> float | None:
+    if case.name != "chain" or n not in (10, 100):
+        return None
+    true = shipped(f"chain{n}").q
+    return float((np.abs(q - true).max(axis=1) / np.abs(true).max(axis=1)).max())
+
+
+def fits(rows: list[dict[str, Any]]) -> dict[str, float | None]:
+    """Exponent of the cost for each case and method ("case/method"), over sizes of at least 50."""
+    found: dict[str, float | None] = {}
+    for key in dict.fromkeys((row["case"], row["method"]) for row in rows):
+        mine = [row for row in rows if (row["case"], row["method"]) == key and row.get("seconds") and row["n"] >= 50]
+        found["/".join(key)] = exponent([row["n"] for row in mine], [row["seconds"] for row in mine])
+    return found
