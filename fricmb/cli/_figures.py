@@ -1,8 +1,9 @@
-"""``fricmb figures``: the brake's cases, a page each."""
+"""``fricmb figures``: the figures of the brake's source, and a page for each case."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,24 +11,59 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import fricmb as fm
+from fricmb.errors import unknown_name
 from fricmb.models.brake4dof import CASES, brake4dof
+from fricmb.models.brake_paper import FIGURES, T_END, run
 from fricmb.plot import SolutionPlots, Units
 
 DIMENSIONLESS = Units(time="1", length="1", force="1")
+#: Models whose source has figures.
+MODELS = ("brake4dof",)
 
 
 def figures(options: argparse.Namespace) -> int:
-    """Draw each case: velocities along and across the braking direction, y1, the plane of relative velocity."""
+    """Draw every figure of the source with what it says and what we find, and a page for each case."""
+    if options.model not in MODELS:
+        raise unknown_name("model with figures", options.model, MODELS)
     cases = options.case or list(CASES)
-    scenes = {case: brake4dof(case) for case in cases}  # a wrong case is told before anything runs
+    for case in cases:
+        brake4dof(case)  # a wrong case is told before anything runs
     folder: Path = options.out
     folder.mkdir(parents=True, exist_ok=True)
-    for case, scene in scenes.items():
-        sol = fm.simulate(scene, t_end=options.t_end, rtol=options.rtol)
+    for case in cases:
+        sol = run(str(case), t_end=options.t_end, rtol=options.rtol)
         path = folder / f"brake4dof-case{case}.png"
         page(sol, f"brake4dof, case {case}").savefig(path, dpi=150)
         print(path)
+    if options.t_end >= T_END:
+        for path in _paper(folder, cases, options):
+            print(path)
+    else:
+        print(f"figures of the source left out: they need the whole braking, --t-end {T_END:g}")
     return 0
+
+
+def _paper(folder: Path, cases: list[str], options: argparse.Namespace) -> Iterator[Path]:
+    """The figures of the source, and a text of statements and findings."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    lines = []
+    for number, figure in FIGURES.items():
+        if figure.case not in cases:
+            continue
+        sol = run(figure.case, t_end=options.t_end, rtol=options.rtol)
+        path = folder / f"figure{number:02d}.png"
+        drawn = figure.draw(sol)
+        drawn.savefig(path, dpi=150)
+        plt.close(drawn)
+        lines += [figure.title, f"  {figure.shows}", *(f"  {finding}" for finding in figure.check(sol)), ""]
+        yield path
+    text = folder / "findings.txt"
+    text.write_text("\n".join(lines), encoding="utf-8")
+    yield text
 
 
 def page(sol: fm.Solution, title: str) -> Figure:

@@ -162,7 +162,10 @@ def _add_bench(commands: _Commands) -> None:
 
 
 def _add_figures(commands: _Commands) -> None:
-    sub = _command(commands, "figures", "draw the brake's cases side by side", "_figures:figures")
+    sub = _command(commands, "figures", "draw the figures of the brake's source, and a page a case", "_figures:figures")
+    sub.add_argument(
+        "model", metavar="MODEL", nargs="?", default="brake4dof", help="whose figures (default: %(default)s)"
+    )
     sub.add_argument(
         "--out", type=Path, default=Path("fricmb-out/figures"), metavar="DIR", help="folder (default: %(default)s)"
     )

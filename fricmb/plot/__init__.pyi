@@ -1,5 +1,11 @@
 from ._solution import SolutionPlots as SolutionPlots
+from ._style import BLUE as BLUE
+from ._style import COLOURS as COLOURS
+from ._style import DARK as DARK
+from ._style import ORANGE as ORANGE
+from ._style import THIN as THIN
+from ._style import finish as finish
 from ._units import SCENE_UNITS as SCENE_UNITS
 from ._units import Units as Units
 
-__all__ = ["SCENE_UNITS", "SolutionPlots", "Units"]
+__all__ = ["BLUE", "COLOURS", "DARK", "ORANGE", "SCENE_UNITS", "THIN", "SolutionPlots", "Units", "finish"]

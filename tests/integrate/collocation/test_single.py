@@ -23,9 +23,7 @@ def problem(M, K, C, W, w=0.0, *, mu_s=1.0, mu_k=1.0, N=1.0):
     """One contact on rows W (n, m) of a structure M, K, C."""
     M, K, C, W = (np.array(x, dtype=float) for x in (M, K, C, W))
     n, m = W.shape
-    one = Templates(
-        address=np.zeros(1, np.int64), p_start=np.zeros(2, np.int64), x_start=np.zeros(2, np.int64)
-    )
+    one = Templates(address=np.zeros(1, np.int64), p_start=np.zeros(2, np.int64), x_start=np.zeros(2, np.int64))
     contacts = Contacts(
         row=np.array([0, m]), W=W, w=np.full(m, float(w)), Wu=np.zeros((m, 0)), law=np.zeros(1, np.int8),
         law_table=one, mu_s=np.array([mu_s]), mu_0=np.array([mu_k]), z_start=np.zeros(2, np.int64),

@@ -1,0 +1,75 @@
+"""What the figures share: panels of signals and spectra."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import fricmb as fm
+from fricmb.models.brake_paper._measures import Spikes
+from fricmb.plot import BLUE, DARK, ORANGE, THIN, finish
+
+#: Long signals are drawn from this many points.
+POINTS = 20_000
+
+
+def page(rows: int, columns: int = 1, *, height: float = 2.6) -> tuple[Figure, list[Axes]]:
+    """A figure with panels, row by row."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(4.6 * columns + 2.6, height * rows + 0.4), layout="constrained", squeeze=False
+    )
+    assert isinstance(figure, Figure)
+    return figure, list(axes.ravel())
+
+
+@lru_cache(maxsize=32)
+def window(sol: fm.Solution, begin: float, end: float) -> fm.Solution:
+    """The run between two times, at enough of them for curves."""
+    return sol.at(np.linspace(begin, min(end, sol.t_end), POINTS))
+
+
+def velocities(ax: Axes, sol: fm.Solution, letter: str) -> None:
+    """Pad (solid) and rotor (dashed) along x or y."""
+    ax.plot(sol.t, sol.velocity(f"pad.{letter}"), color=BLUE, linewidth=0.6, label="pad")
+    ax.plot(sol.t, sol.velocity(f"rotor.{letter}"), "--", color=ORANGE, linewidth=1.2, label="rotor")
+    finish(ax, x="time [1]", y=f"velocity along {letter} [1]", legend=True)
+
+
+def across(ax: Axes, sol: fm.Solution) -> None:
+    """The pad's position across."""
+    ax.plot(sol.t, sol["pad.y"], color=BLUE, linewidth=0.6)
+    finish(ax, x="time [1]", y="y1 [1]")
+
+
+def spectrum(ax: Axes, found: Spikes, *, named: dict[str, float], low: float = 0.0, high: float = 22.0) -> None:
+    """Density over frequency with the peaks, and frequencies by name."""
+    part = (found.omega >= low) & (found.omega <= high)
+    ax.semilogy(found.omega[part], found.power[part], color=BLUE, linewidth=THIN)
+    peaks = (found.peaks.omega >= low) & (found.peaks.omega <= high)
+    ax.semilogy(found.peaks.omega[peaks], found.peaks.height[peaks], ".", color=DARK, markersize=4, label="peaks")
+    for i, (name, omega) in enumerate(named.items()):
+        ax.axvline(omega, color=ORANGE, linestyle=("--", ":")[i % 2], linewidth=1.2, label=name)
+    finish(ax, x="angular frequency [1]", y="power density of y1 [1]", legend=True)
+
+
+def write_places(ax: Axes, found: Spikes, low: float, high: float) -> None:
+    """The frequency beside each peak."""
+    for omega, height in zip(found.peaks.omega, found.peaks.height, strict=True):
+        if low <= omega <= high:
+            ax.annotate(
+                f"{omega:.2f}",
+                (omega, height),
+                xytext=(0, 3),
+                textcoords="offset points",
+                fontsize=7,
+                ha="center",
+                va="bottom",
+                rotation=90,
+            )
+    bottom, top = ax.get_ylim()
+    ax.set_ylim(bottom, top * 30)
