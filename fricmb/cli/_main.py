@@ -65,6 +65,7 @@ def parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_bench(commands)
     _add_figures(commands)
+    _add_plot(commands)
     return top
 
 
@@ -172,3 +173,19 @@ def _add_figures(commands: _Commands) -> None:
     sub.add_argument("--rtol", type=float, default=1e-8, metavar="R", help="relative tolerance (default: %(default)g)")
     sub.add_argument("--t-end", type=float, default=700.0, metavar="T", help="end of the runs (default: %(default)g)")
     sub.add_argument("--case", action="append", metavar="CASE", help="only this case; may be repeated")
+
+
+def _add_plot(commands: _Commands) -> None:
+    sub = _command(commands, "plot", "draw, animate or sound a run that was saved", "_plot:plot")
+    sub.add_argument("solution", metavar="FILE", type=Path, help="a solution.npz that fricmb run or sol.save wrote")
+    sub.add_argument(
+        "kind",
+        metavar="KIND",
+        help="velocities, phase, force, transitions, energy, spectrum, spectrogram, orders, animation, sound or view",
+    )
+    sub.add_argument("--of", metavar="NAME", help="the dof, contact or signal that is shown, such as pad.y")
+    sub.add_argument("--out", type=Path, metavar="FILE", help="default: KIND.png, .gif, .wav or .html beside FILE")
+    sub.add_argument("--t-start", type=float, metavar="T", help="animation: start; default: that of the run")
+    sub.add_argument("--t-end", type=float, metavar="T", help="animation: end; default: that of the run")
+    sub.add_argument("--frames", type=int, default=120, metavar="N", help="animation: pictures (default: %(default)s)")
+    sub.add_argument("--seconds", type=float, default=3.0, metavar="S", help="sound: length (default: %(default)g)")

@@ -170,6 +170,11 @@ class FrictionLaw(Declaration):
 
         return rate(self, v_rel, normal_force, state)
 
+    def _repr_html_(self) -> str:
+        from fricmb.plot._html import law_html
+
+        return law_html(self)
+
     # -- checks -------------------------------------------------------------------------------------------------
     def __post_init__(self) -> None:
         self.check()

@@ -72,6 +72,11 @@ class Plan:
         """What distinguishes the arrays of two plans of one scene."""
         return self.dofs, self.parts
 
+    def _repr_html_(self) -> str:
+        from fricmb.plot._html import plan_html
+
+        return plan_html(self)
+
     def __str__(self) -> str:
         lines = [f"plan of {self.scene!r}"]
         width = max(len(name) for name in self.counts)

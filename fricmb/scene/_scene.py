@@ -229,6 +229,11 @@ class Scene:
 
         return make_plan(self)
 
+    def _repr_html_(self) -> str:
+        from fricmb.plot._html import scene_html
+
+        return scene_html(self)
+
     # -- value --------------------------------------------------------------------------------------------------
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):

@@ -273,6 +273,11 @@ class Solution:
         """What happened, on a few lines."""
         return summarise(self)
 
+    def _repr_html_(self) -> str:
+        from fricmb.plot._html import solution_html
+
+        return solution_html(self)
+
     def __repr__(self) -> str:
         return describe(self)
 

@@ -1,0 +1,215 @@
+"""Stability of steady sliding over parameters: complex eigenvalues, critical values, maps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._steady import SteadySliding, steady_sliding
+from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, eigenpairs, follow
+
+if TYPE_CHECKING:
+    from fricmb.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Eigenvalues:
+    """Eigenvalues of steady sliding over one parameter, each mode followed by continuity.
+
+    Attributes
+    ----------
+    over : str
+    values : (n_values,)
+    eigenvalues : (n_values, n_modes) complex
+        Growth rates and angular frequencies.  Oscillations stand once, with the positive frequency they have at the
+        first value; motions without oscillation one by one.
+    shapes : (n_values, n_modes, n_dof) complex
+        Displacements, largest component 1; order of ``dofs``.
+    dofs : tuple of str
+        Free degrees of freedom.
+    critical : tuple of Crossing
+        Where modes become unstable or stable again, in rising order of the parameter.
+    """
+
+    over: str
+    values: Floats
+    eigenvalues: Complexes
+    shapes: Complexes
+    dofs: tuple[str, ...]
+    critical: tuple[Crossing, ...]
+
+    @property
+    def growth(self) -> Floats:
+        """Growth rates (n_values, n_modes)."""
+        return self.eigenvalues.real
+
+    @property
+    def frequency(self) -> Floats:
+        """Angular frequencies (n_values, n_modes)."""
+        return np.abs(self.eigenvalues.imag)
+
+    def __str__(self) -> str:
+        lines = [f"{self.eigenvalues.shape[1]} modes over {self.over} = {self.values[0]:g} to {self.values[-1]:g}"]
+        for c in self.critical:
+            side = "above" if c.unstable_above else "below"
+            lines.append(f"  {c.kind} {side} {self.over} = {c.value:.12g}, angular frequency {c.frequency:.6g}")
+        if not self.critical:
+            lines.append("  unstable throughout" if (self.growth.max(axis=1) > 0).all() else "  no change of stability")
+        return "\n".join(lines)
+
+
+def complex_eigenvalues(
+    scene: Scene, *, over: str, values: ArrayLike, speeds: Mapping[str, float] | None = None
+) -> Eigenvalues:
+    """Eigenvalues of steady sliding over one parameter.
+
+    At each value the equilibrium is found (:func:`steady_sliding`), the scene linearised there with its analytic
+    Jacobians (the coupling of the normal force into friction, the slope of the coefficient, the turning of the force in
+    two dimensions, law states), and the modes are followed by the likeness of their shapes, with steps in between where
+    they change much.  Critical values between those given are found to round-off: as a root of the growth rate, or of
+    the squared distance of two eigenvalues where two undamped modes meet.
+
+    Parameters
+    ----------
+    scene : Scene
+    over : str
+        Name in ``scene.parameters``, or of a degree of freedom in ``speeds``.
+    values : (n_values,) array_like
+        Rising or falling.
+    speeds : dict of str to float, optional
+        As in :func:`steady_sliding`.
+
+    Returns
+    -------
+    Eigenvalues
+
+    Raises
+    ------
+    AnalysisError
+        If there is no steady sliding at a value; names it.
+    UnknownNameError
+        For a parameter that is not there.
+    """
+    grid = checked_values("complex_eigenvalues", values)
+    dofs: list[str] = []
+
+    def solve(value: float) -> Pairs:
+        steady = _steady(scene, {over: value}, speeds)
+        dofs[:] = [steady.system.dof_names[i] for i in steady.free]
+        return eigenpairs(steady.matrix())
+
+    found = follow(solve, grid)
+    critical = crossings(solve, grid, found)
+    eigenvalues = np.array([pairs[0] for pairs in found])
+    vectors = np.array([pairs[1] for pairs in found])[:, :, : len(dofs)]
+    limit = 1e-12 * max(float(np.abs(eigenvalues).max(initial=0.0)), 1e-300)
+    kept = np.flatnonzero(eigenvalues[0].imag >= -limit)
+    # of a crossing by the mode that stands for it: itself, or its conjugate at the first value
+    start = eigenvalues[0]
+    upper = start.real + 1j * np.abs(start.imag)
+    stands = [
+        int(np.argmin(np.abs(start[kept] - upper[j]))) if j not in kept else int(np.searchsorted(kept, j))
+        for j in range(start.size)
+    ]
+    return Eigenvalues(
+        over=over,
+        values=grid,
+        eigenvalues=eigenvalues[:, kept],
+        shapes=_scaled(vectors[:, kept]),
+        dofs=tuple(dofs),
+        critical=tuple(replace(c, mode=stands[c.mode]) for c in critical),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class StabilityMap:
+    """Stability of steady sliding over two parameters.
+
+    Attributes
+    ----------
+    over : (str, str)
+    values : ((n_a,), (n_b,))
+    growth : (n_a, n_b)
+        Largest growth rate.
+    frequency : (n_a, n_b)
+        Angular frequency of the mode that has it.
+    unstable : (n_a, n_b) int
+        Number of growing modes, an oscillation counting once.
+    """
+
+    over: tuple[str, str]
+    values: tuple[Floats, Floats]
+    growth: Floats
+    frequency: Floats
+    unstable: NDArray[np.int64]
+
+
+def stability_map(
+    scene: Scene,
+    *,
+    over: tuple[str, str],
+    values: Sequence[ArrayLike],
+    speeds: Mapping[str, float] | None = None,
+) -> StabilityMap:
+    """Largest growth rate of steady sliding over two parameters.
+
+    Parameters
+    ----------
+    scene : Scene
+    over : (str, str)
+        Names as in :func:`complex_eigenvalues`.
+    values : two array_like
+        Of the first and the second, rising or falling.
+    speeds : dict of str to float, optional
+        As in :func:`steady_sliding`.
+
+    Returns
+    -------
+    StabilityMap
+
+    Raises
+    ------
+    AnalysisError
+        If there is no steady sliding somewhere; names the values.
+    """
+    if len(over) != 2 or len(values) != 2:
+        raise AnalysisError(f"stability_map: over and values must be two each; got {over!r} and {len(values)} values")
+    first, second = (checked_values("stability_map", v) for v in values)
+    growth, frequency = np.zeros((2, first.size, second.size))
+    unstable = np.zeros((first.size, second.size), dtype=np.int64)
+    for i, a in enumerate(first.tolist()):
+        for j, b in enumerate(second.tolist()):
+            found = eigenpairs(_steady(scene, {over[0]: a, over[1]: b}, speeds).matrix())[0]
+            if not found.size:
+                continue
+            scale = float(np.abs(found).max())
+            most = int(np.argmax(found.real))
+            growth[i, j], frequency[i, j] = found[most].real, abs(found[most].imag)
+            unstable[i, j] = int(((found.real > 1e-7 * scale) & (found.imag >= -1e-12 * scale)).sum())
+    return StabilityMap(
+        over=(over[0], over[1]), values=(first, second), growth=growth, frequency=frequency, unstable=unstable
+    )
+
+
+def _steady(scene: Scene, values: Mapping[str, float], speeds: Mapping[str, float] | None) -> SteadySliding:
+    """Steady sliding with some parameters or speeds at given values."""
+    held = dict(speeds or {})
+    here = {name: value for name, value in values.items() if name not in held}
+    held |= {name: value for name, value in values.items() if name in held}
+    try:
+        return steady_sliding(scene.with_parameters(here) if here else scene, speeds=held or None)
+    except AnalysisError as error:
+        raise AnalysisError(f"{error} (at {', '.join(f'{k} = {v:g}' for k, v in values.items())})") from None
+
+
+def _scaled(shapes: Complexes) -> Complexes:
+    """With the largest component of each shape 1."""
+    if not shapes.size:
+        return shapes
+    largest = np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=-1)[..., None], axis=-1)
+    return np.divide(shapes, largest, out=np.zeros_like(shapes), where=largest != 0)

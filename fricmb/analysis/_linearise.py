@@ -1,0 +1,166 @@
+"""Forces of a system at one state and their derivatives, from its analytic templates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fricmb.analysis._errors import Floats
+from fricmb.integrate._problem import (
+    LAW_COEFFICIENT,
+    LAW_SMOOTH,
+    NORMAL_CONSTANT,
+    NORMAL_LAW,
+    Templates,
+)
+from fricmb.system import System
+from fricmb.system._evaluate import arguments, evaluate
+
+
+@dataclass(frozen=True, kw_only=True)
+class Linearised:
+    """Everything at one state of a system that slides at all of its contacts.
+
+    With y = (q, v, z): ``force`` (n,) on the degrees of freedom and ``rate`` (n_z,) of the law states, and their
+    derivatives ``force_y`` (n, 2n+n_z), ``rate_y`` (n_z, 2n+n_z).  ``F``, ``g`` (m,) on the rows of the contacts,
+    ``r``, ``N`` (n_c,).
+    """
+
+    force: Floats
+    rate: Floats
+    force_y: Floats
+    rate_y: Floats
+    F: Floats
+    g: Floats
+    r: Floats
+    N: Floats
+
+
+def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -> Linearised:
+    """Forces and derivatives at a state; contacts with a load of 0 or below are open and bring none.
+
+    In two dimensions slip of speed r along n has ``dF/dg = -(mu' N n n^T + mu N/r (1 - n n^T))``, ``dF/dN = -mu n``.
+    """
+    problem = system.problem
+    n, n_z = problem.n, problem.n_z
+    linear, contacts = problem.linear, problem.contacts
+    u = system._signals(np.array([t]))[:, :, 0]
+    X = np.concatenate([[t], q, v, u[0], u[1]])
+    K, C, places = linear.Kx[:n], linear.Cx[:n], np.concatenate([q, u[0]])
+    force = linear.fx[:n] - K @ places - C @ np.concatenate([v, u[1]]) + linear.B @ u[0]
+    force_X = np.zeros((n, X.size))
+    force_X[:, 1 : 1 + n] -= K[:, :n]
+    force_X[:, 1 + n : 1 + 2 * n] -= C[:, :n]
+    _add_elements(system, X, force, force_X)
+    g = contacts.W.T @ v - contacts.w - contacts.Wu @ u[1]
+    g_X = np.zeros((g.size, X.size))
+    g_X[:, 1 + n : 1 + 2 * n] = contacts.W.T
+    F, rate = np.zeros(g.size), np.zeros(n_z)
+    force_z, rate_X, rate_z = np.zeros((n, n_z)), np.zeros((n_z, X.size)), np.zeros((n_z, n_z))
+    r, N = np.zeros(problem.n_c), np.zeros(problem.n_c)
+    for k in range(problem.n_c):
+        rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
+        states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
+        N[k], N_X = _normal(system, k, X)
+        r[k] = float(np.linalg.norm(g[rows]))
+        W = contacts.W[:, rows]
+        if contacts.law[k] == LAW_SMOOTH:
+            F_k, rate[states], J = _smooth(system, k, g[rows], N[k], z[states])
+            d = F_k.size
+            F_X = J[:d, :d] @ g_X[rows] + np.outer(J[:d, d], N_X)
+            rate_X[states] = J[d:, :d] @ g_X[rows] + np.outer(J[d:, d], N_X)
+            rate_z[states, states] = J[d:, d + 1 :]
+            force_z[:, states] += W @ J[:d, d + 1 :]
+        else:
+            F_k, F_g, F_N = _slip(system, k, g[rows], r[k], N[k])
+            F_X = F_g @ g_X[rows] + np.outer(F_N, N_X)
+        F[rows] = F_k
+        force += W @ F_k + contacts.Wn[:, k] * (N[k] - contacts.N0[k])
+        force_X += W @ F_X + np.outer(contacts.Wn[:, k], N_X)
+    state = slice(1, 1 + 2 * n)
+    return Linearised(
+        force=force,
+        rate=rate,
+        force_y=np.hstack([force_X[:, state], force_z]),
+        rate_y=np.hstack([rate_X[:, state], rate_z]),
+        F=F,
+        g=g,
+        r=r,
+        N=N,
+    )
+
+
+def stiffness_without_friction(system: System, q: Floats, v: Floats) -> Floats:
+    """Symmetric part (n, n) of the stiffness at a state: structure, nonlinear elements, normal-force laws."""
+    problem, n = system.problem, system.problem.n
+    u = system._signals(np.zeros(1))[:, :, 0]
+    X = np.concatenate([np.zeros(1), q, v, u[0], u[1]])
+    force_X = np.zeros((n, X.size))
+    force_X[:, 1 : 1 + n] -= problem.linear.Kx[:n, :n]
+    _add_elements(system, X, np.zeros(n), force_X)
+    for k in np.flatnonzero(problem.contacts.normal == NORMAL_LAW):
+        force_X += np.outer(problem.contacts.Wn[:, k], _normal(system, int(k), X)[1])
+    K = -force_X[:, 1 : 1 + n]
+    return 0.5 * (K + K.T)
+
+
+def _forms(table: Templates, k: int, n_X: int) -> Floats:
+    """Slopes (n_x, n_X) of the arguments of function k."""
+    first, last = int(table.x_start[k]), int(table.x_start[k + 1])
+    slopes = np.zeros((last - first, n_X))
+    for a in range(first, last):
+        form = slice(int(table.form_start[a]), int(table.form_start[a + 1]))
+        np.add.at(slopes[a - first], table.form_index[form], table.form_coefficient[form])
+    return slopes
+
+
+def _add_elements(system: System, X: Floats, force: Floats, force_X: Floats) -> None:
+    elements = system.problem.elements
+    table = elements.table
+    for k in range(len(table.address)):
+        first, last = int(elements.f_start[k]), int(elements.f_start[k + 1])
+        slopes = _forms(table, k, X.size)
+        n_f, n_x = last - first, len(slopes)
+        out = evaluate(table, k, arguments(table, k, X[:, None]), n_f * (1 + n_x) + 3)[:, 0]
+        local_X = out[n_f : n_f * (1 + n_x)].reshape(n_f, n_x) @ slopes
+        for b in range(n_f):
+            spread = slice(int(elements.spread_start[first + b]), int(elements.spread_start[first + b + 1]))
+            for i, c in zip(elements.spread_dof[spread], elements.spread_coefficient[spread], strict=True):
+                force[i] += c * out[b]
+                force_X[i] += c * local_X[b]
+
+
+def _normal(system: System, k: int, X: Floats) -> tuple[float, Floats]:
+    """Normal force and its derivative by X; both 0 where the contact is open."""
+    contacts = system.problem.contacts
+    if contacts.normal[k] == NORMAL_CONSTANT:
+        return float(contacts.N[k]), np.zeros(X.size)
+    table = contacts.normal_table
+    slopes = _forms(table, k, X.size)
+    n_out = 1 + len(slopes) + (2 if contacts.normal[k] == NORMAL_LAW else 0)
+    out = evaluate(table, k, arguments(table, k, X[:, None]), n_out)[:, 0]
+    if out[0] <= 0.0:
+        return 0.0, np.zeros(X.size)
+    return float(out[0]), out[1 : 1 + len(slopes)] @ slopes
+
+
+def _slip(system: System, k: int, g: Floats, r: float, N: float) -> tuple[Floats, Floats, Floats]:
+    """Friction of a coefficient law in slip, dF/dg and dF/dN."""
+    contacts = system.problem.contacts
+    mu, mu_r, mu_N = float(contacts.mu_0[k]), 0.0, 0.0
+    if contacts.law[k] == LAW_COEFFICIENT:
+        mu, mu_r, mu_N = evaluate(contacts.law_table, k, np.array([[r, N]]), 3)[:, 0].tolist()
+    direction = g / r if r > 0.0 else np.zeros(g.size)
+    along = np.outer(direction, direction)
+    turning = mu * N / r * (np.eye(g.size) - along) if r > 0.0 and g.size > 1 else np.zeros_like(along)
+    return -mu * N * direction, -(mu_r * N * along + turning), -(mu + mu_N * N) * direction
+
+
+def _smooth(system: System, k: int, g: Floats, N: float, z: Floats) -> tuple[Floats, Floats, Floats]:
+    """Force and state rates of a smooth law with their Jacobian over (g, N, z)."""
+    d, n_z = g.size, z.size
+    size = d + n_z
+    x = np.concatenate([g, [N], z])[None]
+    out = evaluate(system.problem.contacts.law_table, k, x, size + size * (size + 1))[:, 0]
+    return out[:d], out[d:size], out[size:].reshape(size, size + 1)

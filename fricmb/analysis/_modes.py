@@ -1,0 +1,138 @@
+"""Energy by mode of the structure, and the power that flows into each: which mode squeals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import eigh
+
+from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._ledger import EnergyLedger, energy_ledger
+from fricmb.analysis._linearise import stiffness_without_friction
+from fricmb.analysis._steady import SteadySliding
+from fricmb.system import build
+
+if TYPE_CHECKING:
+    from fricmb.solution import Solution
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModalEnergy:
+    """Energy in each mode of the structure without friction, and where it came from.
+
+    Attributes
+    ----------
+    t : (n_t,)
+    omega : (n_modes,)
+        Angular frequencies, rising.
+    shapes : (n_dof, n_modes)
+        Of unit modal mass, order of ``dofs``.
+    dofs : tuple of str
+    energy : (n_modes, n_t)
+        ``(eta'^2 + omega^2 eta^2)/2`` of each mode.
+    friction : (n_modes, n_t)
+        Energy that friction brought into each mode since the start (negative: took).
+    damping : (n_modes, n_t)
+        Energy that linear damping took from each mode.
+    other : (n_modes, n_t)
+        The rest: what driven bodies, loads, nonlinear and non-symmetric elements and load changes brought.
+    """
+
+    t: Floats
+    omega: Floats
+    shapes: Floats
+    dofs: tuple[str, ...]
+    energy: Floats
+    friction: Floats
+    damping: Floats
+    other: Floats
+
+    @property
+    def squealing(self) -> int:
+        """The vibrating mode that friction brought most energy to."""
+        fed = np.where(self.omega > 0.0, self.friction[:, -1], -np.inf)
+        if not np.isfinite(fed).any():
+            raise AnalysisError("modal_energy: no mode vibrates")
+        return int(np.argmax(fed))
+
+    def power(self, k: int) -> Floats:
+        """Mean power of friction into mode k on the stretches between the times (n_t - 1,)."""
+        return np.asarray(np.diff(self.friction[k]) / np.diff(self.t))
+
+    def name(self, k: int) -> str:
+        """Degree of freedom that moves most in mode k."""
+        return self.dofs[int(np.argmax(np.abs(self.shapes[:, k])))]
+
+    def __str__(self) -> str:
+        lines = [f"{'mode':>4} {'omega':>10} {'friction':>12} {'damping':>12} {'other':>12}  moves most"]
+        lines += [
+            f"{k:4d} {self.omega[k]:10.4g} {self.friction[k, -1]:+12.4g} {-self.damping[k, -1]:+12.4g}"
+            f" {self.other[k, -1]:+12.4g}  {self.name(k)}"
+            for k in range(len(self.omega))
+        ]
+        return "\n".join(lines)
+
+
+def modal_energy(sol: Solution, *, around: SteadySliding | None = None) -> ModalEnergy:
+    """Energy of each mode of the structure, and the energy that friction brings to it.
+
+    Parameters
+    ----------
+    sol : Solution
+    around : SteadySliding, optional
+        Count displacements and friction from this equilibrium: then the vibration alone is seen, and what friction
+        brings is what feeds it.  Default: from q = 0, static deflection included.
+
+    Returns
+    -------
+    ModalEnergy
+
+    Raises
+    ------
+    AnalysisError
+        For a run that was joined from different scenes, or an equilibrium of another.
+
+    Notes
+    -----
+    Modes are those of the mass matrix and the symmetric stiffness at the equilibrium, contact stiffness included,
+    without friction.  Frequencies that are round-off or belong to negative stiffness count as 0.
+    """
+    ledger = energy_ledger(sol)
+    system = build(sol.scene)
+    if tuple(sol.dof_names) != system.dof_names:
+        raise AnalysisError("modal_energy: the run left degrees of freedom out (observe=)")
+    if around is not None and around.system.dof_names != system.dof_names:
+        raise AnalysisError("modal_energy: around is the equilibrium of another scene")
+    n = len(sol.dof_names)
+    q0 = np.zeros(n) if around is None else around.q
+    F0 = np.zeros(system.problem.m) if around is None else around.at.F
+    K = stiffness_without_friction(system, q0, np.zeros(n))
+    values, shapes = eigh(K, system.problem.linear.M)
+    omega = np.sqrt(np.where(values > 1e-13 * np.abs(values).max(initial=0.0), values, 0.0))
+    return _flows(sol, ledger, omega, shapes, q0, F0)
+
+
+def _flows(sol: Solution, ledger: EnergyLedger, omega: Floats, shapes: Floats, q0: Floats, F0: Floats) -> ModalEnergy:
+    """Modal energies at the ledger's times and the integrals of powers between them."""
+    problem = build(sol.scene).problem
+    n = len(sol.dof_names)
+    seen = sol.at(ledger.t)
+    eta, rate = shapes.T @ problem.linear.M @ (seen.q - q0[:, None]), shapes.T @ problem.linear.M @ seen.v
+    energy = 0.5 * (rate**2 + (omega[:, None] * eta) ** 2)
+    nodes = ledger._at
+    speed = shapes.T @ problem.linear.M @ nodes.v
+    pull = shapes.T @ problem.contacts.W @ (nodes.record.samples.F - F0[:, None])
+    drag = shapes.T @ problem.linear.Cx[:n, :n] @ nodes.v
+    friction, damping = ledger._cumulate(speed * pull), ledger._cumulate(speed * drag)
+    return ModalEnergy(
+        t=ledger.t,
+        omega=omega,
+        shapes=shapes,
+        dofs=tuple(sol.dof_names),
+        energy=energy,
+        friction=friction,
+        damping=damping,
+        other=energy - energy[:, :1] - friction + damping,
+    )

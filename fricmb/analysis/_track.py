@@ -1,0 +1,235 @@
+"""Eigenvalues followed by continuity, and where they cross into instability."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fricmb.analysis._errors import AnalysisError, Floats
+
+Complexes = NDArray[np.complex128]
+#: Eigenvalues (m,) and their vectors (m, m) by rows, at a value of the parameter.
+Pairs = tuple[Complexes, Complexes]
+Solve = Callable[[float], Pairs]
+
+#: Growth below this share of the largest eigenvalue is round-off: undamped motion.
+NEUTRAL = 1e-7
+#: Least similarity (modal assurance criterion) by which two shapes count as the same, before a step is halved.
+SIMILAR = 0.6
+_HALVINGS = 6
+
+
+def eigenpairs(A: Floats) -> Pairs:
+    """Eigenvalues (m,) and unit eigenvectors (m, m), a row each."""
+    from scipy.linalg import eig
+
+    if not A.size:
+        return np.zeros(0, complex), np.zeros((0, 0), complex)
+    values, vectors = eig(A)
+    return values, vectors.T / np.linalg.norm(vectors, axis=0)[:, None]
+
+
+def follow(solve: Solve, values: Floats) -> list[Pairs]:
+    """Eigenpairs at each value, each place in the arrays holding one mode throughout."""
+    found = [_sorted(solve(float(values[0])))]
+    for low, high in zip(values[:-1].tolist(), values[1:].tolist(), strict=True):
+        found.append(_step(solve, low, found[-1], high, solve(high), _HALVINGS))
+    return found
+
+
+def _sorted(pairs: Pairs) -> Pairs:
+    order = np.lexsort((pairs[0].real, pairs[0].imag))
+    return pairs[0][order], pairs[1][order]
+
+
+def _step(solve: Solve, low: float, known: Pairs, high: float, new: Pairs, halvings: int) -> Pairs:
+    """The new pairs in the order of the known ones; over half the way first where shapes change too much."""
+    order, least = _match(known, new)
+    if least >= SIMILAR or halvings == 0:
+        return new[0][order], new[1][order]
+    middle = 0.5 * (low + high)
+    half = _step(solve, low, known, middle, solve(middle), halvings - 1)
+    return _step(solve, middle, half, high, new, halvings - 1)
+
+
+def _match(known: Pairs, new: Pairs) -> tuple[NDArray[np.int64], float]:
+    """Which new pair continues each known one, and the least similarity of shapes among them."""
+    from scipy.optimize import linear_sum_assignment
+
+    if not known[0].size:
+        return np.zeros(0, np.int64), 1.0
+    similar = np.abs(known[1].conj() @ new[1].T) ** 2
+    scale = max(float(np.abs(known[0]).max()), 1e-300)
+    distance = np.abs(known[0][:, None] - new[0]) / scale
+    order = linear_sum_assignment(1.0 - similar + 4.0 * distance)[1]
+    return order, float(similar[np.arange(order.size), order].min())
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """Where a mode becomes unstable, or stable again.
+
+    Attributes
+    ----------
+    value : float
+        Critical value of the parameter.
+    kind : {"flutter", "divergence"}
+        Growing oscillation, or growth without one.
+    frequency : float
+        Angular frequency there; 0 for divergence.
+    mode : int
+        Number of the mode in the result.
+    unstable_above : bool
+        Whether it is unstable for larger values.
+    """
+
+    value: float
+    kind: str
+    frequency: float
+    mode: int
+    unstable_above: bool
+
+
+def crossings(solve: Solve, values: Floats, found: list[Pairs]) -> list[Crossing]:
+    """Critical values between those given, to round-off, in rising order."""
+    scale = max((float(np.abs(pairs[0]).max(initial=0.0)) for pairs in found), default=0.0)
+    limit = NEUTRAL * scale
+    growth = np.array([pairs[0].real for pairs in found])
+    result = []
+    for i in range(len(values) - 1):
+        for j in np.flatnonzero((growth[i] > limit) != (growth[i + 1] > limit)):
+            low, high = found[i][0][j], found[i + 1][0][j]
+            real = abs(low.imag) <= limit or abs(high.imag) <= limit
+            if not real and low.imag < 0.0:
+                continue  # the conjugate says the same
+            result.append(_crossing(solve, (float(values[i]), float(values[i + 1])), found[i : i + 2], int(j), limit))
+    return sorted(_distinct(result), key=lambda c: c.value)
+
+
+def _crossing(solve: Solve, span: tuple[float, float], ends: list[Pairs], j: int, limit: float) -> Crossing:
+    below, above = (complex(pairs[0][j]) for pairs in ends)
+    rises = above.real > limit
+    quiet, loud = (below, above) if rises else (above, below)
+    if quiet.real < -limit:
+        value, there = _root(solve, span, ((below, below), (above, above)), _growth)
+    else:
+        partner = complex(-loud.real, loud.imag)
+        states = ends if rises else ends[::-1]
+        other = int(np.argmin(np.abs(states[1][0] - partner)))
+        calm = (complex(states[0][0][j]), complex(states[0][0][other]))
+        pairs = (calm, (loud, partner)) if rises else ((loud, partner), calm)
+        value, there = _root(solve, span, pairs, _split)
+    frequency = abs(there.imag)
+    kind = "divergence" if frequency <= np.sqrt(limit * max(abs(there), limit)) else "flutter"
+    return Crossing(
+        value=value, kind=kind, frequency=0.0 if kind == "divergence" else frequency, mode=j, unstable_above=rises
+    )
+
+
+def _growth(pair: tuple[complex, complex]) -> float:
+    return pair[0].real
+
+
+def _split(pair: tuple[complex, complex]) -> float:
+    """Squared half-distance of two eigenvalues: analytic where they meet, negative for two oscillations."""
+    return float((0.25 * (pair[0] - pair[1]) ** 2).real)
+
+
+def _root(
+    solve: Solve,
+    span: tuple[float, float],
+    pairs: tuple[tuple[complex, complex], tuple[complex, complex]],
+    measure: Callable[[tuple[complex, complex]], float],
+) -> tuple[float, complex]:
+    """Where a measure of a pair of eigenvalues changes sign, and the mean of the pair there.
+
+    The pair is followed by its sum and product, which are smooth even where its members meet.
+    """
+    (a, b), (at_a, at_b) = span, pairs
+    single = at_a[0] == at_a[1] and at_b[0] == at_b[1]
+    fa, fb = measure(at_a), measure(at_b)
+    side = 0
+    for count in range(200):
+        if fa == 0.0 or abs(b - a) <= 1e-15 * max(abs(a), abs(b)):
+            return a, 0.5 * (at_a[0] + at_a[1])
+        share = fa / (fa - fb) if count % 4 < 3 and fa != fb else 0.5
+        c = a + share * (b - a)
+        if c in (a, b):
+            c = 0.5 * (a + b)
+            if c in (a, b):
+                break
+            share = 0.5
+        at_c = _nearest(_beside(solve, c, b - a), at_a, at_b, share, single)
+        fc = measure(at_c)
+        if (fc > 0.0) == (fb > 0.0):
+            b, at_b, fb = c, at_c, fc
+            fa = fa / 2 if side == -1 else fa
+            side = -1
+        else:
+            a, at_a, fa = c, at_c, fc
+            fb = fb / 2 if side == 1 else fb
+            side = 1
+    return (a if abs(fa) < abs(fb) else b), 0.5 * (at_a[0] + at_a[1])
+
+
+def _beside(solve: Solve, value: float, width: float) -> Complexes:
+    """Eigenvalues at a value; a hair beside it where there is no equilibrium, as where it runs off to infinity."""
+    try:
+        return solve(value)[0]
+    except AnalysisError:
+        return solve(value + 1e-12 * max(abs(value), abs(width)))[0]
+
+
+def _nearest(
+    eigenvalues: Complexes,
+    at_a: tuple[complex, complex],
+    at_b: tuple[complex, complex],
+    share: float,
+    single: bool,
+) -> tuple[complex, complex]:
+    """The pair whose sum and product are nearest to those in between."""
+    mean = (1 - share) * (at_a[0] + at_a[1]) + share * (at_b[0] + at_b[1])
+    product = (1 - share) * at_a[0] * at_a[1] + share * at_b[0] * at_b[1]
+    if single:
+        found = complex(eigenvalues[np.argmin(np.abs(eigenvalues - 0.5 * mean))])
+        return found, found
+    scale = max(abs(at_a[0]), abs(at_b[0]), 1e-300)
+    pairs = combinations(range(eigenvalues.size), 2)
+
+    def off(pair: tuple[int, int]) -> float:
+        x, y = eigenvalues[pair[0]], eigenvalues[pair[1]]
+        return float(abs(x + y - mean) * scale + abs(x * y - product))
+
+    i, j = min(pairs, key=off)
+    return complex(eigenvalues[i]), complex(eigenvalues[j])
+
+
+def _distinct(found: list[Crossing]) -> list[Crossing]:
+    """Two modes that meet report their meeting once: the one that grows."""
+    kept: list[Crossing] = []
+    for crossing in found:
+        twin = any(
+            abs(c.value - crossing.value) <= 1e-9 * max(abs(c.value), 1e-300)
+            and abs(c.frequency - crossing.frequency) <= 1e-6 * max(c.frequency, 1e-300)
+            for c in kept
+        )
+        if not twin:
+            kept.append(crossing)
+    return kept
+
+
+def checked_values(who: str, values: object) -> Floats:
+    """At least one finite number (n,), rising or falling strictly."""
+    try:
+        found = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        found = np.zeros((0, 0))
+    steps = np.diff(found) if found.ndim == 1 else np.zeros(1)
+    ordered = bool((steps > 0).all() or (steps < 0).all())
+    if found.ndim != 1 or not found.size or not np.isfinite(found).all() or not ordered:
+        raise AnalysisError(f"{who}: values must be one or more finite numbers, rising or falling; got {values!r}")
+    return found

@@ -1,0 +1,47 @@
+"""``fricmb plot``: pictures, sound and views of a run that was saved."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import fricmb as fm
+from fricmb.errors import SceneError, unknown_name
+
+#: Kinds that need a signal or contact (``--of``), and those that write a file of their own.
+NEED_NAME = ("phase", "force", "spectrum", "spectrogram", "orders", "sound")
+OWN_FILE = {"animation": ".gif", "sound": ".wav", "view": ".html"}
+KINDS = ("velocities", "phase", "force", "transitions", "energy", "spectrum", "spectrogram", "orders", *OWN_FILE)
+
+
+def plot(options: argparse.Namespace) -> int:
+    """Draw one picture of a saved run."""
+    kind, name = options.kind, options.of
+    if kind not in KINDS:
+        raise unknown_name("picture", kind, KINDS)
+    if kind in NEED_NAME and name is None:
+        raise SceneError(f"fricmb plot {kind}: --of is missing: the name of a dof, contact or signal")
+    path: Path = options.out or options.solution.with_name(f"{kind}{OWN_FILE.get(kind, '.png')}")
+    sol = fm.Solution.load(options.solution)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _draw(sol, kind, name, path, options)
+    print(path)
+    return 0
+
+
+def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: argparse.Namespace) -> None:
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    if kind == "animation":
+        sol.plot.animation(path, t_start=options.t_start, t_end=options.t_end, frames=options.frames)
+    elif kind == "sound":
+        sol.plot.sound(str(name), path, seconds=options.seconds)
+    elif kind == "view":
+        sol.plot.view(path)
+    else:
+        draw: Callable[..., Any] = getattr(sol.plot, kind)
+        figure = draw() if name is None else draw(name.split(",") if kind == "velocities" else name)
+        figure.savefig(path, dpi=150)

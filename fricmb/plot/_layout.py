@@ -1,0 +1,70 @@
+"""Where the parts of a scene stand in a drawing: bodies in columns, one on the other where they touch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from fricmb.scene import GROUND, Contact
+
+WIDTH, HEIGHT, ROW, COLUMN = 1.6, 0.8, 1.0, 3.4
+
+
+@dataclass(kw_only=True)
+class Layout:
+    """Places of bodies (centres) and the links between them.
+
+    ``links``: (kind, name, first, second) with the names of bodies, "ground" for the ground.
+    """
+
+    places: dict[str, tuple[float, float]] = field(default_factory=dict)
+    moving: dict[str, bool] = field(default_factory=dict)
+    links: list[tuple[str, str, str, str]] = field(default_factory=list)
+    contacts: list[tuple[str, str, str]] = field(default_factory=list)
+
+
+def layout(scene: Any) -> Layout:
+    """Lay a scene out."""
+    found = Layout()
+    contacts = [part for part in scene.parts if isinstance(part, Contact)]
+    rows, columns = _stack(scene, contacts)
+    for name, row in rows.items():
+        found.places[name] = (COLUMN * columns[name], ROW * row)
+    found.moving = {body.name: False for body in scene.bodies} | {body.name: True for body in scene.driven}
+    for contact in contacts:
+        found.contacts.append((contact.name, _owner(contact.a), _owner(contact.b)))
+    for part in scene.elements:
+        a, b = getattr(part, "a", None), getattr(part, "b", GROUND)
+        if a is not None:
+            kind = "damper" if "Damper" in type(part).__name__ else "spring"
+            found.links.append((kind, part.name, _owner(a), _owner(b)))
+    return found
+
+
+def _owner(end: Any) -> str:
+    return "ground" if end is GROUND else str(end.owner.name)
+
+
+def _stack(scene: Any, contacts: list[Any]) -> tuple[dict[str, int], dict[str, int]]:
+    """Row and column of each body: the first end of a contact on its second."""
+    names = [part.name for part in (*scene.bodies, *scene.driven) if part is not GROUND]
+    below = {_owner(c.a): _owner(c.b) for c in contacts}
+    rows: dict[str, int] = {}
+    columns: dict[str, int] = {}
+
+    def row_of(name: str, seen: tuple[str, ...] = ()) -> int:
+        if name == "ground":
+            return 0
+        under = below.get(name)
+        return 1 + row_of(under, (*seen, name)) if under is not None and under not in seen else 1
+
+    for name in names:
+        rows[name] = row_of(name)
+    taken: set[tuple[int, int]] = set()
+    for name in sorted(names, key=lambda n: rows[n]):
+        column = columns.get(below.get(name, ""), 0)
+        while (column, rows[name]) in taken:
+            column += 1
+        columns[name] = column
+        taken.add((column, rows[name]))
+    return rows, columns

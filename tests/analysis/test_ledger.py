@@ -1,0 +1,103 @@
+"""The detailed ledger against that of the run, closed forms, and balances by mode."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from fricmb.analysis import energy_ledger, modal_energy, steady_sliding
+
+from .test_steady_sliding import two_modes
+
+
+@pytest.fixture(scope="module")
+def brake():
+    return fm.simulate(fm.models.brake4dof("5"), t_end=60.0, rtol=1e-9)
+
+
+def test_sums_are_those_of_the_run(brake):
+    ledger = energy_ledger(brake)
+    energy = brake.at(ledger.t).energy
+    assert ledger.friction["lining"].sum(axis=0) == pytest.approx(energy.friction_loss, rel=1e-9, abs=1e-9)
+    assert sum(ledger.damping.values()) == pytest.approx(energy.damping_loss, rel=1e-9, abs=1e-9)
+    assert sum(ledger.stored.values()) == pytest.approx(energy.potential, rel=1e-12, abs=1e-12)
+    assert set(ledger.damping) == {"c1x", "c1y", "c2y"}
+    assert "lining" in str(ledger)
+    assert "c1x" in str(ledger)
+
+
+def test_phases_add_up(brake):
+    ledger = energy_ledger(brake)
+    phases = ledger.phases("lining")
+    assert [phase.mode for phase in phases] == [1, 0, 1]
+    assert phases[1].begin == brake.events[0].t
+    assert phases[1].loss == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert sum(phase.loss for phase in phases) == pytest.approx(ledger.friction["lining"][:, -1])
+    with pytest.raises(fm.FricmbError, match="lining"):
+        ledger.phases("linin")
+
+
+def test_a_free_oscillator_in_closed_form():
+    """Half swings of 2 (x0 - f), 2 (x0 - 3 f), ...: friction takes f times the way."""
+    sol = fm.simulate(fm.models.friction_oscillator(friction=0.1), t_end=20.0, rtol=1e-10)
+    ledger = energy_ledger(sol)
+    ways = [2 * (1 - 0.1 * (2 * k + 1)) for k in range(5)]
+    assert ledger.friction["sole"][0, -1] == pytest.approx(0.1 * sum(ways), rel=1e-8)
+    assert ledger.damping == {}
+
+
+def test_damping_of_every_kind_adds_up():
+    a = fm.Body("a", mass=1.0, axes="xy", velocity={"x": 1.0, "y": 0.5})
+    plate = fm.ModalBody(
+        "plate", frequencies=[1.0, 2.5], damping_ratios=0.05, shapes={"tip": [[0.5, 0.2], [0.1, -0.4]]}, axes="xy"
+    )
+    scene = fm.Scene(
+        "damped",
+        [
+            a,
+            plate,
+            fm.Spring("k", a, plate.point("tip"), axis="x", stiffness=2.0),
+            fm.Damper("c", a, plate.point("tip"), axis="x", damping=0.3),
+            fm.PointSpring("s", a, anchor=(1.0, 2.0), stiffness=2.0, length=0.5),
+            fm.PointDamper("d", a, anchor=(1.0, 2.0), damping=0.3),
+            fm.MatrixElement("m", ["a.x", "a.y"], C=[[0.2, 0.05], [0.05, 0.1]]),
+            fm.Contact(
+                "sole",
+                a,
+                law=fm.laws.Coulomb(mu_s=0.2),
+                normal_force=fm.normal.Spring(axis="y", stiffness=1.0, damping=0.1, preload=3.0),
+            ),
+        ],
+    )
+    sol = fm.simulate(scene, t_end=10.0, rtol=1e-9)
+    ledger = energy_ledger(sol)
+    assert set(ledger.damping) == {"plate", "c", "d", "m", "sole"}
+    energy = sol.at(ledger.t).energy
+    assert sum(ledger.damping.values()) == pytest.approx(energy.damping_loss, rel=1e-6, abs=1e-8)
+    assert all(loss[-1] > 0 for loss in ledger.damping.values())
+    assert ledger.friction["sole"].sum(axis=0) == pytest.approx(energy.friction_loss, rel=1e-6, abs=1e-8)
+
+
+def test_friction_feeds_the_mode_that_squeals():
+    scene = two_modes(mu=0.9, damping=(0.02, 0.05))
+    steady = steady_sliding(scene)
+    sol = fm.simulate(scene, t_end=40.0, rtol=1e-10, initial=steady.initial(push={"mass.x": 1e-4}))
+    flows = modal_energy(sol, around=steady)
+    assert flows.omega == pytest.approx([1.0, np.sqrt(3)])
+    assert (flows.friction[flows.squealing] > 0).any()
+    # nothing else acts: what friction brings and damping takes is what is stored
+    assert np.abs(flows.other).max() < 1e-6 * flows.energy.max()
+    growth = np.log(flows.energy.sum(axis=0)[-1] / flows.energy.sum(axis=0)[0])
+    assert growth > 2
+    assert flows.friction.sum(axis=0)[-1] > flows.damping.sum(axis=0)[-1] > 0
+    assert "moves most" in str(flows)
+
+
+def test_modes_of_the_brake(brake):
+    flows = modal_energy(brake)
+    assert flows.omega == pytest.approx([0.0, np.sqrt(2.5) / 100, 1.0, 10 * np.sqrt(np.pi / 2)])
+    assert [flows.name(k) for k in range(4)] == ["rotor.x", "rotor.y", "pad.x", "pad.y"]
+    assert flows.squealing == 2
+    assert np.abs(flows.other).max() < 1e-8 * flows.energy.max()
+    assert flows.power(2).shape == (len(flows.t) - 1,)
+    total = brake.at(flows.t).energy
+    assert flows.energy.sum(axis=0) == pytest.approx(total.kinetic + total.potential, rel=1e-10)

@@ -1,0 +1,137 @@
+"""Spectra, animations, sound and views show the run's own numbers, and stand alone."""
+
+import json
+import re
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+from PIL import Image
+from scipy.io import wavfile
+
+import fricmb as fm
+from fricmb.cli import main
+from fricmb.plot._animation import Animation
+from fricmb.plot._layout import layout
+from fricmb.plot._style import BLUE, ORANGE
+
+
+@pytest.fixture(scope="module")
+def belt():
+    return fm.simulate(fm.models.belt_oscillator(damping=0.05), t_end=60.0, rtol=1e-7)
+
+
+@pytest.fixture(autouse=True)
+def _no_figures_left():
+    yield
+    plt.close("all")
+
+
+def test_spectrum_has_its_peak_where_the_motion_repeats(belt):
+    (ax,) = belt.plot.spectrum("mass.x", highest=3.0).axes
+    omega, power = ax.lines[0].get_data()
+    sticks = belt.events.of(kind="stick").t
+    assert omega[0] >= 0
+    assert omega[-1] <= 3.0
+    inside = omega > 0.2
+    assert omega[inside][np.argmax(power[inside])] == pytest.approx(2 * np.pi / np.diff(sticks)[-1], rel=0.05)
+    assert "mass.x" in ax.get_ylabel()
+
+
+def test_maps(belt):
+    for figure in (belt.plot.spectrogram("mass.x", highest=5.0), belt.plot.orders("mass.x", highest=20.0)):
+        ax, bar = figure.axes
+        assert ax.collections
+        assert "mass.x" in bar.get_ylabel()
+
+
+def test_pictures_show_where_things_are(belt):
+    t = np.linspace(0, 60, 61)
+    drawing = Animation(belt, t, 2.0)
+    x = belt.at(t)["mass.x"]
+    for i in (0, 20, 40):
+        drawing.show(i)
+        place = drawing.boxes["mass"].get_x() - drawing.boxes["mass"].get_width() / 2
+        if i == 0:
+            first = place
+        assert place - first == pytest.approx(2 * (x[i] - x[0]), abs=1e-12)
+        dot, arrow, _ = drawing.marks[0]
+        stuck = belt.at(t).mode("sole")[i] == 0
+        assert dot.get_markerfacecolor() == (BLUE if stuck else ORANGE)
+        reach = np.diff(arrow.get_xdata())[0]
+        assert reach == pytest.approx(0.45 * belt.at(t).force("sole")[0, i] / 1.5, rel=1e-6, abs=1e-9)
+    assert set(drawing.bands) == {"belt"}
+
+
+def test_bodies_stand_on_what_they_touch():
+    places = layout(fm.models.block_stack(3)).places
+    heights = [places[name][1] for name in ("table", "block1", "block2", "block3")]
+    assert heights == sorted(heights)
+    assert len({x for x, _ in places.values()}) == 1
+
+
+def test_animation_files(belt, tmp_path):
+    gif = belt.plot.animation(tmp_path / "a.gif", frames=4)
+    assert Image.open(gif).n_frames == 4
+    page = belt.plot.animation(tmp_path / "a.html", frames=3, t_end=20.0).read_text()
+    assert page.count("data:image/png;base64") == 3
+    with pytest.raises(fm.FricmbError, match=r"\.mp4, \.gif or \.html"):
+        belt.plot.animation(tmp_path / "a.avi")
+
+
+def test_without_ffmpeg_mp4_says_so(belt, tmp_path, monkeypatch):
+    monkeypatch.setattr("matplotlib.animation.writers.is_available", lambda name: False)
+    with pytest.raises(fm.FricmbError, match="needs ffmpeg"):
+        belt.plot.animation(tmp_path / "a.mp4")
+    assert not list(tmp_path.iterdir())
+
+
+def test_sound_has_the_pitch_of_the_signal(tmp_path):
+    sol = fm.simulate(fm.models.friction_oscillator(friction=0.0, stiffness=100.0), t_end=20.0, rtol=1e-8)
+    rate, samples = wavfile.read(sol.plot.sound("mass.x", tmp_path / "a.wav", speed=44.0))
+    power = np.abs(np.fft.rfft(samples.astype(float)))
+    pitch = np.argmax(power) * rate / len(samples)
+    assert len(samples) / rate == pytest.approx(20 / 44, abs=1e-3)
+    assert pitch == pytest.approx(10 * 44 / (2 * np.pi), abs=rate / len(samples))
+    assert np.abs(samples).max() == pytest.approx(0.9 * 32767, abs=2)
+    with pytest.raises(fm.FricmbError, match="it would last 20000 s"):
+        sol.plot.sound("mass.x", tmp_path / "b.wav", speed=1e-3)
+
+
+def test_view_holds_the_run_and_asks_no_network(belt, tmp_path):
+    page = belt.plot.view(tmp_path / "view.html").read_text()
+    assert not re.search(r"""(src|href)\s*=\s*["']?(https?:)?//|fetch\(|import\s""", page)
+    data = json.loads(re.search(r"const data = (\{.*?\}), root", page, re.DOTALL)[1])
+    assert data["signals"]["mass.x"] == pytest.approx(belt.at(data["t"])["mass.x"], rel=1e-5, abs=1e-5)
+    stuck = sum(b - a for a, b in data["stick"]["sole"])
+    assert stuck == pytest.approx(60 * belt.time_share("sole", 0), rel=1e-6)
+
+
+def test_notebooks_show_scene_plan_run_and_law(belt):
+    scene = fm.models.belt_oscillator()
+    for thing, shown in (
+        (scene, "spring.stiffness"),
+        (scene.plan(), "damper: damping = 0"),
+        (belt, "<canvas"),
+        (fm.laws.Stribeck(mu_s=0.5, mu_k=0.3, v_s=0.1), "v_s"),
+    ):
+        html = thing._repr_html_()
+        assert shown in html
+        assert html.startswith('<div class="fricmb">')
+        assert html.count("<div") == html.count("</div>")
+    odd = fm.Scene("<b>&", [fm.Body("a", mass=1.0)])
+    assert "&lt;b&gt;&amp;" in odd._repr_html_()
+
+
+def test_command(belt, tmp_path, capsys):
+    belt.save(tmp_path / "solution.npz")
+    for kind, name, ending in (("spectrum", "mass.x", "png"), ("sound", "mass.x", "wav"), ("view", None, "html")):
+        of = [] if name is None else ["--of", name]
+        assert main(["plot", str(tmp_path / "solution.npz"), kind, *of]) == 0
+        assert (tmp_path / f"{kind}.{ending}").stat().st_size > 1000
+    assert main(["plot", str(tmp_path / "solution.npz"), "spectrum"]) == 2
+    assert main(["plot", str(tmp_path / "solution.npz"), "pie"]) == 2
+    assert "--of is missing" in capsys.readouterr().err
