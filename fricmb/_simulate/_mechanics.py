@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,45 +10,100 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate._driven import DrivenMotions, shifted
+from fricmb._simulate._joined import JoinedRun
+from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of
 from fricmb.errors import SceneError
-from fricmb.integrate import Problem, Samples, Start
-from fricmb.integrate._problem import Floats
-from fricmb.plan import make_plan
+from fricmb.integrate import Samples, Start, Trajectory
+from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats
+from fricmb.plan import Plan, make_plan
 from fricmb.scene import Scene
-from fricmb.solution import Motion, Names, Origin
-from fricmb.system import System, build
+from fricmb.solution import Flags, Motion, Names, Origin
+from fricmb.system import System
 
 
 @dataclass(frozen=True, kw_only=True)
 class SceneMechanics:
-    """A scene, its system, and by how much the positions of driven bodies are shifted.
+    """A scene, what is run of it, and by how much the positions of driven bodies are shifted.
 
-    ``shift``: what is added to a driven position over the scene's own, by name: with it the position is the declared
-    one at the start of a run that does not start at t = 0, or goes on from that of another run.
+    Attributes
+    ----------
+    scene, placed : Scene
+        As given, and with driven bodies where they are.
+    plan : Plan
+    observe : tuple of str or None
+    shift : mapping of str to float
+        What is added to a driven position over the scene's own, by name: with it the position is the declared one at
+        the start of a run that does not start at t = 0, or goes on from that of another run.
+    together : bool
+        Whether all islands are run as one.
     """
 
     scene: Scene
-    system: System
+    placed: Scene
+    plan: Plan
     observe: tuple[str, ...] | None
     shift: Mapping[str, float]
+    together: bool = False
+
+    @cached_property
+    def members(self) -> tuple[Member, ...]:
+        """What is run on its own."""
+        return members_of(self.placed, self.plan, self.names, self.together)
 
     @property
-    def problem(self) -> Problem:
-        """The arrays that are integrated."""
-        return self.system.problem
+    def whole(self) -> Member | None:
+        """The one member that is the whole; None where islands are run."""
+        (first, *others) = self.members
+        return None if others or first.island is not None else first
 
-    @property
+    @cached_property
+    def idle(self) -> Idle | None:
+        """Contacts that act on nothing, where islands are run."""
+        return None if self.whole is not None else idle_of(self.placed, self.plan, self.names)
+
+    @cached_property
     def start(self) -> Start:
         """The declared start, at t = 0."""
-        return self.system.start
+        q, v = self.placed.initial_values(self.plan.dofs)
+        return Start(t=0.0, q=q, v=v, z=np.zeros(int(self.names.z_start[-1])))
+
+    def attach(self, trajectory: Trajectory) -> None:
+        """Give an unpickled trajectory its problem again."""
+        if isinstance(trajectory, JoinedRun):
+            trajectory.attach_members(self.members, self.idle)
+        else:
+            trajectory.attach(self.members[0].system.problem)
+
+    def laws(self, run: Iterable[int] | None = None) -> Codes:
+        """Kind of every contact's law (n_c,): of the members that are run, else LAW_CONSTANT, which rests or is idle."""
+        kinds = np.full(len(self.names.contacts), LAW_CONSTANT, dtype=np.int8)
+        for i in range(len(self.members)) if run is None else run:
+            member = self.members[i]
+            kinds[member.place.contacts] = member.system.problem.contacts.law
+        return kinds
+
+    def smooth(self) -> Flags:
+        """Whether each contact has a force law that never sticks (n_c,)."""
+        return np.array([self.placed[name].law.kind == "smooth" for name in self.names.contacts], dtype=bool)
 
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""
-        return self.system.kinetic(samples)
+        return self._sum(samples, System.kinetic)
 
     def potential(self, samples: Samples) -> Floats:
         """Stored energy (n_t,)."""
-        return self.system.potential(samples)
+        return self._sum(samples, System.potential)
+
+    def _sum(self, samples: Samples, energy: Callable[[System, Samples], Floats]) -> Floats:
+        if self.whole is not None:
+            return energy(self.whole.system, samples)
+        total = np.zeros(samples.t.size)
+        for member in self.members:
+            part = member.place.part(samples)
+            # what rests holds no energy; its arrays need not be built
+            if not (member.island is not None and member.island.rests(part.q, part.v)):
+                total += energy(member.system, part)
+        return total
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_driven, n_t), in the order of ``names.signals``."""
@@ -57,27 +112,32 @@ class SceneMechanics:
     @cached_property
     def driven(self) -> DrivenMotions:
         """Prescribed motions."""
-        return DrivenMotions(shifted(self.scene, self.shift))
+        return DrivenMotions(self.placed)
 
     @cached_property
     def origin(self) -> Origin:
         """How to make this again in another process."""
-        return Origin(
-            scene=self.scene, build=mechanics_of, options={"observe": self.observe, "shift": dict(self.shift)}
-        )
+        options = {"observe": self.observe, "shift": dict(self.shift), "together": self.together}
+        return Origin(scene=self.scene, build=mechanics_of, options=options)
 
     @cached_property
     def names(self) -> Names:
         """Names of what the arrays hold."""
-        system = self.system
+        held = set(self.plan.parts)
+        contacts = [contact for contact in self.placed.contacts if contact.name in held]
+        labels = [contact_names(contact) for contact in contacts]
         return Names(
-            dofs=system.dof_names,
-            contacts=system.contact_names,
-            directions=system.contact_axes,
-            states=system.state_names,
-            motions=_points(self.scene, system),
+            dofs=self.plan.dofs,
+            contacts=tuple(contact.name for contact in contacts),
+            directions=tuple(directions for directions, _ in labels),
+            states=tuple(states for _, states in labels),
+            motions=_points(self.placed, self.plan.dofs),
             signals={name: i for i, name in enumerate(self.driven.names)},
         )
+
+    def as_one(self) -> SceneMechanics:
+        """The same with all islands run as one."""
+        return mechanics_of(self.scene, observe=self.observe, shift=self.shift, together=True)
 
 
 def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
@@ -94,21 +154,26 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
 
 
 def mechanics_of(
-    scene: Scene, *, observe: tuple[str, ...] | None = None, shift: Mapping[str, float] | None = None
+    scene: Scene,
+    *,
+    observe: tuple[str, ...] | None = None,
+    shift: Mapping[str, float] | None = None,
+    together: bool = False,
 ) -> SceneMechanics:
-    """Build a scene, or take what is kept on it."""
+    """Plan a scene, or take what is kept on it."""
     by = dict(shift or {})
-    key = ("mechanics", observe, tuple(sorted(by.items())))
+    key = ("mechanics", observe, tuple(sorted(by.items())), together)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):
         placed = shifted(scene, by)
-        system = build(placed, None if observe is None else make_plan(placed, observe))
-        found = scene._cache[key] = SceneMechanics(scene=scene, system=system, observe=observe, shift=by)
+        found = scene._cache[key] = SceneMechanics(
+            scene=scene, placed=placed, plan=make_plan(placed, observe), observe=observe, shift=by, together=together
+        )
     return found
 
 
-def _points(scene: Scene, system: System) -> dict[str, Motion]:
-    index = {name: i for i, name in enumerate(system.dof_names)}
+def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:
+    index = {name: i for i, name in enumerate(dofs)}
     found = {}
     for point in scene.points.values():
         for letter in point.letters:

@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 from fricmb._simulate._arguments import Span
+from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
 from fricmb.errors import IntegrationError
 from fricmb.integrate import Samples, Trajectory
@@ -32,6 +33,8 @@ def make_solution(
     counters = trajectory.counters
     counts = {name: getattr(counters, name) for name in ("n_steps", "n_rejected", "n_rhs", "n_jac", "n_lu", "notes")}
 
+    islands = island_stats(trajectory, mechanics.members)
+
     def solution(t_end: float | None, times: Floats | None) -> Solution:
         run = Run((Piece(trajectory, mechanics.origin, mechanics, t_end),))
         try:
@@ -40,7 +43,7 @@ def make_solution(
             raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
         check_friction(mechanics, trajectory, sol.record.samples)
         wall_s = time.perf_counter() - begin
-        sol.stats = Stats(method=method, why=why, compile_s=compile_s, wall_s=wall_s, **counts)
+        sol.stats = Stats(method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, **counts)
         return sol
 
     if trajectory.failure is None:
@@ -76,13 +79,14 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: S
 
     The built-in integrators stop there by themselves; this is for others.
     """
-    contacts = mechanics.problem.contacts
-    varies = contacts.law == LAW_COEFFICIENT
+    run = [i for i, _ in trajectory.runs] if isinstance(trajectory, JoinedRun) else None
+    varies = mechanics.laws(run) == LAW_COEFFICIENT
+    row = mechanics.names.row
     if not varies.any() or samples.t.size == 0:
         return
 
     def power(samples: Samples) -> Floats:
-        return np.asarray(np.add.reduceat(samples.F * samples.g, contacts.row[:-1], axis=0))
+        return np.asarray(np.add.reduceat(samples.F * samples.g, row[:-1], axis=0))
 
     given = power(samples)
     force, speed = np.abs(samples.F).max(initial=0.0), np.abs(samples.v).max(initial=0.0)

@@ -88,9 +88,9 @@ def simulate(
 
     with CompileWatch() as watch:
         from fricmb._simulate._arguments import check_span, check_step, check_tolerance, number
+        from fricmb._simulate._islands import find_runs
         from fricmb._simulate._keep import check_keep, run
         from fricmb._simulate._mechanics import prepare
-        from fricmb._simulate._method import find_integrator
         from fricmb._simulate._progress import progress_bar
         from fricmb._simulate._result import make_solution
         from fricmb._simulate._start import find_start
@@ -98,15 +98,14 @@ def simulate(
         mechanics = prepare(scene, parameters, observe)
         start, mechanics = find_start(mechanics, initial, number("t_start", t_start, "a finite time"))
         span = check_span(start.t, t_end, t_eval)
-        problem = mechanics.system.problem_for(span.t_start, span.t_end)
-        tolerance = check_tolerance(rtol, atol, problem.n)
-        integrator, why = find_integrator(method, problem)
-        fixed = check_step(step, integrator.adaptive, integrator.name, span.t_end - span.t_start)
+        tolerance = check_tolerance(rtol, atol, start.q.size)
+        chosen = find_runs(mechanics, method, start, span)
+        fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
         keep = check_keep(dense, chunk, on_chunk, span)
 
         def finish(trajectory: Trajectory, part: Span) -> Solution:
-            return make_solution(mechanics, trajectory, part, integrator.name, why, begin, watch.seconds)
+            return make_solution(chosen.mechanics, trajectory, part, chosen.name, chosen.why, begin, watch.seconds)
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}
-            return run(keep, integrator, problem, start, span, finish, **options)
+            return run(keep, chosen.integrator, chosen.problem, start, span, finish, **options)

@@ -12,7 +12,7 @@ from fricmb._simulate._arguments import number
 from fricmb._simulate._mechanics import SceneMechanics, mechanics_of
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import SLIP, Start
-from fricmb.integrate._problem import LAW_SMOOTH, Floats
+from fricmb.integrate._problem import Floats
 from fricmb.solution import Names, Solution
 
 KEYS = ("position", "velocity", "state")
@@ -37,7 +37,9 @@ def find_start(mechanics: SceneMechanics, initial: Any, t_start: float) -> tuple
 def _moved(mechanics: SceneMechanics, wanted: Mapping[str, float], t: float) -> SceneMechanics:
     shift = mechanics.driven.shift_to(wanted, t)
     total = {name: mechanics.shift.get(name, 0.0) + by for name, by in shift.items()}
-    return mechanics_of(mechanics.scene, observe=mechanics.observe, shift=total) if shift else mechanics
+    if not shift:
+        return mechanics
+    return mechanics_of(mechanics.scene, observe=mechanics.observe, shift=total, together=mechanics.together)
 
 
 # ---- given by the user
@@ -127,15 +129,15 @@ def _kept_states(mechanics: SceneMechanics, before: Solution) -> Floats:
 def _modes(mechanics: SceneMechanics, before: Solution) -> tuple[Any, Any]:
     """Modes and slip directions, if every contact has one that fits; else None: found from the accelerations."""
     old, new, end = before.names, mechanics.names, before.end
-    law = mechanics.problem.contacts.law
+    is_smooth = mechanics.smooth()
     if end.mode is None or end.direction is None:
         return None, None
     mode = np.empty(len(new.contacts), dtype=np.int8)
     direction = np.zeros(int(new.row[-1]))
-    was_smooth = before.run.pieces[-1].mechanics.problem.contacts.law == LAW_SMOOTH
+    was_smooth = before.run.pieces[-1].mechanics.smooth()
     for k, name in enumerate(new.contacts):
         j = old.contact_index.get(name)
-        smooth = bool(law[k] == LAW_SMOOTH)
+        smooth = bool(is_smooth[k])
         if j is None or old.directions[j] != new.directions[k] or (was_smooth[j] and not smooth):
             return None, None
         mode[k] = SLIP if smooth and end.mode[j] != 2 else end.mode[j]

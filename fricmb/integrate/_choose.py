@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate._bdf import Bdf
 from fricmb.integrate._bdf2_paper import Bdf2Paper
+from fricmb.integrate._exact import Exact
 from fricmb.integrate._integrator import Integrator
 from fricmb.integrate._problem import Problem
 from fricmb.integrate._radau import Radau
@@ -15,6 +16,9 @@ integrators: dict[str, type[Integrator]] = {kind.name: kind for kind in (Bdf, Bd
 
 def choose(problem: Problem) -> tuple[Integrator, str]:
     """The integrator for a problem, and why: the fastest that takes it, else the general one and what stood against."""
+    exact = Exact()
+    if exact.refuses(problem) is None:
+        return exact, "free vibration of a linear structure: closed form"
     fast = Collocation()
     reason = fast.refuses(problem)
     if reason is None:

@@ -1,6 +1,6 @@
 """Plans: what will be built from a scene, what is left out and why."""
 
 from fricmb.plan._make import make_plan
-from fricmb.plan._plan import Island, Omission, Plan
+from fricmb.plan._plan import Island, Omission, Plan, Selection
 
-__all__ = ["Island", "Omission", "Plan", "make_plan"]
+__all__ = ["Island", "Omission", "Plan", "Selection", "make_plan"]

@@ -1,99 +1,76 @@
-"""Who acts on whom: the graph of degrees of freedom and the parts that tie them together."""
+"""Which degrees of freedom the structure couples, and an order of them that keeps matrices narrow."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Sequence
 
-import networkx as nx
 import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from fricmb.scene import Contact, Element, MatrixElement, Part, Scene, expression_uses
+from fricmb.plan._links import Link
+from fricmb.scene import Contact, MatrixElement
 from fricmb.values import value_of
 
+Pairs = NDArray[np.int64]
 
-def connectivity(scene: Scene) -> nx.Graph[Any]:
-    """Bipartite graph: a node ("dof", name) for every degree of freedom, ("part", name) for every part that acts.
+#: An element on more degrees of freedom than this (a spring at a point of a body with many modes) fills the matrices.
+WIDE = 64
 
-    Ground and driven bodies tie nothing together: what they do is prescribed.
+
+def coupling(links: Sequence[Link], dof_names: Sequence[str]) -> Pairs | None:
+    """Places of degrees of freedom that elements couple directly, (2, n_pairs); None: all with all.
+
+    Contacts apart: their forces stand outside the structure.
     """
-    graph: nx.Graph[Any] = nx.Graph()
-    graph.add_nodes_from(("dof", name) for name in scene.dof_names)
-    for part in scene.parts:
-        if isinstance(part, Element | Contact | MatrixElement):
-            graph.add_node(("part", part.name))
-            graph.add_edges_from((("part", part.name), ("dof", dof)) for dof in dofs_of(scene, part))
-    return graph
-
-
-def dofs_of(scene: Scene, part: Part) -> list[str]:
-    """Degrees of freedom that a part acts on or depends on, in the order of the scene."""
-    known = set(scene.dof_names)
-    found = {name for name in _motions(scene, part) if name in known}
-    return [name for name in scene.dof_names if name in found]
-
-
-def _motions(scene: Scene, part: Part) -> Iterable[str]:
-    if isinstance(part, MatrixElement):
-        yield from part.dofs
-        return
-    forms = []
-    if isinstance(part, Element):
-        forms = list(part.local_coordinates())
-    elif isinstance(part, Contact):
-        forms = [direction.form for direction in part.directions()]
-        normal = part.normal_direction()
-        forms += [] if normal is None else [normal.form]
-    for form in forms:
-        yield from scene.expand(form).motions
-    for uses in part.uses().values():
-        for name in uses.motions:
-            yield from scene.motion(name).motions
-
-
-def coupling(scene: Scene) -> nx.Graph[Any]:
-    """Graph over degrees of freedom alone: an edge where an element couples two of them directly (contacts apart)."""
-    graph: nx.Graph[Any] = nx.Graph()
-    graph.add_nodes_from(scene.dof_names)
-    for part in scene.parts:
-        if isinstance(part, MatrixElement):
-            graph.add_edges_from(_pattern(part))
-        elif isinstance(part, Element):
-            dofs = dofs_of(scene, part)
-            graph.add_edges_from((a, b) for i, a in enumerate(dofs) for b in dofs[i + 1 :])
-    return graph
-
-
-def _pattern(part: MatrixElement) -> Iterable[tuple[str, str]]:
-    for value in (part.M, part.C, part.K):
-        if value is None:
+    found = [np.zeros((2, 0), dtype=np.int64)]
+    place = {name: i for i, name in enumerate(dof_names)}
+    for link in links:
+        if link.idle or isinstance(link.part, Contact):
             continue
-        rows, columns = value_of(value).nonzero()
-        for i, j in zip(np.asarray(rows).tolist(), np.asarray(columns).tolist(), strict=True):
-            if i < j:
-                yield part.dofs[i], part.dofs[j]
-            elif j < i:
-                yield part.dofs[j], part.dofs[i]
+        if isinstance(link.part, MatrixElement):
+            found.append(_pattern(link.part, place))
+            continue
+        dofs = np.array((*link.acts, *link.reads), dtype=np.int64)
+        if dofs.size > WIDE:
+            return None
+        first, second = np.triu_indices(dofs.size, 1)
+        found.append(np.array([dofs[first], dofs[second]]))
+    return np.concatenate(found, axis=1)
 
 
-def narrow_order(graph: nx.Graph[Any], dofs: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
-    """An order of the degrees of freedom with a small half-bandwidth, and that bandwidth.
+def _pattern(part: MatrixElement, place: dict[str, int]) -> Pairs:
+    dofs = np.array([place[name] for name in part.dofs])
+    held = [value_of(value).nonzero() for value in (part.M, part.C, part.K) if value is not None]
+    pairs = np.concatenate([np.array([rows, columns], dtype=np.int64) for rows, columns in held], axis=1)
+    return dofs[pairs[:, pairs[0] != pairs[1]]]
+
+
+def narrow_order(pairs: Pairs | None, dofs: Sequence[int]) -> tuple[list[int], int]:
+    """An order of the degrees of freedom (of places in ``dofs``) with a small half-bandwidth, and that bandwidth.
 
     The declared order where reverse Cuthill-McKee does not improve on it.
     """
-    declared = _bandwidth(graph, dofs)
-    if declared <= 1:
-        return dofs, declared
-    found = tuple(nx.utils.reverse_cuthill_mckee_ordering(graph))
-    narrow = _bandwidth(graph, found)
-    return (found, narrow) if narrow < declared else (dofs, declared)
+    declared = list(range(len(dofs)))
+    if pairs is None:
+        return declared, max(len(dofs) - 1, 0)
+    place = np.full(max(dofs, default=-1) + 1, -1)
+    place[list(dofs)] = declared
+    inside = np.all(pairs < place.size, axis=0)
+    local = place[pairs[:, inside]]
+    local = local[:, np.all(local >= 0, axis=0)]
+    width = _bandwidth(local)
+    if width <= 1:
+        return declared, width
+    both = np.concatenate([local, local[::-1]], axis=1)
+    graph = coo_array((np.ones(both.shape[1]), (both[0], both[1])), shape=(len(dofs), len(dofs))).tocsr()
+    found = reverse_cuthill_mckee(graph, symmetric_mode=True)
+    back = np.empty(len(dofs), dtype=np.int64)
+    back[found] = declared
+    narrow = _bandwidth(back[local])
+    return ([int(i) for i in found], narrow) if narrow < width else (declared, width)
 
 
-def _bandwidth(graph: nx.Graph[Any], order: tuple[str, ...]) -> int:
-    place = {name: i for i, name in enumerate(order)}
-    return max((abs(place[a] - place[b]) for a, b in graph.edges), default=0)
-
-
-def uses_time(part: Any) -> bool:
-    """Whether a slot of a part is an expression of time."""
-    return any(expression_uses(value).time for value in part.expressions().values())
+def _bandwidth(pairs: Pairs) -> int:
+    return int(np.abs(pairs[0] - pairs[1]).max(initial=0))

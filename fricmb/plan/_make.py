@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
-from typing import Any
-
-import networkx as nx
-import numpy as np
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 
 from fricmb.errors import unknown_name
-from fricmb.plan._graph import connectivity, coupling, narrow_order, uses_time
-from fricmb.plan._plan import Island, Omission, Plan, short_list
+from fricmb.plan._graph import coupling, narrow_order
+from fricmb.plan._links import Link, Links, links_of
+from fricmb.plan._plan import Island, Plan
+from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
+from fricmb.plan._rest import can_start, is_held, moving_motions
 from fricmb.scene import Body, Contact, Driven, Element, MatrixElement, ModalBody, Part, Scene
 
 #: Up to this many degrees of freedom dense matrices are as fast as anything.
 DENSE = 64
+
+
+@dataclass
+class Wanted:
+    """What is asked for: degrees of freedom by their places, and parts by name."""
+
+    dofs: set[int] = field(default_factory=set)
+    parts: set[str] = field(default_factory=set)
+
+    @property
+    def key(self) -> tuple[frozenset[int], frozenset[str]]:
+        """To know it again."""
+        return frozenset(self.dofs), frozenset(self.parts)
 
 
 def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
@@ -25,8 +37,8 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     ----------
     scene : Scene
     observe : iterable of str, optional
-        Names of dofs, points, motions, contacts and other parts that are asked for.  Islands that hold none of them
-        are left out: nothing in them can reach what is observed.  Default: everything.
+        Names of dofs, points, motions, contacts and other parts that are asked for.  What cannot influence them is left
+        out.  Default: everything.
 
     Returns
     -------
@@ -38,166 +50,106 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
         If a name in ``observe`` does not exist.
     """
     wanted = None if observe is None else _targets(scene, tuple(observe))
-    key = ("plan", None if wanted is None else frozenset(wanted))
+    key = ("plan", None if wanted is None else wanted.key)
     found = scene._cache.get(key)
     if found is None:
         found = scene._cache[key] = _make(scene, wanted)
-    return found
+    return found  # type: ignore[no-any-return]
 
 
-def _make(scene: Scene, wanted: set[tuple[str, str]] | None) -> Plan:
-    graph = connectivity(scene)
-    groups = [group for group in nx.connected_components(graph) if any(kind == "dof" for kind, _ in group)]
-    kept = [group for group in groups if wanted is None or group & wanted]
-    nodes: set[tuple[str, str]] = set().union(*kept)
-    dofs = tuple(name for name in scene.dof_names if ("dof", name) in nodes)
-    inside = [part for part in scene.parts if _is_inside(part, nodes)]
-    facts = _facts(inside)
-    order, bandwidth = narrow_order(coupling(scene).subgraph(dofs), dofs)
+def _make(scene: Scene, wanted: Wanted | None) -> Plan:
+    links = links_of(scene)
+    kept = list(range(links.n)) if wanted is None else links.reaching(_sources(links, wanted))
+    inside, parts = _inside(scene, links, set(kept), wanted)
+    dofs = tuple(scene.dof_names[i] for i in kept)
+    islands = _islands(scene, links, kept)
+    still = resting(scene, islands)
+    idle = tuple(link.part.name for link in inside if link.idle and isinstance(link.part, Contact))
+    order, bandwidth = narrow_order(coupling(inside, scene.dof_names), kept)
     return Plan(
         scene=scene.name,
         dofs=dofs,
-        parts=tuple(part.name for part in inside),
-        islands=tuple(_island(scene, group) for group in kept),
-        counts=_counts(inside, dofs, facts, len(kept)),
-        left_out=(*_outside(scene, groups, kept), *_empty(inside, facts)),
-        notes=(*_resting(scene, kept, facts), *_vanishing(facts)),
-        order=order,
+        parts=tuple(part.name for part in parts),
+        islands=islands,
+        idle=idle,
+        counts=counts(parts, inside, len(dofs), len(islands), len(still)),
+        left_out=(*outside(scene, links, set(kept), inside), *empty(inside)),
+        resting=tuple(still),
+        notes=(*unloaded(idle), *vanishing(inside)),
+        order=tuple(dofs[i] for i in order),
         bandwidth=bandwidth,
         storage=_storage(len(dofs), bandwidth),
     )
 
 
-def _targets(scene: Scene, names: tuple[str, ...]) -> set[tuple[str, str]]:
-    """Nodes of the graph that the observed names stand for."""
-    nodes: set[tuple[str, str]] = set()
-    acting = [p.name for p in scene.parts if isinstance(p, Element | Contact | MatrixElement)]
+def _targets(scene: Scene, names: tuple[str, ...]) -> Wanted:
+    """What the observed names stand for."""
+    place = {name: i for i, name in enumerate(scene.dof_names)}
+    wanted = Wanted()
     for name in names:
-        if name in acting:
-            nodes.add(("part", name))
-        elif name in scene.motion_names:
-            nodes |= {("dof", dof) for dof in scene.motion(name).motions}
-        elif name in scene.points or name in scene:
-            owner = name.split(".")[0]
-            part = scene[owner]
-            nodes |= {("dof", dof) for dof in getattr(part, "dof_names", ())}
+        if name in scene and isinstance(scene[name], Element | Contact | MatrixElement):
+            wanted.parts.add(name)
+        elif scene.has_motion(name):
+            wanted.dofs |= {place[dof] for dof in scene.motion(name).motions if dof in place}
+        elif name in scene.points:
+            point = scene.points[name]
+            forms = [scene.motion(f"{name}.{letter}") for letter in point.letters]
+            wanted.dofs |= {place[dof] for form in forms for dof in form.motions}
+        elif name in scene:
+            wanted.dofs |= {place[dof] for dof in getattr(scene[name], "dof_names", ())}
         else:
             raise unknown_name("name to observe", name, [*scene.motion_names, *(p.name for p in scene.parts)])
-    return nodes
+    return wanted
 
 
-def _is_inside(part: Part, nodes: set[tuple[str, str]]) -> bool:
-    if isinstance(part, Body | ModalBody):
-        return any(("dof", name) in nodes for name in part.dof_names)
-    return isinstance(part, Driven) or ("part", part.name) in nodes
-
-
-def _facts(parts: list[Part]) -> dict[str, Any]:
-    # what is left of an element for its numbers is known to the equations, one floor up
-    from fricmb.equations import element_facts
-
-    return {part.name: element_facts(part) for part in parts if isinstance(part, Element)}
-
-
-def _island(scene: Scene, group: set[tuple[str, str]]) -> Island:
-    return Island(
-        dofs=tuple(name for name in scene.dof_names if ("dof", name) in group),
-        parts=tuple(part.name for part in scene.parts if ("part", part.name) in group),
-    )
-
-
-def _counts(parts: list[Part], dofs: tuple[str, ...], facts: dict[str, Any], islands: int) -> dict[str, int]:
-    contacts = [part for part in parts if isinstance(part, Contact)]
-    rows = [len(contact.directions()) for contact in contacts]
-    kinds: Counter[str] = Counter()
-    for part in parts:
-        kinds["bodies"] += isinstance(part, Body | ModalBody)
-        kinds["driven bodies"] += isinstance(part, Driven)
-        kinds["matrix elements"] += isinstance(part, MatrixElement)
-    return {
-        "bodies": kinds["bodies"],
-        "driven bodies": kinds["driven bodies"],
-        "degrees of freedom": len(dofs),
-        "linear elements": sum(not f.nonlinear and (f.stiffness or f.damping or f.constant) for f in facts.values()),
-        "nonlinear elements": sum(f.nonlinear for f in facts.values()),
-        "matrix elements": kinds["matrix elements"],
-        "forces of time": sum(f.signal for f in facts.values()),
-        "contacts": len(contacts),
-        "contact rows": sum(rows),
-        "law states": sum(d * len(contact.law.states) for d, contact in zip(rows, contacts, strict=True)),
-        "islands": islands,
+def _sources(links: Links, wanted: Wanted) -> set[int]:
+    """Degrees of freedom that are asked for, those of parts included."""
+    return wanted.dofs | {
+        dof for link in links.links if link.part.name in wanted.parts for dof in (*link.acts, *link.reads)
     }
 
 
-def _outside(scene: Scene, groups: list[Any], kept: list[Any]) -> list[Omission]:
-    omitted = []
-    for group in groups:
-        if group not in kept:
-            island = _island(scene, group)
-            names = (*island.dofs, *island.parts)
-            why = "cannot influence what is observed (an island of its own)"
-            omitted.append(Omission(what=short_list(names), why=why, names=names))
-    return omitted
-
-
-def _empty(parts: list[Part], facts: dict[str, Any]) -> list[Omission]:
-    """Elements of which nothing is left, those of one type and reason together."""
-    found: dict[tuple[str, str], list[str]] = {}
-    for part in parts:
-        if isinstance(part, Element) and facts[part.name].empty:
-            zero = [path for path, value in part.numeric_slots().items() if np.ndim(value) == 0 and value == 0.0]
-            why = ", ".join(f"{path} = 0" for path in zero) or "has no effect"
-            found.setdefault((type(part).__name__, why), []).append(part.name)
-    return [
-        Omission(what=f"{kind} {short_list(tuple(names))}", why=why, names=tuple(names))
-        for (kind, why), names in found.items()
+def _inside(
+    scene: Scene, links: Links, kept: set[int], wanted: Wanted | None
+) -> tuple[list[Link], list[Part]]:
+    """Links that are built, and all parts with bodies and driven bodies."""
+    named = set() if wanted is None else wanted.parts
+    inside = []
+    for link in links.links:
+        touched = (*link.acts, *link.reads) if link.idle else link.acts
+        if link.part.name in named or (touched and (kept.issuperset(touched) if link.idle else touched[0] in kept)):
+            inside.append(link)
+    acting = {link.part.name for link in inside}
+    held = {scene.dof_names[i] for i in kept}
+    parts = [
+        part
+        for part in scene.parts
+        if isinstance(part, Driven)
+        or part.name in acting
+        or (isinstance(part, Body | ModalBody) and not held.isdisjoint(part.dof_names))
     ]
+    return inside, parts
 
 
-def _resting(scene: Scene, groups: list[Any], facts: dict[str, Any]) -> list[str]:
-    """Islands at rest at the origin that nothing sets in motion."""
-    q, v = scene.initial_values()
-    place = {name: i for i, name in enumerate(scene.dof_names)}
-    notes = []
-    for group in groups:
-        dofs = [name for kind, name in group if kind == "dof"]
-        if any(q[place[name]] != 0.0 or v[place[name]] != 0.0 for name in dofs):
-            continue
-        parts = [scene[name] for kind, name in group if kind == "part"]
-        if not any(_moves(scene, part, facts) for part in parts):
-            names = short_list(tuple(name for name in scene.dof_names if name in dofs))
-            notes.append(f"{names}: at rest throughout; no initial motion, and nothing that acts")
-    return notes
-
-
-def _moves(scene: Scene, part: Part, facts: dict[str, Any]) -> bool:
-    """Whether a part may set bodies in motion that rest at the origin."""
-    if isinstance(part, MatrixElement):
-        return False
-    if isinstance(part, Contact):
-        # friction opposes slip: only a moving partner or a slide sets anything in motion
-        driven = {name for body in scene.driven for name in (f"{body.name}.{c}" for c in body.moving)}
-        forms = [scene.expand(direction.form) for direction in part.directions()]
-        return (
-            part.slide is not None
-            or part.normal_kind == "law"
-            or bool(driven & {name for form in forms for name in form.motions})
-            or bool(part.law.states)
+def _islands(scene: Scene, links: Links, kept: Sequence[int]) -> tuple[Island, ...]:
+    moving = moving_motions(scene)
+    owner = {name: body.name for body in scene.bodies for name in body.dof_names}
+    place = {part.name: i for i, part in enumerate(scene.parts)}
+    found = []
+    for group in links.groups(kept):
+        held = {id(link): link for dof in group for link in links.acting[dof]}
+        inside = sorted(held.values(), key=lambda link: place[link.part.name])
+        dofs = tuple(scene.dof_names[i] for i in group)
+        found.append(
+            Island(
+                dofs=dofs,
+                parts=tuple(link.part.name for link in inside),
+                bodies=tuple(dict.fromkeys(owner[name] for name in dofs)),
+                inert=not any(can_start(scene, link, moving) for link in inside),
+                held=is_held(scene, dofs, inside),
+            )
         )
-    found = facts[part.name]
-    if found.empty:
-        return False
-    forms = [scene.expand(form) for form in part.local_coordinates()]  # type: ignore[attr-defined]
-    prescribed = any(name not in scene.dof_names for form in forms for name in form.motions)
-    shifted = any(form.constant != 0.0 for form in forms)
-    return prescribed or shifted or found.constant or found.signal or found.nonlinear or uses_time(part)
-
-
-def _vanishing(facts: dict[str, Any]) -> list[str]:
-    could = [name for name, f in facts.items() if f.could_be_nonlinear and not f.nonlinear and not f.empty]
-    if not could:
-        return []
-    return [f"nonlinear terms that vanish for the given numbers, and are not built: {short_list(tuple(could))}"]
+    return tuple(found)
 
 
 def _storage(n: int, bandwidth: int) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass(frozen=True, kw_only=True)
 class Omission:
-    """Something that is not built, and why; ``names`` of dofs and parts."""
+    """Something that is not built or not run, and why; ``names`` of dofs and parts."""
 
     what: str
     why: str
@@ -19,11 +19,46 @@ class Omission:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Island:
-    """Degrees of freedom and parts that can influence each other, and nothing else."""
+class Selection:
+    """A part of a scene that is built as arrays of its own: degrees of freedom and parts, in the order of the scene."""
 
     dofs: tuple[str, ...]
     parts: tuple[str, ...]
+
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What distinguishes the arrays of two selections of one scene."""
+        return self.dofs, self.parts
+
+
+@dataclass(frozen=True, kw_only=True)
+class Island:
+    """Degrees of freedom and parts that can influence each other, and nothing else.
+
+    Attributes
+    ----------
+    dofs, parts, bodies : tuple of str
+        Degrees of freedom, parts that act on them, and the bodies they belong to.
+    inert : bool
+        Nothing in it can set it in motion.
+    held : bool
+        Its forces depend on position: inert, it rests at the origin alone, else anywhere.
+    """
+
+    dofs: tuple[str, ...]
+    parts: tuple[str, ...]
+    bodies: tuple[str, ...] = ()
+    inert: bool = False
+    held: bool = True
+
+    @property
+    def selection(self) -> Selection:
+        """What to build for it."""
+        return Selection(dofs=self.dofs, parts=(*self.bodies, *self.parts))
+
+    def rests(self, q: Any, v: Any) -> bool:
+        """Whether it stays where it is, provably, from positions and velocities (n,) of its own."""
+        return bool(self.inert and not v.any() and not (self.held and q.any()))
 
     def __str__(self) -> str:
         return short_list(self.dofs) + (f" with {short_list(self.parts)}" if self.parts else "")
@@ -40,14 +75,18 @@ class Plan:
     dofs, parts : tuple of str
         Degrees of freedom and parts that are built, in the order of the scene.
     islands : tuple of Island
-        Independent groups among them.
+        Independent groups among them, each run on its own, with steps of its own.
+    idle : tuple of str
+        Contacts without normal force: they act on nothing, and are filled in after the run.
     counts : dict of str to int
         "bodies", "driven bodies", "degrees of freedom", "linear elements", "nonlinear elements", "matrix elements",
-        "forces of time", "contacts", "contact rows", "law states", "islands".
+        "forces of time", "contacts", "contact rows", "law states", "islands", "islands at rest".
     left_out : tuple of Omission
         What is not built, and why.
+    resting : tuple of Omission
+        Islands that are not run, since from the declared start they provably stay at rest.
     notes : tuple of str
-        What is worth knowing beside: degrees of freedom that rest, terms that vanish.
+        What is worth knowing beside: terms that vanish, what truncation brings.
     order : tuple of str
         Order of the degrees of freedom with the smallest bandwidth found.
     bandwidth : int
@@ -60,8 +99,10 @@ class Plan:
     dofs: tuple[str, ...]
     parts: tuple[str, ...]
     islands: tuple[Island, ...]
+    idle: tuple[str, ...] = ()
     counts: dict[str, int]
     left_out: tuple[Omission, ...]
+    resting: tuple[Omission, ...] = ()
     notes: tuple[str, ...]
     order: tuple[str, ...]
     bandwidth: int
@@ -83,17 +124,27 @@ class Plan:
         lines += [f"  {name:<{width}}  {count}" for name, count in self.counts.items() if count or name in _ALWAYS]
         lines.append(f"  {'storage':<{width}}  {self.storage} (half-bandwidth {self.bandwidth})")
         if len(self.islands) > 1:
-            lines.append("islands (solved on their own)")
-            lines += [f"  {island}" for island in self.islands]
+            lines.append("islands (each run on its own)")
+            lines += _some([f"  {island}" for island in self.islands])
+        if self.resting:
+            lines.append("not run")
+            lines += _some([f"  {item}" for item in self.resting])
         lines.append("left out" if self.left_out else "left out: nothing")
-        lines += [f"  {item}" for item in self.left_out]
+        lines += _some([f"  {item}" for item in self.left_out])
         if self.notes:
             lines.append("notes")
-            lines += [f"  {note}" for note in self.notes]
+            lines += _some([f"  {note}" for note in self.notes])
         return "\n".join(lines)
 
 
 _ALWAYS = ("degrees of freedom", "contacts")
+#: Lines of one kind that are printed.
+MANY = 12
+
+
+def _some(lines: list[str]) -> list[str]:
+    """The lines, or the first of them and how many more."""
+    return lines if len(lines) <= MANY else [*lines[: MANY - 1], f"  ... and {len(lines) - MANY + 1} more"]
 
 
 def short_list(names: tuple[str, ...], most: int = 6) -> str:

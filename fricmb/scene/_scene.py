@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -161,13 +161,20 @@ class Scene:
             result = result + coefficient * self.motion(name)
         return result
 
-    def initial_values(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Declared initial q and v, (n_dof,) each."""
-        rows = []
-        for argument in ("position", "velocity"):
-            held = {f"{b.name}.{key}": value_of(v) for b in self.bodies for key, v in getattr(b, argument).items()}
-            rows.append(np.array([held.get(name, 0.0) for name in self.dof_names]))
-        return rows[0], rows[1]
+    def initial_values(
+        self, dofs: Sequence[str] | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Declared initial q and v of the named dofs, (n,) each; default: all."""
+        names = self.dof_names if dofs is None else dofs
+        place = {name: i for i, name in enumerate(names)}
+        values = np.zeros((2, len(names)))
+        for name in dict.fromkeys(name.partition(".")[0] for name in names):
+            body = self._by_name[name]
+            for row, argument in zip(values, ("position", "velocity"), strict=True):
+                for key, value in getattr(body, argument).items():
+                    if (dof := f"{name}.{key}") in place:
+                        row[place[dof]] = value_of(value)
+        return values[0], values[1]
 
     # -- parameters ---------------------------------------------------------------------------------------------
     @property

@@ -4,14 +4,16 @@ from fricmb.integrate._long import take
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._names import Motion, Names
-from fricmb.solution._run import Mechanics, Origin, Piece, Record, Run, first_bad, times_inside
+from fricmb.solution._run import Flags, Mechanics, Origin, Piece, Record, Run, first_bad, times_inside
 from fricmb.solution._solution import Solution
-from fricmb.solution._stats import Stats
+from fricmb.solution._stats import IslandStats, Stats
 
 __all__ = [
     "Energy",
     "Event",
     "Events",
+    "Flags",
+    "IslandStats",
     "Mechanics",
     "Motion",
     "Names",

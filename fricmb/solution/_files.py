@@ -21,7 +21,7 @@ from fricmb.solution._events import Event, Events
 from fricmb.solution._names import Motion, Names
 from fricmb.solution._run import Record, Run
 from fricmb.solution._solution import Solution, restore
-from fricmb.solution._stats import Stats
+from fricmb.solution._stats import IslandStats, Stats
 
 FORMAT = 1
 
@@ -53,7 +53,7 @@ def load(path: str | PathLike[str]) -> Solution:
             raise FricmbError(f"{source} was written by a later fricmb ({about['fricmb']})")
         return restore(
             names=_names(data, about),
-            stats=Stats(**{**about["stats"], "notes": tuple(about["stats"]["notes"])}),
+            stats=_stats(about["stats"]),
             events=_events(data),
             record=Record(samples=Samples(**{f.name: data[f.name] for f in fields(Samples)}), piece=data.get("piece")),
             span=(about["t_start"], about["t_end"]),
@@ -131,6 +131,11 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
         },
         signals=about["signals"],
     )
+
+
+def _stats(held: dict[str, Any]) -> Stats:
+    islands = tuple(IslandStats(**{**one, "dofs": tuple(one["dofs"])}) for one in held.get("islands", ()))
+    return Stats(**{**held, "notes": tuple(held["notes"]), "islands": islands})
 
 
 def _events(data: Any) -> Events:

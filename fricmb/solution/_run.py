@@ -8,12 +8,14 @@ from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.errors import SceneError
-from fricmb.integrate import Problem, Samples, Start, Trajectory
+from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._long import concatenate, take
 from fricmb.integrate._problem import Floats, Ints
 
+Flags = NDArray[np.bool_]
 #: A time this far outside a run, relative to the run's times, is its end: accumulated steps of a t_eval.
 ROUND_OFF = 1e-10
 
@@ -21,9 +23,11 @@ ROUND_OFF = 1e-10
 class Mechanics(Protocol):
     """What a solution asks of the scene it came from; n_t times are the last axis."""
 
-    @property
-    def problem(self) -> Problem:
-        """The arrays that were integrated."""
+    def attach(self, trajectory: Trajectory) -> None:
+        """Give an unpickled trajectory its problem again."""
+
+    def smooth(self) -> Flags:
+        """Whether each contact has a force law that never sticks (n_c,)."""
 
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""
@@ -67,7 +71,7 @@ class Piece:
         """The scene as mechanics, built at first use in a process."""
         if self._mechanics is None:
             self._mechanics = self.origin.build(self.origin.scene, **self.origin.options)
-            self._trajectory.attach(self._mechanics.problem)
+            self._mechanics.attach(self._trajectory)
         return self._mechanics
 
     @property

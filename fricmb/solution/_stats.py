@@ -6,6 +6,17 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
+class IslandStats:
+    """Work on one island: its degrees of freedom, who ran it, accepted and rejected steps, factorisations."""
+
+    dofs: tuple[str, ...]
+    method: str
+    n_steps: int
+    n_rejected: int
+    n_lu: int
+
+
+@dataclass(frozen=True, kw_only=True)
 class Stats:
     """Counters of a run.
 
@@ -20,6 +31,8 @@ class Stats:
         the former).
     notes : tuple of str
         What a careful reader of the result should know.
+    islands : tuple of IslandStats
+        Where islands were run on their own: each of those that were.
     """
 
     method: str
@@ -32,6 +45,7 @@ class Stats:
     compile_s: float = 0.0
     wall_s: float = 0.0
     notes: tuple[str, ...] = ()
+    islands: tuple[IslandStats, ...] = ()
 
     @classmethod
     def total(cls, parts: list[Stats]) -> Stats:
@@ -40,6 +54,7 @@ class Stats:
         return cls(
             method=", ".join(dict.fromkeys(part.method for part in parts)),
             why="; ".join(dict.fromkeys(part.why for part in parts if part.why)),
+            islands=parts[-1].islands,
             notes=tuple(dict.fromkeys(note for part in parts for note in part.notes)),
             **{name: sum(getattr(part, name) for part in parts) for name in counts},
         )

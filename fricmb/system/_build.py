@@ -22,8 +22,8 @@ def build(scene: Any, plan: Any = None) -> System:
     Parameters
     ----------
     scene : Scene
-    plan : Plan, optional
-        What to build; default: everything.
+    plan : Plan or Selection, optional
+        What to build: degrees of freedom and parts; default: everything.
 
     Returns
     -------
@@ -45,13 +45,12 @@ def build(scene: Any, plan: Any = None) -> System:
 
 def _build(scene: Any, plan: Any) -> System:
     dofs = scene.dof_names if plan is None else plan.dofs
-    kept = None if plan is None else set(plan.parts)
     index = {name: i for i, name in enumerate(dofs)}
     signals = _motions.Signals()
     motions = _motions.Motions(scene, index, signals)
     structure = Structure(n=len(dofs), motions=motions)
     contacts = ContactArrays(motions=motions)
-    parts = [part for part in scene.parts if kept is None or part.name in kept]
+    parts = scene.parts if plan is None else [scene[name] for name in plan.parts]
     for part in parts:
         if isinstance(part, Body | ModalBody):
             structure.add_body(part, index)
@@ -77,8 +76,7 @@ def _build(scene: Any, plan: Any) -> System:
         dof_names=dofs,
         contact_names=tuple(part.name for part in parts if isinstance(part, Contact)),
     )
-    built = np.array([name in index for name in scene.dof_names])
-    q, v = (values[built] for values in scene.initial_values())
+    q, v = scene.initial_values(dofs)
     system = System(
         problem=problem,
         start=Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)),
@@ -88,7 +86,7 @@ def _build(scene: Any, plan: Any) -> System:
         switches=searched,
     )
     if structure.nonlinear:
-        u = system._signals(np.zeros(1))[0, :, 0]
+        u = system.signals(np.zeros(1))[0, :, 0]
         for element, rows in structure.nonlinear:
             check_initial(element, rows, q, u)
     return system

@@ -82,7 +82,7 @@ class System:
         return dict(self._each_potential(samples))
 
     def _each_potential(self, samples: Samples) -> Iterator[tuple[str, Floats]]:
-        u = self._signals(samples.t)
+        u = self.signals(samples.t)
         contacts = self.problem.contacts
         pressed = np.flatnonzero(contacts.normal == NORMAL_LAW)
         X = np.zeros((0, samples.t.size))
@@ -109,7 +109,7 @@ class System:
             value += _value(elements.table, store.nonlinear, X, at + 3)[at]
         return value
 
-    def _signals(self, t: Floats) -> Floats:
+    def signals(self, t: Floats) -> Floats:
         """Signals of the problem with two derivatives, (3, n_u, n_t)."""
         table = self.problem.signals.table
         values = np.zeros((3, len(table.address), t.size))

@@ -58,11 +58,12 @@ def test_islands():
     assert {island.parts for island in plan.islands} == {("ab", "push"), (), ("rub",), ("ground",)}
 
 
-def test_what_rests_is_noted():
-    notes = "\n".join(make_plan(two_islands()).notes)
-    assert "c.x: at rest throughout" in notes
-    assert "b.y, c.y: at rest throughout" in notes
-    assert "a.x" not in notes
+def test_what_rests_is_named_with_a_reason():
+    plan = make_plan(two_islands())
+    assert {item.names for item in plan.resting} == {("a.y",), ("c.x", "ground"), ("b.y", "c.y", "rub")}
+    assert all("at rest throughout" in item.why for item in plan.resting)
+    assert "c.x with ground: at rest throughout" in str(plan)
+    assert plan.counts["islands at rest"] == 3
 
 
 @pytest.mark.parametrize(

@@ -79,6 +79,12 @@ class Mechanics:
         self.problem = problem()
         self.stiffness = stiffness
 
+    def attach(self, trajectory):
+        trajectory.attach(self.problem)
+
+    def smooth(self):
+        return np.array([False])
+
     def kinetic(self, samples):
         return 0.5 * samples.v[0] ** 2
 

@@ -1,0 +1,215 @@
+"""Runs of islands seen as one run of the whole scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fricmb._simulate._members import Idle, Member
+from fricmb.integrate import STICK, Samples, Start, Trajectory, Transitions
+from fricmb.integrate._long import KeptTrajectory, add_counters, take
+from fricmb.integrate._problem import Floats, Ints
+from fricmb.scene import Contact
+from fricmb.solution import IslandStats, Names
+from fricmb.values import value_of
+
+#: Most numbers that the rows of a joined run may hold: accepted steps of many islands are thinned beyond.
+ROOM = 20_000_000
+THINNED = "rows are thinned: accepted steps of many islands; the dense output has everything"
+
+
+class JoinedRun(Trajectory):
+    """Trajectories of islands as one: rows at the steps of all of them, between them each one's dense output.
+
+    Parameters
+    ----------
+    runs : sequence of (int, Trajectory)
+        Number of the member and its run; the others rest.
+    methods : sequence of str
+        Names of the integrators.
+    members : sequence of Member
+    names : Names
+        Of the whole.
+    start : Start
+        Of the whole: where what rests is.
+    idle : Idle or None
+    """
+
+    def __init__(
+        self,
+        runs: Sequence[tuple[int, Trajectory]],
+        methods: Sequence[str],
+        members: Sequence[Member],
+        names: Names,
+        start: Start,
+        idle: Idle | None,
+    ) -> None:
+        self.runs = tuple(runs)
+        self.methods = tuple(methods)
+        self._start = start
+        self._shape = len(names.dofs), len(names.contacts), int(names.row[-1]), int(names.z_start[-1])
+        self._pressed = _resting_forces(members, {i for i, _ in runs}, len(names.contacts))
+        self._take(members, idle)
+        stopped = [(float(run.t[-1]), i, run.failure) for i, run in runs if run.failure is not None]
+        self.failure = None
+        t_end = max(float(run.t[-1]) for _, run in runs)
+        if stopped:
+            t_end, i, reason = min(stopped)
+            self.failure = f"{members[i]}: {reason}"
+        kept = [run for _, run in runs if isinstance(run, KeptTrajectory)]
+        # a long run holds its values at the times asked for alone: these are the rows of all
+        times = [run.t for run in kept[:1]] or [run.t for _, run in runs]
+        self._t, thinned = _common_times(times, t_end, self._width)
+        self.transitions = self._joined_transitions(t_end)
+        counters = add_counters([run.counters for _, run in runs])
+        self.counters = replace(counters, notes=(*counters.notes, THINNED)) if thinned else counters
+        self.end = self._joined_end(t_end)
+
+    def _take(self, members: Sequence[Member], idle: Idle | None) -> None:
+        self._places = [members[i].place for i, _ in self.runs]
+        self._idle = idle
+
+    @property
+    def _width(self) -> int:
+        n, n_c, m, n_z = self._shape
+        return 2 * n + 2 * m + 3 * n_c + n_z + 3
+
+    @property
+    def t(self) -> Floats:
+        """Times of the rows (n_t,)."""
+        return self._t
+
+    def rows(self) -> Samples:
+        """Values at the rows; at a transition first the left, then the right-hand values."""
+        return self._assemble(self._t, [_at_rows(run, self._t) for _, run in self.runs])
+
+    def sample(self, t: Floats) -> Samples:
+        """Values at times within the run, in any order; the right-hand value at a transition."""
+        return self._assemble(t, [run.sample(t) for _, run in self.runs])
+
+    def _assemble(self, t: Floats, parts: Sequence[Samples]) -> Samples:
+        n, n_c, m, n_z = self._shape
+        n_t = t.size
+        found = Samples(
+            t=t,
+            q=np.repeat(self._start.q[:, None], n_t, axis=1),
+            v=np.zeros((n, n_t)),
+            z=np.repeat(self._start.z[:, None], n_t, axis=1),
+            F=np.zeros((m, n_t)), g=np.zeros((m, n_t)),
+            N=np.repeat(self._pressed[:, None], n_t, axis=1),
+            mode=np.full((n_c, n_t), STICK, dtype=np.int8),
+            friction_loss=np.zeros((n_c, n_t)), damping_loss=np.zeros(n_t), input=np.zeros(n_t),
+        )  # fmt: skip
+        for place, part in zip(self._places, parts, strict=True):
+            found.q[place.dofs], found.v[place.dofs], found.z[place.states] = part.q, part.v, part.z
+            found.F[place.rows], found.g[place.rows] = part.F, part.g
+            found.N[place.contacts], found.mode[place.contacts] = part.N, part.mode
+            found.friction_loss[place.contacts] = part.friction_loss
+            found.damping_loss[:] += part.damping_loss
+            found.input[:] += part.input
+        if self._idle is not None:
+            self._idle.fill(found)
+        return found
+
+    def _joined_transitions(self, t_end: float) -> Transitions:
+        found = [(run.transitions, place) for (_, run), place in zip(self.runs, self._places, strict=True)]
+        t = np.concatenate([x.t for x, _ in found])
+        contact = np.concatenate([place.contacts[x.contact] for x, place in found])
+        kind = np.concatenate([x.kind for x, _ in found])
+        order = np.argsort(t, kind="stable")
+        order = order[t[order] <= t_end]
+        return Transitions(t=t[order], contact=contact[order], kind=kind[order])
+
+    def _joined_end(self, t_end: float) -> Start:
+        last = self.sample(np.array([t_end]))
+        z = last.z[:, 0]
+        mode = last.mode[:, 0].copy()
+        direction = np.zeros(self._shape[2])
+        known = True
+        q, v = last.q[:, 0].copy(), last.v[:, 0].copy()
+        for (_, run), place in zip(self.runs, self._places, strict=True):
+            end = run.end
+            if end.t != t_end:  # stopped here by the failure of another
+                known = False
+                continue
+            q[place.dofs], v[place.dofs], z[place.states] = end.q, end.v, end.z
+            if place.contacts.size and (end.mode is None or end.direction is None):
+                known = False
+            elif end.mode is not None and end.direction is not None:
+                mode[place.contacts], direction[place.rows] = end.mode, end.direction
+        return Start(t=t_end, q=q, v=v, z=z, mode=mode if known else None, direction=direction if known else None)
+
+    def attach_members(self, members: Sequence[Member], idle: Idle | None) -> None:
+        """Give the parts of an unpickled run their problems again."""
+        self._take(members, idle)
+        for i, run in self.runs:
+            run.attach(members[i].system.problem)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name not in ("_places", "_idle")}
+
+
+def _resting_forces(members: Sequence[Member], run: set[int], n_c: int) -> Floats:
+    """Normal forces (n_c,) of contacts in islands that rest; they are constant."""
+    pressed = np.zeros(n_c)
+    for i, member in enumerate(members):
+        if i not in run:
+            contacts = [part for name in member.selection.parts if isinstance(part := member.scene[name], Contact)]
+            pressed[member.place.contacts] = [max(0.0, float(value_of(c.normal_force))) for c in contacts]
+    return pressed
+
+
+def _common_times(times: Sequence[Floats], t_end: float, width: int) -> tuple[Floats, bool]:
+    """Times of all runs, rising, one that is several times in a run (a transition) as often; whether thinned.
+
+    Thinned are the times that occur once, so that rows of ``width`` numbers stay within ROOM.
+    """
+    every: Floats = np.unique(np.concatenate([*times, [t_end]]))
+    often = np.ones(every.size, dtype=np.int64)
+    for t in times:
+        here, count = np.unique(t, return_counts=True)
+        place = np.searchsorted(every, here)
+        often[place] = np.maximum(often[place], count)
+    inside = every <= t_end
+    every, often = every[inside], often[inside]
+    most = ROOM // width
+    thinned = bool(often.sum() > most)
+    if thinned:
+        keep = often > 1
+        keep[[0, -1]] = True
+        once = np.flatnonzero(~keep)
+        room = max(most - int(often[keep].sum()), 100)
+        keep[once[np.unique(np.linspace(0, once.size - 1, min(room, once.size)).astype(np.int64))]] = True
+        every, often = every[keep], often[keep]
+    return np.repeat(every, often), thinned
+
+
+def _at_rows(run: Trajectory, t: Floats) -> Samples:
+    """Values at the joined rows: of the run's own rows where it has them, in their order; else between them."""
+    own = run.rows()
+    found = run.sample(t)
+    first = np.searchsorted(own.t, t, side="left")
+    count = np.searchsorted(own.t, t, side="right") - first
+    again = np.arange(t.size) - np.searchsorted(t, t, side="left")
+    mine = np.flatnonzero(count > 0)
+    rows: Ints = first[mine] + np.minimum(again[mine], count[mine] - 1)
+    held = take(own, rows)
+    for name in ("q", "v", "z", "F", "g", "N", "mode", "friction_loss", "damping_loss", "input"):
+        getattr(found, name)[..., mine] = getattr(held, name)
+    return found
+
+
+def island_stats(trajectory: Trajectory, members: Sequence[Member]) -> tuple[IslandStats, ...]:
+    """Work on each island that was run."""
+    if not isinstance(trajectory, JoinedRun):
+        return ()
+    return tuple(
+        IslandStats(
+            dofs=members[i].selection.dofs, method=method, n_steps=run.counters.n_steps,
+            n_rejected=run.counters.n_rejected, n_lu=run.counters.n_lu,
+        )  # fmt: skip
+        for (i, run), method in zip(trajectory.runs, trajectory.methods, strict=True)
+    )

@@ -1,0 +1,131 @@
+"""What is run on its own: an island's arrays, and their places in those of the whole scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fricmb.integrate import Samples, Start
+from fricmb.integrate._problem import Codes, Floats, Ints
+from fricmb.plan import Island, Plan, Selection
+from fricmb.scene import Contact, Scene
+from fricmb.solution import Names
+from fricmb.system import System, build
+
+
+@dataclass(frozen=True)
+class Place:
+    """Rows of a member's arrays in those of the whole: degrees of freedom, contacts, contact rows, law states."""
+
+    dofs: Ints
+    contacts: Ints
+    rows: Ints
+    states: Ints
+
+    def part(self, samples: Samples) -> Samples:
+        """The member's share of samples of the whole; energies of the whole."""
+        return Samples(
+            t=samples.t, q=samples.q[self.dofs], v=samples.v[self.dofs], z=samples.z[self.states],
+            F=samples.F[self.rows], g=samples.g[self.rows], N=samples.N[self.contacts],
+            mode=samples.mode[self.contacts], friction_loss=samples.friction_loss[self.contacts],
+            damping_loss=samples.damping_loss, input=samples.input,
+        )  # fmt: skip
+
+    def start(self, whole: Start) -> Start:
+        """The member's share of a start."""
+        mode: Codes | None = None if whole.mode is None else whole.mode[self.contacts]
+        direction = None if whole.direction is None else whole.direction[self.rows]
+        return Start(
+            t=whole.t, q=whole.q[self.dofs], v=whole.v[self.dofs], z=whole.z[self.states], mode=mode,
+            direction=direction,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Member:
+    """Something that is run on its own: an island, or a whole scene (``island`` None)."""
+
+    scene: Scene
+    selection: Selection
+    place: Place
+    island: Island | None = None
+
+    @cached_property
+    def system(self) -> System:
+        """Its arrays, built when it is run."""
+        return build(self.scene, self.selection)
+
+    def rests(self, start: Start) -> bool:
+        """Whether it provably stays where it is from a start of the whole."""
+        return self.island is not None and self.island.rests(start.q[self.place.dofs], start.v[self.place.dofs])
+
+    def __str__(self) -> str:
+        return "the scene" if self.island is None else str(self.island)
+
+
+def members_of(scene: Scene, plan: Plan, names: Names, together: bool) -> tuple[Member, ...]:
+    """An island each; or, ``together`` or where there is nothing to tell apart, the whole as one."""
+    if together or (len(plan.islands) == 1 and not plan.idle):
+        whole = Selection(dofs=plan.dofs, parts=plan.parts)
+        return (Member(scene=scene, selection=whole, place=place_of(whole, names)),)
+    return tuple(
+        Member(scene=scene, selection=island.selection, place=place_of(island.selection, names), island=island)
+        for island in plan.islands
+    )
+
+
+def place_of(selection: Selection, names: Names) -> Place:
+    """Where the arrays of a selection stand in the whole."""
+    dofs = np.array([names.dof_index[name] for name in selection.dofs], dtype=np.int64)
+    contacts = [names.contact_index[name] for name in selection.parts if name in names.contact_index]
+    return Place(
+        dofs=dofs,
+        contacts=np.array(contacts, dtype=np.int64),
+        rows=_ranges(contacts, names.row),
+        states=_ranges(contacts, names.z_start),
+    )
+
+
+def _ranges(contacts: list[int], start: Ints) -> Ints:
+    found = [np.arange(start[k], start[k + 1]) for k in contacts]
+    return np.concatenate([np.zeros(0, dtype=np.int64), *found])
+
+
+def contact_names(contact: Contact) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Labels of a contact's directions and of its law's states, as its arrays have them."""
+    letters = tuple(direction.label for direction in contact.directions())
+    d = len(letters)
+    return letters, tuple(f"{state}.{c}" if d > 1 else state for state in contact.law.states for c in letters)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Idle:
+    """Contacts without normal force: nothing but the relative velocity is to be known of them."""
+
+    system: System
+    place: Place
+
+    def fill(self, samples: Samples) -> None:
+        """Relative velocities at the samples' times, for the motion they hold; no force, open."""
+        from fricmb.integrate import OPEN
+
+        problem, t = self.system.problem, samples.t
+        contacts = problem.contacts
+        rates: Floats = self.system.signals(t)[1]
+        v = samples.v[self.place.dofs]
+        samples.g[self.place.rows] = contacts.W.T @ v - contacts.w[:, None] - contacts.Wu @ rates
+        samples.mode[self.place.contacts] = OPEN
+
+
+def idle_of(scene: Scene, plan: Plan, names: Names) -> Idle | None:
+    """The contacts of a plan that act on nothing, with the bodies they touch."""
+    if not plan.idle:
+        return None
+    idle = set(plan.idle)
+    bodies = {end.owner.name for name in plan.idle for end in scene[name].ends()}
+    parts = tuple(part.name for part in scene.parts if part.name in idle or part.name in bodies)
+    dofs = tuple(name for name in plan.dofs if name.partition(".")[0] in bodies)
+    selection = Selection(dofs=dofs, parts=parts)
+    return Idle(system=build(scene, selection), place=place_of(selection, names))

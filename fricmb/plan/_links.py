@@ -1,0 +1,144 @@
+"""Who acts on whom: the degrees of freedom that each part ties together, and those it only looks at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from fricmb.scene import Contact, Element, MatrixElement, Part, Scene, expression_uses
+from fricmb.values import value_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Link:
+    """What a part has to do with the degrees of freedom (by their places in the scene).
+
+    Attributes
+    ----------
+    part : Part
+    acts : tuple of int
+        Degrees of freedom that feel it; it depends on them, too.
+    reads : tuple of int
+        Others it depends on: coordinates in an expression.
+    facts : ElementFacts or None
+        Of an element: which terms its numbers leave.
+    idle : bool
+        It acts on nothing: an element of which nothing is left, a contact without normal force.
+    """
+
+    part: Part
+    acts: tuple[int, ...]
+    reads: tuple[int, ...]
+    facts: Any = None
+    idle: bool = False
+
+
+@dataclass(frozen=True)
+class Links:
+    """All parts of a scene that act, with what they act on."""
+
+    links: tuple[Link, ...]
+    n: int
+
+    @cached_property
+    def acting(self) -> list[list[Link]]:
+        """Links that act on each degree of freedom."""
+        found: list[list[Link]] = [[] for _ in range(self.n)]
+        for link in self.links:
+            for dof in () if link.idle else link.acts:
+                found[dof].append(link)
+        return found
+
+    def reaching(self, targets: Iterable[int]) -> list[int]:
+        """Degrees of freedom that can influence the given ones, and these: backwards along the links."""
+        seen = set(targets)
+        waiting = list(seen)
+        used: set[int] = set()
+        while waiting:
+            for link in self.acting[waiting.pop()]:
+                if id(link) in used:
+                    continue
+                used.add(id(link))
+                new = {*link.acts, *link.reads} - seen
+                seen |= new
+                waiting.extend(new)
+        return sorted(seen)
+
+    def groups(self, dofs: Sequence[int]) -> list[list[int]]:
+        """The given degrees of freedom in groups that parts tie together, in the order of the scene."""
+        kept = set(dofs)
+        pairs = [
+            (held[0], other)
+            for link in self.links
+            if not link.idle and link.acts and link.acts[0] in kept
+            for held in [(*link.acts, *link.reads)]
+            for other in held[1:]
+        ]
+        rows, columns = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+        graph = coo_array((np.ones(len(pairs), dtype=np.int8), (rows, columns)), shape=(self.n, self.n))
+        _, label = connected_components(graph, directed=False)
+        found: dict[int, list[int]] = {}
+        for dof in dofs:
+            found.setdefault(int(label[dof]), []).append(dof)
+        return list(found.values())
+
+
+def links_of(scene: Scene) -> Links:
+    """The links of a scene; those of parts that another scene of its family has as well are taken from there."""
+    place = {name: i for i, name in enumerate(scene.dof_names)}
+    shared = scene._shared.setdefault("links", {})
+    links = []
+    for part in scene.parts:
+        if not isinstance(part, Element | Contact | MatrixElement):
+            continue
+        found = shared.get(part.name)
+        if found is None or found.part is not part:
+            found = _link(scene, part, place)
+            if not part.uses():  # expressions name motions whose forms belong to other parts
+                shared[part.name] = found
+        links.append(found)
+    return Links(tuple(links), len(place))
+
+
+def _link(scene: Scene, part: Element | Contact | MatrixElement, place: dict[str, int]) -> Link:
+    # what is left of an element for its numbers is known to the equations, one floor up
+    from fricmb.equations import element_facts
+
+    own, read = _motions(scene, part)
+    acts = tuple(sorted({place[name] for name in own if name in place}))
+    reads = tuple(sorted({place[name] for name in read if name in place} - set(acts)))
+    facts = element_facts(part) if isinstance(part, Element) else None
+    idle = facts.empty if facts is not None else isinstance(part, Contact) and is_idle(part)
+    return Link(part=part, acts=acts, reads=reads, facts=facts, idle=idle)
+
+
+def is_idle(contact: Contact) -> bool:
+    """Whether a contact has no normal force, ever, and no state that would go on changing without."""
+    constant = contact.normal_kind == "constant"
+    return constant and float(value_of(contact.normal_force)) <= 0.0 and not contact.law.states
+
+
+def _motions(scene: Scene, part: Element | Contact | MatrixElement) -> tuple[set[str], set[str]]:
+    """Names of dofs and prescribed motions that a part acts on, and that its expressions read."""
+    if isinstance(part, MatrixElement):
+        return set(part.dofs), set()
+    if isinstance(part, Contact):
+        normal = part.normal_direction()
+        directions = (*part.directions(), *(() if normal is None else (normal,)))
+        forms = [direction.form for direction in directions]
+    else:
+        forms = list(part.local_coordinates())
+    own = {name for form in forms for name in scene.expand(form).motions}
+    read = {m for uses in part.uses().values() for name in uses.motions for m in scene.motion(name).motions}
+    return own, read
+
+
+def uses_time(part: Part) -> bool:
+    """Whether a slot of a part is an expression of time."""
+    return any(expression_uses(value).time for value in part.expressions().values())
