@@ -6,10 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
+import numpy as np
+
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._mechanics import SceneMechanics
-from fricmb._simulate._members import Member
+from fricmb._simulate._members import Member, resting
 from fricmb._simulate._method import find_integrator
 from fricmb.errors import SceneError
 from fricmb.integrate import Integrator, Problem, Start, Tolerance, Trajectory
@@ -126,9 +128,8 @@ def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span) 
 def _tasks(mechanics: SceneMechanics, method: Any, start: Start, span: Span) -> tuple[Task, ...]:
     """A task for each island that does not rest; none where an island is refused, or all rest."""
     tasks = []
-    for index, member in enumerate(mechanics.members):
-        if member.rests(start):
-            continue
+    for index in np.flatnonzero(~resting(mechanics.members, start)).tolist():
+        member = mechanics.members[index]
         problem = member.system.problem_for(span.t_start, span.t_end)
         try:
             integrator, why = find_integrator(method, problem)

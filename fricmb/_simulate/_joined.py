@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate._members import Idle, Member
-from fricmb.integrate import STICK, Samples, Start, Trajectory, Transitions
+from fricmb.integrate import OPEN, STICK, Samples, Start, Trajectory, Transitions
 from fricmb.integrate._long import KeptTrajectory, add_counters, take
 from fricmb.integrate._problem import Floats, Ints
 from fricmb.scene import Contact
@@ -54,6 +54,7 @@ class JoinedRun(Trajectory):
         self._pressed = _resting_forces(members, {i for i, _ in runs}, len(names.contacts))
         self._take(members, idle)
         stopped = [(float(run.t[-1]), i, run.failure) for i, run in runs if run.failure is not None]
+        self.moving = np.concatenate([members[i].place.dofs for i, _ in runs])
         self.failure = None
         t_end = max(float(run.t[-1]) for _, run in runs)
         if stopped:
@@ -91,15 +92,15 @@ class JoinedRun(Trajectory):
         return self._assemble(t, [run.sample(t) for _, run in self.runs])
 
     def _assemble(self, t: Floats, parts: Sequence[Samples]) -> Samples:
-        n, n_c, m, n_z = self._shape
+        n, n_c, m, _ = self._shape
         n_t = t.size
         found = Samples(
             t=t,
-            q=np.repeat(self._start.q[:, None], n_t, axis=1),
+            q=_constant(self._start.q, n_t),
             v=np.zeros((n, n_t)),
-            z=np.repeat(self._start.z[:, None], n_t, axis=1),
+            z=_constant(self._start.z, n_t),
             F=np.zeros((m, n_t)), g=np.zeros((m, n_t)),
-            N=np.repeat(self._pressed[:, None], n_t, axis=1),
+            N=_constant(self._pressed, n_t),
             mode=np.full((n_c, n_t), STICK, dtype=np.int8),
             friction_loss=np.zeros((n_c, n_t)), damping_loss=np.zeros(n_t), input=np.zeros(n_t),
         )  # fmt: skip
@@ -124,22 +125,22 @@ class JoinedRun(Trajectory):
         return Transitions(t=t[order], contact=contact[order], kind=kind[order])
 
     def _joined_end(self, t_end: float) -> Start:
-        last = self.sample(np.array([t_end]))
-        z = last.z[:, 0]
-        mode = last.mode[:, 0].copy()
-        direction = np.zeros(self._shape[2])
+        n, n_c, m, _ = self._shape
+        q, v, z = self._start.q.copy(), np.zeros(n), self._start.z.copy()
+        mode, direction = np.full(n_c, STICK, dtype=np.int8), np.zeros(m)
+        if self._idle is not None:
+            mode[self._idle.place.contacts] = OPEN
         known = True
-        q, v = last.q[:, 0].copy(), last.v[:, 0].copy()
         for (_, run), place in zip(self.runs, self._places, strict=True):
             end = run.end
-            if end.t != t_end:  # stopped here by the failure of another
-                known = False
-                continue
+            if end.t != t_end:  # stopped by the failure of another
+                last = run.sample(np.array([t_end]))
+                end = Start(t=t_end, q=last.q[:, 0], v=last.v[:, 0], z=last.z[:, 0])
             q[place.dofs], v[place.dofs], z[place.states] = end.q, end.v, end.z
-            if place.contacts.size and (end.mode is None or end.direction is None):
-                known = False
-            elif end.mode is not None and end.direction is not None:
+            if end.mode is not None and end.direction is not None:
                 mode[place.contacts], direction[place.rows] = end.mode, end.direction
+            elif place.contacts.size:
+                known = False
         return Start(t=t_end, q=q, v=v, z=z, mode=mode if known else None, direction=direction if known else None)
 
     def attach_members(self, members: Sequence[Member], idle: Idle | None) -> None:
@@ -152,11 +153,19 @@ class JoinedRun(Trajectory):
         return {name: value for name, value in vars(self).items() if name not in ("_places", "_idle")}
 
 
+def _constant(values: Floats, n_t: int) -> Floats:
+    """Rows (n, n_t) of constant values; memory of zeros is not touched."""
+    rows: Floats = np.zeros((values.size, n_t))
+    there = np.flatnonzero(values)
+    rows[there] = values[there, None]
+    return rows
+
+
 def _resting_forces(members: Sequence[Member], run: set[int], n_c: int) -> Floats:
     """Normal forces (n_c,) of contacts in islands that rest; they are constant."""
     pressed = np.zeros(n_c)
     for i, member in enumerate(members):
-        if i not in run:
+        if i not in run and member.place.contacts.size:
             contacts = [part for name in member.selection.parts if isinstance(part := member.scene[name], Contact)]
             pressed[member.place.contacts] = [max(0.0, float(value_of(c.normal_force))) for c in contacts]
     return pressed
@@ -190,6 +199,8 @@ def _common_times(times: Sequence[Floats], t_end: float, width: int) -> tuple[Fl
 def _at_rows(run: Trajectory, t: Floats) -> Samples:
     """Values at the joined rows: of the run's own rows where it has them, in their order; else between them."""
     own = run.rows()
+    if own.t.size == t.size and bool((own.t == t).all()):
+        return own
     found = run.sample(t)
     first = np.searchsorted(own.t, t, side="left")
     count = np.searchsorted(own.t, t, side="right") - first
@@ -208,8 +219,11 @@ def island_stats(trajectory: Trajectory, members: Sequence[Member]) -> tuple[Isl
         return ()
     return tuple(
         IslandStats(
-            dofs=members[i].selection.dofs, method=method, n_steps=run.counters.n_steps,
-            n_rejected=run.counters.n_rejected, n_lu=run.counters.n_lu,
-        )  # fmt: skip
+            dofs=members[i].selection.dofs,
+            method=method,
+            n_steps=run.counters.n_steps,
+            n_rejected=run.counters.n_rejected,
+            n_lu=run.counters.n_lu,
+        )
         for (i, run), method in zip(trajectory.runs, trajectory.methods, strict=True)
     )

@@ -14,7 +14,7 @@ from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of
 from fricmb.errors import SceneError
 from fricmb.integrate import Samples, Start, Trajectory
-from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats
+from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, make_plan
 from fricmb.scene import Scene
 from fricmb.solution import Flags, Motion, Names, Origin
@@ -75,7 +75,7 @@ class SceneMechanics:
             trajectory.attach(self.members[0].system.problem)
 
     def laws(self, run: Iterable[int] | None = None) -> Codes:
-        """Kind of every contact's law (n_c,): of the members that are run, else LAW_CONSTANT, which rests or is idle."""
+        """Kind of every contact's law (n_c,) in the members that are run; LAW_CONSTANT for others."""
         kinds = np.full(len(self.names.contacts), LAW_CONSTANT, dtype=np.int8)
         for i in range(len(self.members)) if run is None else run:
             member = self.members[i]
@@ -84,25 +84,27 @@ class SceneMechanics:
 
     def smooth(self) -> Flags:
         """Whether each contact has a force law that never sticks (n_c,)."""
-        return np.array([self.placed[name].law.kind == "smooth" for name in self.names.contacts], dtype=bool)
+        kinds = {contact.name: contact.law.kind for contact in self.placed.contacts}
+        return np.array([kinds[name] == "smooth" for name in self.names.contacts], dtype=np.bool_)
 
-    def kinetic(self, samples: Samples) -> Floats:
+    def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Kinetic energy (n_t,)."""
-        return self._sum(samples, System.kinetic)
+        return self._sum(samples, moving, System.kinetic)
 
-    def potential(self, samples: Samples) -> Floats:
+    def potential(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
-        return self._sum(samples, System.potential)
+        return self._sum(samples, moving, System.potential)
 
-    def _sum(self, samples: Samples, energy: Callable[[System, Samples], Floats]) -> Floats:
+    def _sum(self, samples: Samples, moving: Ints | None, energy: Callable[[System, Samples], Floats]) -> Floats:
         if self.whole is not None:
             return energy(self.whole.system, samples)
         total = np.zeros(samples.t.size)
+        known = None if moving is None else set(moving.tolist())
         for member in self.members:
-            part = member.place.part(samples)
+            first = int(member.place.dofs[0])
             # what rests holds no energy; its arrays need not be built
-            if not (member.island is not None and member.island.rests(part.q, part.v)):
-                total += energy(member.system, part)
+            if (known is None or first in known) and not member.keeps_still(samples):
+                total += energy(member.system, member.place.part(samples))
         return total
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:

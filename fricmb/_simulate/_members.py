@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,7 +12,7 @@ from fricmb.integrate import Samples, Start
 from fricmb.integrate._problem import Codes, Floats, Ints
 from fricmb.plan import Island, Plan, Selection
 from fricmb.scene import Contact, Scene
-from fricmb.solution import Names
+from fricmb.solution import Flags, Names
 from fricmb.system import System, build
 
 
@@ -57,12 +58,26 @@ class Member:
         """Its arrays, built when it is run."""
         return build(self.scene, self.selection)
 
-    def rests(self, start: Start) -> bool:
-        """Whether it provably stays where it is from a start of the whole."""
-        return self.island is not None and self.island.rests(start.q[self.place.dofs], start.v[self.place.dofs])
+    def keeps_still(self, samples: Samples) -> bool:
+        """Whether it rests at all the samples' times."""
+        place = self.place.dofs
+        return self.island is not None and self.island.rests(samples.q[place], samples.v[place])
 
     def __str__(self) -> str:
         return "the scene" if self.island is None else str(self.island)
+
+
+def resting(members: Sequence[Member], start: Start) -> Flags:
+    """Which members provably stay where they are from a start of the whole (n_members,)."""
+    islands = [member.island for member in members]
+    inert = np.array([island is not None and island.inert for island in islands], dtype=np.bool_)
+    held = np.array([island is None or island.held for island in islands], dtype=np.bool_)
+    owner = np.zeros(start.q.size, dtype=np.int64)
+    for i, member in enumerate(members):
+        owner[member.place.dofs] = i
+    away = (start.v != 0.0) | (held[owner] & (start.q != 0.0))
+    still: Flags = np.bincount(owner, weights=away, minlength=len(members)) == 0
+    return inert & still
 
 
 def members_of(scene: Scene, plan: Plan, names: Names, together: bool) -> tuple[Member, ...]:

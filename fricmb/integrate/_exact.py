@@ -172,6 +172,7 @@ class Exact(Integrator):
         step: float | None = None,
         t_eval: Floats | None = None,
         progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         modes = modes_of(problem)

@@ -74,6 +74,8 @@ class Trajectory(ABC):
     counters: Counters
     end: Start
     failure: str | None
+    #: Degrees of freedom that move; None: all may.  The others keep their position, which is finite.
+    moving: Ints | None = None
 
     @property
     @abstractmethod

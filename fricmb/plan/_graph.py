@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,8 @@ def coupling(links: Sequence[Link], dof_names: Sequence[str]) -> Pairs | None:
 
     Contacts apart: their forces stand outside the structure.
     """
-    found = [np.zeros((2, 0), dtype=np.int64)]
+    found: list[Pairs] = []
+    pairs: list[tuple[int, int]] = []
     place = {name: i for i, name in enumerate(dof_names)}
     for link in links:
         if link.idle or isinstance(link.part, Contact):
@@ -32,11 +34,11 @@ def coupling(links: Sequence[Link], dof_names: Sequence[str]) -> Pairs | None:
         if isinstance(link.part, MatrixElement):
             found.append(_pattern(link.part, place))
             continue
-        dofs = np.array((*link.acts, *link.reads), dtype=np.int64)
-        if dofs.size > WIDE:
+        dofs = (*link.acts, *link.reads)
+        if len(dofs) > WIDE:
             return None
-        first, second = np.triu_indices(dofs.size, 1)
-        found.append(np.array([dofs[first], dofs[second]]))
+        pairs.extend(combinations(dofs, 2))
+    found.append(np.array(pairs, dtype=np.int64).reshape(-1, 2).T)
     return np.concatenate(found, axis=1)
 
 
@@ -44,7 +46,8 @@ def _pattern(part: MatrixElement, place: dict[str, int]) -> Pairs:
     dofs = np.array([place[name] for name in part.dofs])
     held = [value_of(value).nonzero() for value in (part.M, part.C, part.K) if value is not None]
     pairs = np.concatenate([np.array([rows, columns], dtype=np.int64) for rows, columns in held], axis=1)
-    return dofs[pairs[:, pairs[0] != pairs[1]]]
+    found: Pairs = dofs[pairs[:, pairs[0] != pairs[1]]]
+    return found
 
 
 def narrow_order(pairs: Pairs | None, dofs: Sequence[int]) -> tuple[list[int], int]:

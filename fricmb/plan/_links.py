@@ -11,7 +11,8 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from fricmb.scene import Contact, Element, MatrixElement, Part, Scene, expression_uses
+from fricmb.plan._rest import can_start
+from fricmb.scene import Contact, Element, Force, MatrixElement, Part, Scene
 from fricmb.values import value_of
 
 
@@ -30,6 +31,8 @@ class Link:
         Of an element: which terms its numbers leave.
     idle : bool
         It acts on nothing: an element of which nothing is left, a contact without normal force.
+    starts : bool
+        It may set in motion what rests at the origin.
     """
 
     part: Part
@@ -37,6 +40,7 @@ class Link:
     reads: tuple[int, ...]
     facts: Any = None
     idle: bool = False
+    starts: bool = True
 
 
 @dataclass(frozen=True)
@@ -115,7 +119,8 @@ def _link(scene: Scene, part: Element | Contact | MatrixElement, place: dict[str
     reads = tuple(sorted({place[name] for name in read if name in place} - set(acts)))
     facts = element_facts(part) if isinstance(part, Element) else None
     idle = facts.empty if facts is not None else isinstance(part, Contact) and is_idle(part)
-    return Link(part=part, acts=acts, reads=reads, facts=facts, idle=idle)
+    starts = not idle and can_start(scene, part, facts, (own | read).difference(place), bool(reads))
+    return Link(part=part, acts=acts, reads=reads, facts=facts, idle=idle, starts=starts)
 
 
 def is_idle(contact: Contact) -> bool:
@@ -134,11 +139,8 @@ def _motions(scene: Scene, part: Element | Contact | MatrixElement) -> tuple[set
         forms = [direction.form for direction in directions]
     else:
         forms = list(part.local_coordinates())
+        if isinstance(part, Force):
+            forms = forms[:1]  # it acts on the first; the others are what its value looks at
     own = {name for form in forms for name in scene.expand(form).motions}
     read = {m for uses in part.uses().values() for name in uses.motions for m in scene.motion(name).motions}
     return own, read
-
-
-def uses_time(part: Part) -> bool:
-    """Whether a slot of a part is an expression of time."""
-    return any(expression_uses(value).time for value in part.expressions().values())

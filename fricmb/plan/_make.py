@@ -10,7 +10,7 @@ from fricmb.plan._graph import coupling, narrow_order
 from fricmb.plan._links import Link, Links, links_of
 from fricmb.plan._plan import Island, Plan
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
-from fricmb.plan._rest import can_start, is_held, moving_motions
+from fricmb.plan._rest import is_held
 from fricmb.scene import Body, Contact, Driven, Element, MatrixElement, ModalBody, Part, Scene
 
 #: Up to this many degrees of freedom dense matrices are as fast as anything.
@@ -54,7 +54,7 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     found = scene._cache.get(key)
     if found is None:
         found = scene._cache[key] = _make(scene, wanted)
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def _make(scene: Scene, wanted: Wanted | None) -> Plan:
@@ -132,7 +132,6 @@ def _inside(
 
 
 def _islands(scene: Scene, links: Links, kept: Sequence[int]) -> tuple[Island, ...]:
-    moving = moving_motions(scene)
     owner = {name: body.name for body in scene.bodies for name in body.dof_names}
     place = {part.name: i for i, part in enumerate(scene.parts)}
     found = []
@@ -140,13 +139,14 @@ def _islands(scene: Scene, links: Links, kept: Sequence[int]) -> tuple[Island, .
         held = {id(link): link for dof in group for link in links.acting[dof]}
         inside = sorted(held.values(), key=lambda link: place[link.part.name])
         dofs = tuple(scene.dof_names[i] for i in group)
+        bodies = tuple(dict.fromkeys(owner[name] for name in dofs))
         found.append(
             Island(
                 dofs=dofs,
                 parts=tuple(link.part.name for link in inside),
-                bodies=tuple(dict.fromkeys(owner[name] for name in dofs)),
-                inert=not any(can_start(scene, link, moving) for link in inside),
-                held=is_held(scene, dofs, inside),
+                bodies=bodies,
+                inert=not any(link.starts for link in inside),
+                held=is_held(scene, bodies, [link.part for link in inside]),
             )
         )
     return tuple(found)

@@ -72,6 +72,8 @@ def resting(scene: Scene, islands: Iterable[Island]) -> list[Omission]:
     place = {name: i for i, name in enumerate(scene.dof_names)}
     found = []
     for island in islands:
+        if not island.inert:
+            continue
         places = [place[name] for name in island.dofs]
         if island.rests(q[places], v[places]):
             names = (*island.dofs, *island.parts)

@@ -1,56 +1,55 @@
-"""Islands that stay at rest, provably: nothing in them can set anything in motion."""
+"""What stays at rest, provably: parts that cannot set anything in motion."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Set
+from typing import Any
 
-from fricmb.plan._links import Link, uses_time
-from fricmb.scene import Contact, Element, ModalBody, Scene
+from fricmb.scene import Contact, Element, ModalBody, Part, Scene, expression_uses
 from fricmb.values import value_of
 
 
-def moving_motions(scene: Scene) -> frozenset[str]:
-    """Motions of driven bodies that really move, or may."""
-    return frozenset(f"{body.name}.{c}" for body in scene.driven for c in body.moving)
+def can_start(scene: Scene, part: Part, facts: Any, prescribed: Set[str], reads: bool) -> bool:
+    """Whether a part may set bodies in motion that rest at the origin.
 
-
-def can_start(scene: Scene, link: Link, moving: frozenset[str]) -> bool:
-    """Whether a part may set bodies in motion that rest at the origin."""
-    part = link.part
-    if link.idle:
-        return False
+    Parameters
+    ----------
+    scene : Scene
+    part : Part
+    facts : ElementFacts or None
+        Of an element: which terms it has.
+    prescribed : set of str
+        Prescribed motions that it depends on.
+    reads : bool
+        Whether its expressions look at coordinates.
+    """
     if isinstance(part, Contact):
-        return _contact_can_start(scene, part, moving)
+        return _contact_can_start(scene, part, prescribed)
     if not isinstance(part, Element):
         return False  # matrices give forces in proportion to position and velocity
-    found = link.facts
-    forms = [scene.expand(form) for form in part.local_coordinates()]
-    prescribed = any(name not in scene.dof_names for form in forms for name in form.motions)
-    shifted = any(form.constant != 0.0 for form in forms)
-    return bool(
-        prescribed or shifted or found.constant or found.signal or found.nonlinear or link.reads or uses_time(part)
-    )
+    shifted = any(scene.expand(form).constant != 0.0 for form in part.local_coordinates())
+    timed = any(expression_uses(value).time for value in part.expressions().values())
+    return bool(prescribed or shifted or facts.constant or facts.signal or facts.nonlinear or reads or timed)
 
 
-def _contact_can_start(scene: Scene, part: Contact, moving: frozenset[str]) -> bool:
+def _contact_can_start(scene: Scene, part: Contact, prescribed: Set[str]) -> bool:
     """Friction opposes slip: only a moving partner, a slide or a law with a memory sets anything in motion.
 
     Normal forces that are not a number, and laws that never stick, are not argued about: those contacts are run.
     """
-    forms = [scene.expand(direction.form) for direction in part.directions()]
+    moving = {f"{body.name}.{c}" for body in scene.driven for c in body.moving}
     return (
         part.slide is not None
         or part.normal_kind != "constant"
         or bool(part.law.states)
         or part.law.kind == "smooth"
-        or any(name in moving for form in forms for name in form.motions)
+        or not moving.isdisjoint(prescribed)
     )
 
 
-def is_held(scene: Scene, dofs: Sequence[str], links: Sequence[Link]) -> bool:
-    """Whether forces on degrees of freedom depend on where these are."""
-    if any(not isinstance(link.part, Contact) for link in links):
+def is_held(scene: Scene, bodies: Iterable[str], parts: Iterable[Part]) -> bool:
+    """Whether forces on bodies depend on where these are."""
+    if any(not isinstance(part, Contact) for part in parts):
         return True
-    bodies = {name.partition(".")[0] for name in dofs}
-    modal = [scene[name] for name in bodies]
+    modal = (scene[name] for name in bodies)
     return any(max(value_of(body.frequencies)) > 0.0 for body in modal if isinstance(body, ModalBody))

@@ -29,10 +29,10 @@ class Mechanics(Protocol):
     def smooth(self) -> Flags:
         """Whether each contact has a force law that never sticks (n_c,)."""
 
-    def kinetic(self, samples: Samples) -> Floats:
-        """Kinetic energy (n_t,)."""
+    def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
+        """Kinetic energy (n_t,); ``moving``: degrees of freedom that do not rest throughout, if known."""
 
-    def potential(self, samples: Samples) -> Floats:
+    def potential(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
@@ -99,10 +99,14 @@ class Piece:
 
 @dataclass(frozen=True, kw_only=True)
 class Record:
-    """Samples, and for each time the number of the piece it is from (None: there is one piece)."""
+    """Samples, and for each time the number of the piece it is from (None: there is one piece).
+
+    ``moving``: degrees of freedom that move; None: all may.
+    """
 
     samples: Samples
     piece: Ints | None = None
+    moving: Ints | None = None
 
 
 class Run:
@@ -146,7 +150,7 @@ class Run:
     def rows(self) -> Record:
         """Accepted steps of all pieces; the time where two meet is there twice, like a transition."""
         if len(self.pieces) == 1:
-            return Record(samples=self.pieces[0].rows())
+            return Record(samples=self.pieces[0].rows(), moving=self.pieces[0].trajectory.moving)
         parts = [self._add(k, piece.rows()) for k, piece in enumerate(self.pieces)]
         return Record(
             samples=concatenate(parts), piece=np.repeat(np.arange(len(parts)), [part.t.size for part in parts])
@@ -155,7 +159,8 @@ class Run:
     def sample(self, t: Floats) -> Record:
         """Values at times within the run, in any order; right-hand values where two pieces meet."""
         if len(self.pieces) == 1:
-            return Record(samples=self.pieces[0].trajectory.sample(t))
+            trajectory = self.pieces[0].trajectory
+            return Record(samples=trajectory.sample(t), moving=trajectory.moving)
         piece = np.searchsorted([p.t_start for p in self.pieces[1:]], t, side="right").astype(np.int64)
         order = np.argsort(piece, kind="stable")
         parts = [self._add(k, self.pieces[k].trajectory.sample(t[piece == k])) for k in np.unique(piece)]
@@ -168,7 +173,7 @@ class Run:
         samples, piece = record.samples, record.piece
         if piece is None:
             mechanics = self.pieces[0].mechanics
-            return mechanics.kinetic(samples), mechanics.potential(samples)
+            return mechanics.kinetic(samples, record.moving), mechanics.potential(samples, record.moving)
         kinetic, potential = np.empty(samples.t.size), np.empty(samples.t.size)
         for k in np.unique(piece):
             mine = piece == k
@@ -236,8 +241,10 @@ def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Float
     return times.clip(t_start, t_end)
 
 
-def is_finite(samples: Samples) -> bool:
-    """Whether every number is finite."""
+def is_finite(samples: Samples, moving: Ints | None = None) -> bool:
+    """Whether every number is finite; of degrees of freedom those that move (None: all)."""
+    if moving is not None:
+        samples = replace(samples, q=samples.q[moving], v=samples.v[moving])
     return all(bool(np.isfinite(getattr(samples, f.name)).all()) for f in fields(Samples) if f.name != "mode")
 
 

@@ -290,7 +290,7 @@ def _row(values: Floats, index: int) -> Floats:
 
 def _finite(record: Record) -> Record:
     samples = record.samples
-    if is_finite(samples):
+    if is_finite(samples, record.moving):
         return record
     t = float(samples.t[first_bad(samples)])
     raise IntegrationError(f"the run is not finite at t = {t:.10g}", t=t, reason="a value is not finite")

@@ -85,10 +85,10 @@ class Mechanics:
     def smooth(self):
         return np.array([False])
 
-    def kinetic(self, samples):
+    def kinetic(self, samples, moving=None):
         return 0.5 * samples.v[0] ** 2
 
-    def potential(self, samples):
+    def potential(self, samples, moving=None):
         return 0.5 * self.stiffness * samples.q[0] ** 2
 
     def signals(self, t):
