@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[1]
 
 #: A module imports, when it is itself imported, only from its own floor or a lower one.
 FLOORS = (
-    {"errors", "integrate", "solution", "values"},
+    {"errors", "integrate", "reduction", "solution", "values"},
     {"laws", "normal"},
     {"scene"},
     {"plan"},

@@ -15,7 +15,7 @@ from fricmb._simulate._members import Idle, Member, contact_names, idle_of, memb
 from fricmb.errors import SceneError
 from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
-from fricmb.plan import Plan, make_plan
+from fricmb.plan import Plan, make_plan, truncated
 from fricmb.scene import Scene
 from fricmb.solution import Flags, Motion, Names, Origin
 from fricmb.system import System
@@ -28,7 +28,7 @@ class SceneMechanics:
     Attributes
     ----------
     scene, placed : Scene
-        As given, and with driven bodies where they are.
+        As given, and with driven bodies where they are and as many modes as are run.
     plan : Plan
     observe : tuple of str or None
     shift : mapping of str to float
@@ -167,7 +167,7 @@ def mechanics_of(
     key = ("mechanics", observe, tuple(sorted(by.items())), together)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):
-        placed = shifted(scene, by)
+        placed = truncated(shifted(scene, by)).scene
         found = scene._cache[key] = SceneMechanics(
             scene=scene, placed=placed, plan=make_plan(placed, observe), observe=observe, shift=by, together=together
         )

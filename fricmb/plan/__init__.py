@@ -2,5 +2,6 @@
 
 from fricmb.plan._make import make_plan
 from fricmb.plan._plan import Island, Omission, Plan, Selection
+from fricmb.plan._truncate import truncated
 
-__all__ = ["Island", "Omission", "Plan", "Selection", "make_plan"]
+__all__ = ["Island", "Omission", "Plan", "Selection", "make_plan", "truncated"]

@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from fricmb.plan._rest import can_start
-from fricmb.scene import Contact, Element, Force, MatrixElement, Part, Scene
+from fricmb.scene import Contact, Element, Force, MatrixElement, ModalBody, Part, Scene
 from fricmb.values import value_of
 
 
@@ -96,10 +96,13 @@ class Links:
 def links_of(scene: Scene) -> Links:
     """The links of a scene; those of parts that another scene of its family has as well are taken from there."""
     place = {name: i for i, name in enumerate(scene.dof_names)}
-    shared = scene._shared.setdefault("links", {})
+    names, shared = scene._shared.get("links", ((), {}))
+    if names != scene.dof_names:  # links hold places of degrees of freedom
+        shared = {}
+        scene._shared["links"] = scene.dof_names, shared
     links = []
     for part in scene.parts:
-        if not isinstance(part, Element | Contact | MatrixElement):
+        if not isinstance(part, Element | Contact | MatrixElement) and not couples_modes(part):
             continue
         found = shared.get(part.name)
         if found is None or found.part is not part:
@@ -110,7 +113,12 @@ def links_of(scene: Scene) -> Links:
     return Links(tuple(links), len(place))
 
 
-def _link(scene: Scene, part: Element | Contact | MatrixElement, place: dict[str, int]) -> Link:
+def couples_modes(part: Part) -> bool:
+    """Whether a part is a modal body whose damping ties its modes together."""
+    return isinstance(part, ModalBody) and part.damping is not None
+
+
+def _link(scene: Scene, part: Part, place: dict[str, int]) -> Link:
     # what is left of an element for its numbers is known to the equations, one floor up
     from fricmb.equations import element_facts
 
@@ -129,15 +137,17 @@ def is_idle(contact: Contact) -> bool:
     return constant and float(value_of(contact.normal_force)) <= 0.0 and not contact.law.states
 
 
-def _motions(scene: Scene, part: Element | Contact | MatrixElement) -> tuple[set[str], set[str]]:
+def _motions(scene: Scene, part: Part) -> tuple[set[str], set[str]]:
     """Names of dofs and prescribed motions that a part acts on, and that its expressions read."""
     if isinstance(part, MatrixElement):
         return set(part.dofs), set()
+    if isinstance(part, ModalBody):
+        return set(part.dof_names), set()
     if isinstance(part, Contact):
         normal = part.normal_direction()
         directions = (*part.directions(), *(() if normal is None else (normal,)))
         forms = [direction.form for direction in directions]
-    else:
+    elif isinstance(part, Element):
         forms = list(part.local_coordinates())
         if isinstance(part, Force):
             forms = forms[:1]  # it acts on the first; the others are what its value looks at

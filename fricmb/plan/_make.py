@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from fricmb.errors import unknown_name
 from fricmb.plan._graph import coupling, narrow_order
@@ -11,6 +11,7 @@ from fricmb.plan._links import Link, Links, links_of
 from fricmb.plan._plan import Island, Plan
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
+from fricmb.plan._truncate import truncated
 from fricmb.scene import Body, Contact, Driven, Element, MatrixElement, ModalBody, Part, Scene
 
 #: Up to this many degrees of freedom dense matrices are as fast as anything.
@@ -49,11 +50,14 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     UnknownNameError
         If a name in ``observe`` does not exist.
     """
+    short = truncated(scene)
+    scene = short.scene
     wanted = None if observe is None else _targets(scene, tuple(observe))
     key = ("plan", None if wanted is None else wanted.key)
     found = scene._cache.get(key)
     if found is None:
-        found = scene._cache[key] = _make(scene, wanted)
+        plan = _make(scene, wanted)
+        found = scene._cache[key] = replace(plan, notes=(*short.notes, *plan.notes))
     return found
 
 
@@ -109,9 +113,7 @@ def _sources(links: Links, wanted: Wanted) -> set[int]:
     }
 
 
-def _inside(
-    scene: Scene, links: Links, kept: set[int], wanted: Wanted | None
-) -> tuple[list[Link], list[Part]]:
+def _inside(scene: Scene, links: Links, kept: set[int], wanted: Wanted | None) -> tuple[list[Link], list[Part]]:
     """Links that are built, and all parts with bodies and driven bodies."""
     named = set() if wanted is None else wanted.parts
     inside = []

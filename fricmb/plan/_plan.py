@@ -54,7 +54,7 @@ class Island:
     @property
     def selection(self) -> Selection:
         """What to build for it."""
-        return Selection(dofs=self.dofs, parts=(*self.bodies, *self.parts))
+        return Selection(dofs=self.dofs, parts=tuple(dict.fromkeys((*self.bodies, *self.parts))))
 
     def rests(self, q: Any, v: Any) -> bool:
         """Whether it stays where it is, provably, from positions and velocities (n,) of its own."""

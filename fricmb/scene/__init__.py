@@ -12,6 +12,7 @@ from fricmb.scene._force import Force
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
+from fricmb.scene._modal_from import modal_matrices
 from fricmb.scene._part import GROUND, End, Ground, Part
 from fricmb.scene._point import PointDamper, PointSpring
 from fricmb.scene._scene import Scene
@@ -46,6 +47,7 @@ __all__ = [
     "coordinate",
     "direction",
     "expression_uses",
+    "modal_matrices",
     "parameter",
     "speed",
     "t",

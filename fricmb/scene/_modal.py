@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.errors import unknown_name
 from fricmb.scene._arrays import check_array, check_vector
@@ -37,14 +38,28 @@ class ModalBody(Part):
         Any of "x", "y", "z".
     position, velocity : dict of str to float
         Initial modal coordinates, ``{"mode1": 1.0}``; default 0.
+    damping : array_like, (n, n), optional
+        Modal damping matrix, where damping couples modes (as a C that is not proportional does): the force
+        ``-damping eta'``; then ``damping_ratios`` must be 0.
+    truncation : float, optional
+        Share of the elastic displacement at contacts and loads that may be wrong: higher modes are replaced by a few
+        residual ones that keep the static flexibility; the plan prints how many, and the estimate.
+    residual : int
+        How many of the last modes are such residual ones already.
+    neglected : float
+        Share of the static flexibility that those carry: from :meth:`from_matrices` and :meth:`from_mesh`.
 
     Raises
     ------
     SceneError
         If a value or a shape cannot be.
+
+    See Also
+    --------
+    from_matrices, from_mesh
     """
 
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "axes")
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "axes", "truncation", "residual", "neglected")
 
     _: KW_ONLY
     frequencies: Any
@@ -54,6 +69,10 @@ class ModalBody(Part):
     axes: str = "x"
     position: Mapping[str, Any] = field(default_factory=dict)
     velocity: Mapping[str, Any] = field(default_factory=dict)
+    damping: Any = None
+    truncation: float | None = None
+    residual: int = 0
+    neglected: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -67,7 +86,9 @@ class ModalBody(Part):
         if self.masses is not None:
             self._set("masses", check_vector(self, "masses", self.masses, n, above=0.0))
         self._set("shapes", MappingProxyType(self._checked_shapes(n)))
-        modes = tuple(f"mode{i + 1}" for i in range(n))
+        self._check_damping(n)
+        self._check_reduction(n)
+        modes = tuple(name.partition(".")[2] for name in self.dof_names)
         for argument in ("position", "velocity"):
             given = check_keys(self, argument, getattr(self, argument), modes)
             values = {key: self._number(f"{argument}[{key!r}]", value) for key, value in given.items()}
@@ -89,6 +110,129 @@ class ModalBody(Part):
             checked[point] = array
         return checked
 
+    def _check_damping(self, n: int) -> None:
+        if self.damping is None:
+            return
+        matrix = check_array(self, "damping", self.damping)
+        if matrix.shape != (n, n):
+            self._refuse("damping", matrix.shape, f"a matrix of shape ({n}, {n}), or None")
+        if np.any(value_of(self.damping_ratios)):
+            self._refuse("damping_ratios", self.damping_ratios, "0 beside a damping matrix, which says all")
+        self._set("damping", matrix)
+
+    def _check_reduction(self, n: int) -> None:
+        if self.truncation is not None:
+            self._set("truncation", self._number("truncation", self.truncation, above=0.0))
+        if isinstance(self.residual, bool) or not isinstance(self.residual, int) or not 0 <= self.residual <= n:
+            self._refuse("residual", self.residual, f"an integer from 0 to {n}, the number of modes")
+        self._set("neglected", self._number("neglected", self.neglected, minimum=0.0))
+
+    @classmethod
+    def from_matrices(
+        cls,
+        name: str,
+        *,
+        M: Any,
+        K: Any,
+        C: Any = None,
+        points: Mapping[str, Any],
+        n_modes: int | None = None,
+        axes: str = "x",
+        damping_ratios: Any = None,
+        residual: bool = True,
+        **fields: Any,
+    ) -> ModalBody:
+        """Modes of ``M q'' + C q' + K q = f``, from an eigenproblem.
+
+        Parameters
+        ----------
+        name : str
+        M, K : (n, n) array or scipy sparse
+            Symmetric; M positive definite, K positive semidefinite (rigid modes get the frequency 0 exactly).
+        C : (n, n) array or scipy sparse, optional
+            Damping; not proportional, it couples the modes and is kept as their matrix ``damping``.
+        points : dict of str to (len(axes),) int or (len(axes), n)
+            Degree of freedom along each axis, or the rows that give the displacement.
+        n_modes : int, optional
+            How many, lowest first; default all.
+        axes : str
+        damping_ratios : float or array_like, optional
+            In place of C.
+        residual : bool
+            Whether residual modes keep the static flexibility at the points where modes are left out: as many more
+            modes as there are independent directions at the points.
+        **fields
+            Of :class:`ModalBody`: position, velocity, truncation.
+
+        Returns
+        -------
+        ModalBody
+
+        Raises
+        ------
+        SceneError
+            For matrices of the wrong shape, not symmetric, singular or indefinite.
+        """
+        from fricmb.scene._modal_from import from_matrices
+
+        return from_matrices(cls, name, M, K, C, points, n_modes, axes, damping_ratios, residual, fields)
+
+    @classmethod
+    def from_mesh(
+        cls,
+        name: str,
+        mesh: Any,
+        *,
+        young: float,
+        poisson: float,
+        density: float,
+        points: Mapping[str, Any],
+        n_modes: int,
+        fixed: Any = None,
+        thickness: float = 1.0,
+        plane: str = "stress",
+        damping_ratios: Any = 0.0,
+        residual: bool = True,
+        **fields: Any,
+    ) -> ModalBody:
+        """Modes of a linear-elastic finite element mesh of scikit-fem (extra ``fem``), in elements of second order.
+
+        Parameters
+        ----------
+        name : str
+        mesh : skfem.MeshTri, MeshQuad, MeshTet or MeshHex
+            Axes x, y (and z) of the body are those of the mesh.
+        young, poisson, density : float
+            Young's modulus, Poisson's ratio, mass per volume.
+        points : dict of str to coordinates
+            Within the mesh.
+        n_modes : int
+        fixed : str or callable, optional
+            Boundary that is held: a name in the mesh, or a function of coordinates (d, n); default: free.
+        thickness : float
+            Of a plane mesh.
+        plane : {"stress", "strain"}
+        damping_ratios : float or array_like
+        residual : bool
+            As in :meth:`from_matrices`.
+        **fields
+            Of :class:`ModalBody`: position, velocity, truncation.
+
+        Returns
+        -------
+        ModalBody
+
+        Raises
+        ------
+        SceneError
+        ImportError
+            Without scikit-fem.
+        """
+        from fricmb.scene._modal_from import from_mesh
+
+        solid = {"young": young, "poisson": poisson, "density": density, "thickness": thickness}
+        return from_mesh(cls, name, mesh, solid, plane, fixed, points, n_modes, damping_ratios, residual, fields)
+
     @property
     def n_modes(self) -> int:
         """Number of modes."""
@@ -96,8 +240,20 @@ class ModalBody(Part):
 
     @property
     def dof_names(self) -> tuple[str, ...]:
-        """``"name.mode1"``, ..."""
-        return tuple(f"{self.name}.mode{i + 1}" for i in range(self.n_modes))
+        """``"name.mode1"``, ... and ``"name.residual1"``, ..."""
+        plain = self.n_modes - self.residual
+        modes = [f"{self.name}.mode{i + 1}" for i in range(plain)]
+        return (*modes, *(f"{self.name}.residual{i + 1}" for i in range(self.residual)))
+
+    def complex_modes(self) -> tuple[NDArray[np.complex128], dict[str, NDArray[np.complex128]]]:
+        """Poles (n_poles,) with Im >= 0, by rising magnitude, and shapes {point: (len(axes), n_poles)} of the body.
+
+        Of the body alone.  With damping that couples modes these are the modes that vibrate freely, ``exp(pole t)``;
+        shapes have their largest entry 1 over all points.
+        """
+        from fricmb.scene._modal_from import complex_modes
+
+        return complex_modes(self)
 
     def point(self, name: str) -> Point:
         """A named point: an end for elements and contacts.

@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.equations import Template, element_template, force_expression, force_terms, numbers, signal_expression
 from fricmb.errors import SceneError
 from fricmb.integrate._problem import Elements, Floats, Linear
-from fricmb.scene import Body, Element, Force, MatrixElement, ModalBody, PointDamper, PointSpring
+from fricmb.scene import Body, Element, Force, MatrixElement, ModalBody, PointDamper, PointSpring, modal_matrices
 from fricmb.system._motions import Motions
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
 from fricmb.values import value_of
@@ -60,11 +60,15 @@ class Structure:
             mass = float(value_of(body.mass))
             self.M.extend((i, i, mass) for i in places)
             return
-        omega = np.asarray(value_of(body.frequencies), dtype=float)
-        m = np.ones_like(omega) if body.masses is None else np.asarray(value_of(body.masses), dtype=float)
-        zeta = np.broadcast_to(np.asarray(value_of(body.damping_ratios), dtype=float), omega.shape)
-        omega, m, zeta = omega[built], m[built], zeta[built]
-        stiffness, damping = m * omega**2, 2.0 * zeta * omega * m
+        m, stiffness, damping = modal_matrices(body)
+        m, stiffness = m[built], stiffness[built]
+        if damping.ndim == 2:
+            damping = damping[np.ix_(built, built)]
+            pairs = np.argwhere(damping).tolist()
+            self.C.extend((places[i], places[j], float(damping[i, j])) for i, j in pairs)
+            damping = np.zeros(len(built))
+        else:
+            damping = damping[built]
         self.M.extend((i, i, float(v)) for i, v in zip(places, m, strict=True))
         self.K.extend((i, i, float(v)) for i, v in zip(places, stiffness, strict=True) if v != 0.0)
         self.C.extend((i, i, float(v)) for i, v in zip(places, damping, strict=True) if v != 0.0)

@@ -1,0 +1,16 @@
+"""From large structures to few modes: eigenproblems, residual flexibility, finite element meshes."""
+
+from fricmb.reduction._matrices import reduce_matrices
+from fricmb.reduction._mesh import mesh_matrices
+from fricmb.reduction._modes import Reduced
+from fricmb.reduction._residual import Residual, flexibility, modal_residual, modes_to_keep
+
+__all__ = [
+    "Reduced",
+    "Residual",
+    "flexibility",
+    "mesh_matrices",
+    "modal_residual",
+    "modes_to_keep",
+    "reduce_matrices",
+]

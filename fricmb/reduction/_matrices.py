@@ -1,0 +1,216 @@
+"""Modes from mass, damping and stiffness matrices, dense or sparse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+from scipy.sparse.linalg import eigsh, splu
+
+from fricmb.errors import SceneError
+from fricmb.reduction._modes import Floats, Reduced, ritz, split_damping
+from fricmb.values import is_sparse
+
+#: Up to this size, or where more than a third of the modes are wanted, all are computed by the dense solver.
+DENSE = 600
+#: Relative asymmetry that counts as round-off.
+SYMMETRIC = 1e-9
+#: Inertia that is added to the stiffness to make it regular, relative to K/M: rigid modes are found beside it.
+SHIFT = 1e-7
+
+
+def reduce_matrices(
+    label: str, M: Any, K: Any, C: Any, points: Mapping[str, Any], n_axes: int, n_modes: int | None, residual: bool
+) -> Reduced:
+    """Modes of ``M q'' + C q' + K q = f``.
+
+    Parameters
+    ----------
+    label : str
+        Who asks, for messages.
+    M, K, C : (n, n) array or scipy sparse
+        Symmetric, M positive definite, K positive semidefinite; C may be anything, or None.
+    points : dict of str to (n_axes,) int or (n_axes, n)
+        Degree of freedom along each axis, or the rows that give the displacement from all degrees of freedom.
+    n_axes : int
+    n_modes : int or None
+        How many modes, lowest first; None: all.
+    residual : bool
+        Whether to add residual vectors of the points for the modes that are left out.
+
+    Raises
+    ------
+    SceneError
+    """
+    M, K = _checked(label, "M", M), _checked(label, "K", K)
+    n = M.shape[0]
+    _same_shape(label, "K", K, n)
+    _symmetric(label, "M", M)
+    _symmetric(label, "K", K)
+    _positive_definite(label, M)
+    if C is not None:
+        C = _checked(label, "C", C)
+        _same_shape(label, "C", C, n)
+    rows = {name: _rows(label, name, value, n_axes, n) for name, value in points.items()}
+    if n_modes is not None and (isinstance(n_modes, bool) or not isinstance(n_modes, int) or not 1 <= n_modes <= n):
+        raise SceneError(f"{label}: n_modes must be an integer from 1 to {n} (rows of M), or None; got {n_modes!r}")
+    omega, modes = _modes(label, M, K, n if n_modes is None else n_modes)
+    neglected, extra = 0.0, 0
+    if residual and omega.size < n:
+        added, more, neglected = _residual(M, K, omega, modes, np.vstack(list(rows.values())))
+        omega, modes, extra = np.concatenate([omega, added]), np.hstack([modes, more]), added.size
+    full = np.zeros((omega.size, omega.size)) if C is None else modes.T @ (C @ modes)
+    ratios, damping = split_damping(full, omega)
+    shapes = {name: row @ modes for name, row in rows.items()}
+    return Reduced(
+        frequencies=omega, damping_ratios=ratios, damping=damping, shapes=shapes, residual=extra, neglected=neglected
+    )
+
+
+def _modes(label: str, M: Any, K: Any, count: int) -> tuple[Floats, Floats]:
+    """The lowest frequencies and modes of unit modal mass; frequencies of rigid modes exactly 0."""
+    n = M.shape[0]
+    if n <= DENSE or 3 * count > n:
+        w2, modes = scipy.linalg.eigh(_dense(K), _dense(M), subset_by_index=[0, count - 1])
+    else:
+        shift = SHIFT * float(K.diagonal().sum()) / float(M.diagonal().sum())
+        w2, modes = eigsh(_sparse(K), k=count, M=_sparse(M), sigma=-max(shift, 1e-300), which="LM")
+        order = np.argsort(w2)
+        w2, modes = w2[order], modes[:, order]
+    size = _norm(K)
+    round_off = 1e3 * np.finfo(float).eps * size * np.sum(modes**2, axis=0)
+    low = int(np.argmin(w2))
+    if w2[low] < -round_off[low]:
+        raise SceneError(
+            f"{label}: K must be positive semidefinite; it has a mode of omega^2 = {w2[low]:.3g} (a structure that"
+            " is unstable at rest cannot be given by modes: use MatrixElement)"
+        )
+    omega: Floats = np.sqrt(np.where(np.abs(w2) <= round_off, 0.0, w2))
+    return omega, np.asarray(modes)
+
+
+def _residual(M: Any, K: Any, omega: Floats, modes: Floats, rows: Floats) -> tuple[Floats, Floats, float]:
+    """Frequencies and modes of the residual vectors of loads along ``rows``; the share of flexibility they carry."""
+    loads = rows.T - M @ (modes @ (modes.T @ rows.T))
+    shift = SHIFT * float(K.diagonal().sum()) / float(M.diagonal().sum())
+    solve = _solver(K, M, shift)
+    x = solve(loads)
+    x = solve(loads + shift * (M @ x))  # takes the shift out again, to its square
+    x -= modes @ (modes.T @ (M @ x))
+    left = np.maximum(np.sum(rows.T * x, axis=0), 0.0)
+    kept = np.sum(np.divide((rows @ modes) ** 2, omega**2, out=np.zeros_like(rows @ modes), where=omega > 0.0), axis=1)
+    share = np.divide(left, left + kept, out=np.zeros_like(left), where=left + kept > 0.0)
+    x = x[:, left > 1e-14 * (left + kept)]
+    if x.shape[1] == 0:
+        return np.zeros(0), np.zeros((M.shape[0], 0)), 0.0
+    frequencies, more = ritz(x, x.T @ (K @ x), x.T @ (M @ x))
+    return frequencies, more, float(share.max())
+
+
+def _solver(K: Any, M: Any, shift: float) -> Callable[[Floats], Floats]:
+    """Solves with K + shift M."""
+    if is_sparse(K) or is_sparse(M):
+        factors: Any = splu((_sparse(K) + shift * _sparse(M)).tocsc())
+        return lambda b: factors.solve(b)
+    factor = scipy.linalg.cho_factor(_dense(K) + shift * _dense(M))
+    return lambda b: np.asarray(scipy.linalg.cho_solve(factor, b))
+
+
+# ---- checks
+
+
+def _checked(label: str, name: str, value: Any) -> Any:
+    """A square float matrix of finite numbers."""
+    if is_sparse(value):
+        matrix = value.tocsr().astype(float)
+        data = matrix.data
+    else:
+        try:
+            matrix = np.array(value, dtype=float)
+        except (TypeError, ValueError):
+            raise SceneError(f"{label}: {name} must be a matrix of numbers, got {value!r}") from None
+        data = matrix
+    if len(matrix.shape) != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
+        raise SceneError(f"{label}: {name} must be a square matrix, got shape {matrix.shape}")
+    if not np.isfinite(data).all():
+        raise SceneError(f"{label}: {name} must hold finite numbers")
+    return matrix
+
+
+def _same_shape(label: str, name: str, matrix: Any, n: int) -> None:
+    if matrix.shape != (n, n):
+        raise SceneError(f"{label}: {name} must have the shape of M, {(n, n)}; got {matrix.shape}")
+
+
+def _symmetric(label: str, name: str, matrix: Any) -> None:
+    difference = abs(matrix - matrix.T)
+    worst = float(difference.max())
+    if worst > SYMMETRIC * float(abs(matrix).max()):
+        place = difference.argmax()
+        i, j = divmod(int(place), matrix.shape[0])
+        raise SceneError(
+            f"{label}: {name} must be symmetric; {name}[{i}, {j}] and {name}[{j}, {i}] differ by {worst:.3g}"
+        )
+
+
+def _positive_definite(label: str, M: Any) -> None:
+    """Refuse a mass matrix with a pivot that is not positive; the message names the row."""
+    n = M.shape[0]
+    bad = np.flatnonzero(~(M.diagonal() > 0.0))
+    if bad.size:
+        raise SceneError(f"{label}: M must be positive definite; M[{bad[0]}, {bad[0]}] = {M.diagonal()[bad[0]]:.3g}")
+    scale = 1.0 / np.sqrt(M.diagonal())
+    if is_sparse(M):
+        scaled = _scaled(M, scale)
+        try:
+            found = splu(scaled.tocsc(), diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            pivots = found.U.diagonal()
+        except RuntimeError:
+            pivots = np.zeros(1)
+        good = bool((pivots > n * np.finfo(float).eps).all())
+    else:
+        good = bool(np.linalg.eigvalsh(M * scale[:, None] * scale)[0] > n * np.finfo(float).eps)
+    if not good:
+        raise SceneError(f"{label}: M must be positive definite; it is singular or indefinite")
+
+
+def _rows(label: str, name: str, value: Any, n_axes: int, n: int) -> Floats:
+    """Rows (n_axes, n) that give the displacement of a point."""
+    accepted = f"{n_axes} degree(s) of freedom (0 to {n - 1}), or a matrix of shape ({n_axes}, {n})"
+    given = value.toarray() if is_sparse(value) else np.asarray(value)
+    if given.dtype.kind in "iu" and given.shape in ((n_axes,), () if n_axes == 1 else (n_axes,)):
+        places = np.atleast_1d(given)
+        if (places < 0).any() or (places >= n).any():
+            raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got {value!r}")
+        return np.eye(n)[places] if n <= DENSE else _unit_rows(places, n)
+    if given.dtype.kind not in "iuf" or given.shape not in ((n_axes, n), (n,) if n_axes == 1 else (n_axes, n)):
+        raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got an array of shape {given.shape}")
+    if not np.isfinite(given).all():
+        raise SceneError(f"{label}: points[{name!r}] must hold finite numbers")
+    return given.reshape(n_axes, n).astype(float)
+
+
+def _unit_rows(places: Sequence[int] | Any, n: int) -> Floats:
+    rows = np.zeros((len(places), n))
+    rows[np.arange(len(places)), places] = 1.0
+    return rows
+
+
+def _dense(A: Any) -> Floats:
+    return np.asarray(A.toarray() if is_sparse(A) else A)
+
+
+def _sparse(A: Any) -> Any:
+    return A.tocsc() if is_sparse(A) else scipy.sparse.csc_array(A)
+
+
+def _scaled(A: Any, scale: Floats) -> Any:
+    side = scipy.sparse.diags(scale)
+    return side @ A @ side
+
+
+def _norm(A: Any) -> float:
+    return float(abs(A).sum(axis=1).max())
