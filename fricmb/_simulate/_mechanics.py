@@ -87,6 +87,11 @@ class SceneMechanics:
         kinds = {contact.name: contact.law.kind for contact in self.placed.contacts}
         return np.array([kinds[name] == "smooth" for name in self.names.contacts], dtype=np.bool_)
 
+    def fastest(self) -> float:
+        """Largest angular frequency of what was run; what rested was never built."""
+        built = [member.system.problem.omega for member in self.members if "system" in vars(member)]
+        return max((float(omega.max(initial=0.0)) for omega in built), default=0.0)
+
     def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Kinetic energy (n_t,)."""
         return self._sum(samples, moving, System.kinetic)

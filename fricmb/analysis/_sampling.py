@@ -97,7 +97,7 @@ def uniform(
 
 def _first_interval(sol: Solution, begin: float, end: float) -> float:
     """Four samples in the shortest period of the structure, at least 1000 in all."""
-    omega = max((float(p.mechanics.problem.omega.max(initial=0.0)) for p in sol.run.pieces), default=0.0)
+    omega = max((p.mechanics.fastest() for p in sol.run.pieces), default=0.0)
     step = (end - begin) / 1000
     return min(step, np.pi / (2 * omega)) if omega > 0.0 else step
 

@@ -29,6 +29,9 @@ class Mechanics(Protocol):
     def smooth(self) -> Flags:
         """Whether each contact has a force law that never sticks (n_c,)."""
 
+    def fastest(self) -> float:
+        """Largest angular frequency of what was run."""
+
     def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Kinetic energy (n_t,); ``moving``: degrees of freedom that do not rest throughout, if known."""
 

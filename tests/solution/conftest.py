@@ -82,6 +82,9 @@ class Mechanics:
     def attach(self, trajectory):
         trajectory.attach(self.problem)
 
+    def fastest(self):
+        return 1.0
+
     def smooth(self):
         return np.array([False])
 
