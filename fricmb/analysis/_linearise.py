@@ -56,28 +56,21 @@ def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -
     g = contacts.W.T @ v - contacts.w - contacts.Wu @ u[1]
     g_X = np.zeros((g.size, X.size))
     g_X[:, 1 + n : 1 + 2 * n] = contacts.W.T
-    F, rate = np.zeros(g.size), np.zeros(n_z)
+    F, rate, r, N = np.zeros(g.size), np.zeros(n_z), np.zeros(problem.n_c), np.zeros(problem.n_c)
     force_z, rate_X, rate_z = np.zeros((n, n_z)), np.zeros((n_z, X.size)), np.zeros((n_z, n_z))
-    r, N = np.zeros(problem.n_c), np.zeros(problem.n_c)
     for k in range(problem.n_c):
         rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
         states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
         N[k], N_X = _normal(system, k, X)
         r[k] = float(np.linalg.norm(g[rows]))
-        W = contacts.W[:, rows]
-        if contacts.law[k] == LAW_SMOOTH:
-            F_k, rate[states], J = _smooth(system, k, g[rows], N[k], z[states])
-            d = F_k.size
-            F_X = J[:d, :d] @ g_X[rows] + np.outer(J[:d, d], N_X)
-            rate_X[states] = J[d:, :d] @ g_X[rows] + np.outer(J[d:, d], N_X)
-            rate_z[states, states] = J[d:, d + 1 :]
-            force_z[:, states] += W @ J[:d, d + 1 :]
-        else:
-            F_k, F_g, F_N = _slip(system, k, g[rows], r[k], N[k])
-            F_X = F_g @ g_X[rows] + np.outer(F_N, N_X)
-        F[rows] = F_k
-        force += W @ F_k + contacts.Wn[:, k] * (N[k] - contacts.N0[k])
-        force_X += W @ F_X + np.outer(contacts.Wn[:, k], N_X)
+        F[rows], rate[states], J = _friction(system, k, g[rows], float(r[k]), float(N[k]), z[states])
+        # J over (g, N, z) of (F, z')
+        d, W = F[rows].size, contacts.W[:, rows]
+        both_X = J[:, :d] @ g_X[rows] + np.outer(J[:, d], N_X)
+        rate_X[states], rate_z[states, states] = both_X[d:], J[d:, d + 1 :]
+        force += W @ F[rows] + contacts.Wn[:, k] * (N[k] - contacts.N0[k])
+        force_X += W @ both_X[:d] + np.outer(contacts.Wn[:, k], N_X)
+        force_z[:, states] += W @ J[:d, d + 1 :]
     state = slice(1, 1 + 2 * n)
     return Linearised(
         force=force,
@@ -145,22 +138,18 @@ def _normal(system: System, k: int, X: Floats) -> tuple[float, Floats]:
     return float(out[0]), out[1 : 1 + len(slopes)] @ slopes
 
 
-def _slip(system: System, k: int, g: Floats, r: float, N: float) -> tuple[Floats, Floats, Floats]:
-    """Friction of a coefficient law in slip, dF/dg and dF/dN."""
+def _friction(system: System, k: int, g: Floats, r: float, N: float, z: Floats) -> tuple[Floats, Floats, Floats]:
+    """Force (d,), state rates (n_z,) and their Jacobian (d+n_z, d+1+n_z) over (g, N, z) of a sliding contact."""
     contacts = system.problem.contacts
+    if contacts.law[k] == LAW_SMOOTH:
+        d, size = g.size, g.size + z.size
+        out = evaluate(contacts.law_table, k, np.concatenate([g, [N], z])[None], size + size * (size + 1))[:, 0]
+        return out[:d], out[d:size], out[size:].reshape(size, size + 1)
     mu, mu_r, mu_N = float(contacts.mu_0[k]), 0.0, 0.0
     if contacts.law[k] == LAW_COEFFICIENT:
         mu, mu_r, mu_N = evaluate(contacts.law_table, k, np.array([[r, N]]), 3)[:, 0].tolist()
     direction = g / r if r > 0.0 else np.zeros(g.size)
     along = np.outer(direction, direction)
     turning = mu * N / r * (np.eye(g.size) - along) if r > 0.0 and g.size > 1 else np.zeros_like(along)
-    return -mu * N * direction, -(mu_r * N * along + turning), -(mu + mu_N * N) * direction
-
-
-def _smooth(system: System, k: int, g: Floats, N: float, z: Floats) -> tuple[Floats, Floats, Floats]:
-    """Force and state rates of a smooth law with their Jacobian over (g, N, z)."""
-    d, n_z = g.size, z.size
-    size = d + n_z
-    x = np.concatenate([g, [N], z])[None]
-    out = evaluate(system.problem.contacts.law_table, k, x, size + size * (size + 1))[:, 0]
-    return out[:d], out[d:size], out[size:].reshape(size, size + 1)
+    J = np.column_stack([-(mu_r * N * along + turning), -(mu + mu_N * N) * direction])
+    return -mu * N * direction, np.zeros(0), J

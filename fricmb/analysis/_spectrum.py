@@ -53,7 +53,9 @@ def maximum_entropy_spectrum(
     The model ends before ``order`` where the signal is predicted to round-off, as a few sines without noise are.
     """
     model = autoregression(_WHO, x, dt, order)
-    grid = model_grid(model, len(np.asarray(x)), dt) if omega is None else checked_frequencies(_WHO, omega, dt)
+    if omega is None:
+        return density_of(model, len(np.asarray(x)), dt)
+    grid = checked_frequencies(_WHO, omega, dt)
     return grid, model.density(grid, dt)
 
 
@@ -70,23 +72,32 @@ def autoregression(who: str, x: ArrayLike, dt: float, order: int | str | None) -
     return burg(samples, checked_integer(who, "order", order, 1, n - 1))
 
 
-def model_grid(model: Autoregression, n: int, dt: float) -> Floats:
-    """Equidistant frequencies, and more at the poles that are nearer to the unit circle than their spacing."""
+def density_of(model: Autoregression, n: int, dt: float) -> tuple[Floats, Floats]:
+    """Density at equidistant frequencies, and at more around the poles that are nearer to the unit circle."""
     nyquist = np.pi / dt
     count = 4 * 2 ** int(np.ceil(np.log2(max(n, 2 * model.order)))) + 1
     even = np.linspace(0.0, nyquist, count)
+    with np.errstate(divide="ignore"):
+        density = model.variance * dt / np.pi / np.abs(np.fft.rfft(model.a, 2 * (count - 1))) ** 2
+    sharp = np.unique(_around_poles(model, nyquist / (count - 1), dt))
+    sharp = np.setdiff1d(sharp[(sharp > 0.0) & (sharp < nyquist)], even)
+    grid = np.concatenate([even, sharp])
+    order = np.argsort(grid, kind="stable")
+    return grid[order], np.concatenate([density, model.density(sharp, dt)])[order]
+
+
+def _around_poles(model: Autoregression, spacing: float, dt: float) -> Floats:
+    """Frequencies around the poles whose width is less than a few spacings."""
     if model.order == 0:
-        return even
-    spacing = nyquist / (count - 1)
+        return np.zeros(0)
     poles = np.roots(model.a)
     poles = poles[poles.imag >= 0.0]
     with np.errstate(divide="ignore"):
         width = np.abs(np.log(np.abs(poles))) / dt
     sharp = width < 4 * spacing
     if not sharp.any():
-        return even
-    centre, width = np.angle(poles[sharp]) / dt, np.maximum(width[sharp], 1e-15 * nyquist)
+        return np.zeros(0)
+    centre, width = np.angle(poles[sharp]) / dt, np.maximum(width[sharp], 1e-15 * np.pi / dt)
     # from a twentieth of the half-width of each peak to where the even grid takes over
     away = width[:, None] * np.geomspace(0.05, np.maximum(4 * spacing / width, 1.0), 250).T
-    extra = np.concatenate([(centre[:, None] - away).ravel(), centre, (centre[:, None] + away).ravel()])
-    return np.unique(np.concatenate([even, extra[(extra >= 0.0) & (extra <= nyquist)]]))
+    return np.concatenate([(centre[:, None] - away).ravel(), centre, (centre[:, None] + away).ravel()])

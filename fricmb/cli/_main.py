@@ -145,9 +145,7 @@ def _add_plan(commands: _Commands) -> None:
 
 
 def _add_bench(commands: _Commands) -> None:
-    sub = _command(
-        commands, "bench", "measure error against run time of all integrators and peers", "_bench:bench"
-    )
+    sub = _command(commands, "bench", "measure error against run time of all integrators and peers", "_bench:bench")
     sub.add_argument("--quick", action="store_true", help="a few scenes and settings, in under a minute")
     sub.add_argument(
         "--scene", action="append", default=[], metavar="NAME", help="only this scene of the suite; may be repeated"

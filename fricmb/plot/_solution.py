@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._contact import draw_cone, draw_force_history, draw_modes, draw_phases, zoom
 from fricmb.plot._fine import refined
-from fricmb.plot._style import BLUE, DARK, NAMED_CURVES, ORANGE, THIN, finish, line, panels, remark
-from fricmb.plot._units import SCENE_UNITS, Units
+from fricmb.plot._signals import SignalPlots
+from fricmb.plot._style import BLUE, DARK, NAMED_CURVES, ORANGE, THIN, figure_of, finish, line, panels, remark
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
 
 
-class SolutionPlots:
+class SolutionPlots(SignalPlots):
     """Pictures of a solution: ``sol.plot.velocities()`` and so on.
 
     Each method draws a figure of its own, or into ``ax=``, and returns the figure.  Curves are drawn from the dense
@@ -30,10 +30,6 @@ class SolutionPlots:
     units : Units, optional
         For the labels; default: the names of the dimensions.
     """
-
-    def __init__(self, sol: Solution, units: Units = SCENE_UNITS) -> None:
-        self.sol = sol
-        self.units = units
 
     @cached_property
     def curves(self) -> Solution:
@@ -63,7 +59,7 @@ class SolutionPlots:
             if count > NAMED_CURVES:
                 remark(panel, f"{members[0]} (dark) to {members[-1]} (light)")
         axes[-1].set_xlabel(self._time)
-        return _figure(axes)
+        return figure_of(axes)
 
     def phase(self, name: str, *, ax: Axes | None = None) -> Figure:
         """Phase plane: velocity over position of a dof or point; of a contact, the plane of its relative velocity.
@@ -90,7 +86,7 @@ class SolutionPlots:
         else:
             panel.plot(g[0], sol.force(name)[0], color=BLUE, linewidth=THIN)
             finish(panel, x=f"relative velocity at {name} [{unit.velocity}]", y=f"friction force [{unit.force}]")
-        return _figure([panel])
+        return figure_of([panel])
 
     def force(self, contact: str, *, ax: Axes | None = None) -> Figure:
         """Friction force of a contact with its cone: over time, and in its plane if there are two directions.
@@ -101,11 +97,11 @@ class SolutionPlots:
         planar = len(sol.force(contact)) == 2
         if ax is not None:
             (draw_cone if planar else draw_force_history)(sol, contact, ax, self.units)
-            return _figure([ax])
+            return figure_of([ax])
         if not planar:
             axes = panels(1, None, title=self._name, height=3.2)
             draw_force_history(sol, contact, axes[0], self.units)
-            return _figure(axes)
+            return figure_of(axes)
         import matplotlib.pyplot as plt
 
         figure, named = plt.subplot_mosaic(
@@ -128,7 +124,7 @@ class SolutionPlots:
         if ax is None:
             draw_phases(self.sol, axes[1], self.units)
         axes[-1].set_xlabel(self._time)
-        return _figure(axes)
+        return figure_of(axes)
 
     def energy(self, *, ax: Axes | None = None) -> Figure:
         """Where the energy is and where it went; the ledger's residual below, unless ``ax`` is given."""
@@ -149,118 +145,8 @@ class SolutionPlots:
             axes[1].plot(t, energy.residual, color=DARK, linewidth=0.7)
             finish(axes[1], x="", y="residual, relative")
         axes[-1].set_xlabel(self._time)
-        return _figure(axes)
-
-    def spectrum(self, name: str, *, highest: float | None = None, ax: Axes | None = None) -> Figure:
-        """Maximum-entropy spectrum of a signal ("pad.y", "lining.force.x", ...) with its peaks.
-
-        ``highest``: largest angular frequency; default: what the sampling allows.
-        """
-        from fricmb.analysis import uniform
-        from fricmb.plot._spectra import draw_spectrum
-
-        (panel,) = panels(1, ax, title=self._name, height=3.4)
-        draw_spectrum(uniform(self.sol, name), highest, panel, self.units)
-        return _figure([panel])
-
-    def spectrogram(
-        self, name: str, *, highest: float | None = None, segment: int | None = None, ax: Axes | None = None
-    ) -> Figure:
-        """Running spectrum of a signal over time and frequency; ``segment``: samples in each piece of time."""
-        from fricmb.analysis import spectrogram, uniform
-        from fricmb.plot._spectra import draw_spectrogram
-
-        (panel,) = panels(1, ax, title=self._name, height=3.8)
-        signal = uniform(self.sol, name)
-        running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
-        draw_spectrogram(running, name, highest, panel, self.units)
-        return _figure([panel])
-
-    def orders(
-        self,
-        name: str,
-        contact: str | None = None,
-        *,
-        highest: float | None = None,
-        segment: int | None = None,
-        ax: Axes | None = None,
-    ) -> Figure:
-        """Running spectrum of a signal over orders: angular frequency over the sliding speed of a contact.
-
-        ``contact``: default the first; ``highest``: largest order, default what the sampling shows at the mean speed.
-        """
-        import numpy as np
-
-        from fricmb.analysis import order_map, sliding_speed, spectrogram, uniform
-        from fricmb.plot._spectra import draw_orders
-
-        (panel,) = panels(1, ax, title=self._name, height=3.8)
-        signal = uniform(self.sol, name)
-        running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
-        edges = np.append(running.t - np.diff(running.t, prepend=0)[-1] / 2, self.sol.t_end)
-        fine = np.linspace(0, 1, 33)[:-1]
-        times = np.clip(edges[:-1, None] + fine * np.diff(edges)[:, None], self.sol.t_start, self.sol.t_end)
-        speed = sliding_speed(self.sol, contact or self.sol.contact_names[0], times.ravel())
-        mean = speed.reshape(times.shape).mean(axis=1)
-        top = running.omega[-1] / max(float(mean.mean()), 1e-300) if highest is None else highest
-        draw_orders(order_map(running, mean, np.linspace(0.0, top, 400)), name, panel, self.units)
-        return _figure([panel])
-
-    def animation(
-        self,
-        path: Any = None,
-        *,
-        t_start: float | None = None,
-        t_end: float | None = None,
-        frames: int = 120,
-        fps: float = 25.0,
-        magnify: float | None = None,
-    ) -> Any:
-        """The scene as moving pictures: bodies, springs, contact forces with their cones, stick in another colour.
-
-        Parameters
-        ----------
-        path : path, optional
-            File to write, ".mp4" (needs ffmpeg), ".gif" or ".html" (plays without a network); returned.  Default: the
-            matplotlib animation itself is returned.
-        t_start, t_end : float, optional
-            Part of the run; default: all of it.
-        frames : int
-        fps : float
-            Pictures a second.
-        magnify : float, optional
-            Drawn displacement per displacement; default: so that the largest fills the drawing.  Bodies that travel far
-            are drawn as bands with running strokes.
-        """
-        from fricmb.plot._animation import animate
-
-        return animate(self.sol, path, t_start=t_start, t_end=t_end, frames=frames, fps=fps, magnify=magnify)
-
-    def sound(self, name: str, path: Any, *, seconds: float | None = None, speed: float = 1.0) -> Any:
-        """Write a signal as a wav file that lasts ``seconds``, or in which ``speed`` units of time pass each second."""
-        from fricmb.plot._sound import write_sound
-
-        return write_sound(self.sol, name, path, seconds=seconds, speed=speed)
-
-    def view(self, path: Any) -> Any:
-        """Write an interactive view of the run: one HTML file that needs no network; returns its path."""
-        from pathlib import Path
-
-        from fricmb.plot._html import solution_page
-
-        file = Path(path)
-        file.write_text(solution_page(self.sol), encoding="utf-8")
-        return file
-
-    @property
-    def _name(self) -> str:
-        return str(self.sol.scene.name)
+        return figure_of(axes)
 
     @property
     def _time(self) -> str:
         return f"time [{self.units.time}]"
-
-
-def _figure(axes: list[Axes]) -> Figure:
-    figure = axes[0].figure
-    return figure if isinstance(figure, Figure) else figure.figure

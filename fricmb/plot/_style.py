@@ -63,3 +63,9 @@ def finish(ax: Axes, *, x: str, y: str, legend: bool = False) -> None:
             borderaxespad=0.1,
             columnspacing=1.2,
         )
+
+
+def figure_of(axes: list[Axes]) -> Figure:
+    """The figure that panels are in."""
+    figure = axes[0].figure
+    return figure if isinstance(figure, Figure) else figure.figure

@@ -1,0 +1,127 @@
+"""Pictures of signals of a run: spectra, moving pictures, sound, an interactive view."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fricmb.plot._style import figure_of, panels
+from fricmb.plot._units import SCENE_UNITS, Units
+
+if TYPE_CHECKING:
+    from fricmb.solution import Solution
+
+
+class SignalPlots:
+    """The part of ``sol.plot`` that is about signals."""
+
+    def __init__(self, sol: Solution, units: Units = SCENE_UNITS) -> None:
+        self.sol = sol
+        self.units = units
+
+    def spectrum(self, name: str, *, highest: float | None = None, ax: Axes | None = None) -> Figure:
+        """Maximum-entropy spectrum of a signal ("pad.y", "lining.force.x", ...) with its peaks.
+
+        ``highest``: largest angular frequency; default: what the sampling allows.
+        """
+        from fricmb.analysis import uniform
+        from fricmb.plot._spectra import draw_spectrum
+
+        (panel,) = panels(1, ax, title=self._name, height=3.4)
+        draw_spectrum(uniform(self.sol, name), highest, panel, self.units)
+        return figure_of([panel])
+
+    def spectrogram(
+        self, name: str, *, highest: float | None = None, segment: int | None = None, ax: Axes | None = None
+    ) -> Figure:
+        """Running spectrum of a signal over time and frequency; ``segment``: samples in each piece of time."""
+        from fricmb.analysis import spectrogram, uniform
+        from fricmb.plot._spectra import draw_spectrogram
+
+        (panel,) = panels(1, ax, title=self._name, height=3.8)
+        signal = uniform(self.sol, name)
+        running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
+        draw_spectrogram(running, name, highest, panel, self.units)
+        return figure_of([panel])
+
+    def orders(
+        self,
+        name: str,
+        contact: str | None = None,
+        *,
+        highest: float | None = None,
+        segment: int | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Running spectrum of a signal over orders: angular frequency over the sliding speed of a contact.
+
+        ``contact``: default the first; ``highest``: largest order, default what the sampling shows at the mean speed.
+        """
+        import numpy as np
+
+        from fricmb.analysis import order_map, sliding_speed, spectrogram, uniform
+        from fricmb.plot._spectra import draw_orders
+
+        (panel,) = panels(1, ax, title=self._name, height=3.8)
+        signal = uniform(self.sol, name)
+        running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
+        edges = np.append(running.t - np.diff(running.t, prepend=0)[-1] / 2, self.sol.t_end)
+        fine = np.linspace(0, 1, 33)[:-1]
+        times = np.clip(edges[:-1, None] + fine * np.diff(edges)[:, None], self.sol.t_start, self.sol.t_end)
+        speed = sliding_speed(self.sol, contact or self.sol.contact_names[0], times.ravel())
+        mean = speed.reshape(times.shape).mean(axis=1)
+        top = running.omega[-1] / max(float(mean.mean()), 1e-300) if highest is None else highest
+        draw_orders(order_map(running, mean, np.linspace(0.0, top, 400)), name, panel, self.units)
+        return figure_of([panel])
+
+    def animation(
+        self,
+        path: Any = None,
+        *,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        frames: int = 120,
+        fps: float = 25.0,
+        magnify: float | None = None,
+    ) -> Any:
+        """The scene as moving pictures: bodies, springs, contact forces with their cones, stick in another colour.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write, ".mp4" (needs ffmpeg), ".gif" or ".html" (plays without a network); returned.  Default: the
+            matplotlib animation itself is returned.
+        t_start, t_end : float, optional
+            Part of the run; default: all of it.
+        frames : int
+        fps : float
+            Pictures a second.
+        magnify : float, optional
+            Drawn displacement per displacement; default: so that the largest fills the drawing.  Bodies that travel far
+            are drawn as bands with running strokes.
+        """
+        from fricmb.plot._animation import animate
+
+        return animate(self.sol, path, t_start=t_start, t_end=t_end, frames=frames, fps=fps, magnify=magnify)
+
+    def sound(self, name: str, path: Any, *, seconds: float | None = None, speed: float = 1.0) -> Any:
+        """Write a signal as a wav file that lasts ``seconds``, or in which ``speed`` units of time pass each second."""
+        from fricmb.plot._sound import write_sound
+
+        return write_sound(self.sol, name, path, seconds=seconds, speed=speed)
+
+    def view(self, path: Any) -> Any:
+        """Write an interactive view of the run: one HTML file that needs no network; returns its path."""
+        from pathlib import Path
+
+        from fricmb.plot._html import solution_page
+
+        file = Path(path)
+        file.write_text(solution_page(self.sol), encoding="utf-8")
+        return file
+
+    @property
+    def _name(self) -> str:
+        return str(self.sol.scene.name)
