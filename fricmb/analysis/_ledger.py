@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -74,7 +74,8 @@ class EnergyLedger:
         return -self._at.force(contact) * self._at.relative_velocity(contact)
 
     def _damping_powers(self) -> Iterator[tuple[str, Floats]]:
-        scene, seen = self.sol.scene, self._at
+        seen = self._at
+        scene = self.sol.run.pieces[-1].mechanics.placed  # type: ignore[attr-defined]
         for part in scene.parts:
             if isinstance(part, Element | ModalBody | MatrixElement):
                 power = _element_power(scene, part, seen)
@@ -102,7 +103,9 @@ class EnergyLedger:
     @cached_property
     def stored(self) -> dict[str, Floats]:
         """Energy stored in each spring, modal body or pressed contact, by name (n_t,)."""
-        return _system(self.sol).potentials(self.sol.at(self.t).record.samples)
+        system, seen = whole_system(self.sol, "energy_ledger"), self.sol.at(self.t)
+        q, v = motion_of(system, seen)
+        return system.potentials(replace(seen.record.samples, q=q, v=v))
 
     def __str__(self) -> str:
         lines = ["lost to friction"]
@@ -147,9 +150,23 @@ def _one_scene(sol: Solution, who: str) -> None:
         raise AnalysisError(f"{who}: the run was joined from different scenes; take them one by one")
 
 
-def _system(sol: Solution) -> System:
-    system: System = sol.run.pieces[-1].mechanics.system  # type: ignore[attr-defined]
+def whole_system(sol: Solution, who: str) -> System:
+    """The system of everything that was run, driven bodies where they were.
+
+    Raises AnalysisError for a run that left something out.
+    """
+    placed = sol.run.pieces[-1].mechanics.placed  # type: ignore[attr-defined]
+    system = build(placed)
+    missing = [name for name in system.dof_names if name not in sol.names.dof_index]
+    if missing:
+        raise AnalysisError(f"{who}: the run left {missing[0]} out (observe=); run all of it")
     return system
+
+
+def motion_of(system: System, seen: Solution) -> tuple[Floats, Floats]:
+    """Q and v (n, n_t) in the order of a system."""
+    places = [seen.names.dof_index[name] for name in system.dof_names]
+    return seen.q[places], seen.v[places]
 
 
 def _grid(sol: Solution) -> Floats:
@@ -174,10 +191,11 @@ def _element_power(scene: Any, part: Any, seen: Solution) -> Floats | None:
     if small is None:
         return None
     system = build(small)
-    problem, names = system.problem, system.dof_names
-    q = np.array([seen[name] for name in names]).reshape(len(names), -1)
-    v = np.array([seen.velocity(name) for name in names]).reshape(len(names), -1)
-    u = system._signals(seen.t)
+    problem = system.problem
+    if any(name not in seen.names.dof_index for name in system.dof_names):
+        return None  # left out of the run: it does not move
+    q, v = motion_of(system, seen)
+    u = system.signals(seen.t)
     rates = np.concatenate([v, u[1]])
     power: Floats = np.einsum("it,it->t", rates, problem.linear.Cx @ rates)
     elements = problem.elements
@@ -217,13 +235,13 @@ def _with_ends(scene: Any, owners: set[str], part: Any) -> Any:
 
 def _pressing_power(sol: Solution, contact: str, seen: Solution) -> Floats | None:
     """Dissipated power of a damped normal-force law: -(N - N0 + dV/de) e'."""
-    system = _system(sol)
+    system = whole_system(sol, "energy_ledger")
     contacts = system.problem.contacts
     k = system.contact_names.index(contact)
     if contacts.normal[k] != NORMAL_LAW:
         return None
-    u = system._signals(seen.t)
-    X = np.concatenate([seen.t[None], seen.q, seen.v, u[0], u[1]])
+    u = system.signals(seen.t)
+    X = np.concatenate([seen.t[None], *motion_of(system, seen), u[0], u[1]])
     x = arguments(contacts.normal_table, k, X)
     out = evaluate(contacts.normal_table, k, x, 5)
     power: Floats = -(np.maximum(out[0], 0.0) - contacts.N0[k] + out[4]) * x[:, 1]

@@ -45,7 +45,7 @@ def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -
     problem = system.problem
     n, n_z = problem.n, problem.n_z
     linear, contacts = problem.linear, problem.contacts
-    u = system._signals(np.array([t]))[:, :, 0]
+    u = system.signals(np.array([t]))[:, :, 0]
     X = np.concatenate([[t], q, v, u[0], u[1]])
     K, C, places = linear.Kx[:n], linear.Cx[:n], np.concatenate([q, u[0]])
     force = linear.fx[:n] - K @ places - C @ np.concatenate([v, u[1]]) + linear.B @ u[0]
@@ -87,7 +87,7 @@ def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -
 def stiffness_without_friction(system: System, q: Floats, v: Floats) -> Floats:
     """Symmetric part (n, n) of the stiffness at a state: structure, nonlinear elements, normal-force laws."""
     problem, n = system.problem, system.problem.n
-    u = system._signals(np.zeros(1))[:, :, 0]
+    u = system.signals(np.zeros(1))[:, :, 0]
     X = np.concatenate([np.zeros(1), q, v, u[0], u[1]])
     force_X = np.zeros((n, X.size))
     force_X[:, 1 : 1 + n] -= problem.linear.Kx[:n, :n]

@@ -9,10 +9,10 @@ import numpy as np
 from scipy.linalg import eigh
 
 from fricmb.analysis._errors import AnalysisError, Floats
-from fricmb.analysis._ledger import EnergyLedger, energy_ledger
+from fricmb.analysis._ledger import EnergyLedger, energy_ledger, motion_of, whole_system
 from fricmb.analysis._linearise import stiffness_without_friction
 from fricmb.analysis._steady import SteadySliding
-from fricmb.system import build
+from fricmb.system import System
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -100,37 +100,36 @@ def modal_energy(sol: Solution, *, around: SteadySliding | None = None) -> Modal
     without friction.  Frequencies that are round-off or belong to negative stiffness count as 0.
     """
     ledger = energy_ledger(sol)
-    system = build(sol.scene)
-    if tuple(sol.dof_names) != system.dof_names:
-        raise AnalysisError("modal_energy: the run left degrees of freedom out (observe=)")
+    system = whole_system(sol, "modal_energy")
     if around is not None and around.system.dof_names != system.dof_names:
         raise AnalysisError("modal_energy: around is the equilibrium of another scene")
-    n = len(sol.dof_names)
+    n = system.problem.n
     q0 = np.zeros(n) if around is None else around.q
     F0 = np.zeros(system.problem.m) if around is None else around.at.F
     K = stiffness_without_friction(system, q0, np.zeros(n))
     values, shapes = eigh(K, system.problem.linear.M)
     omega = np.sqrt(np.where(values > 1e-13 * np.abs(values).max(initial=0.0), values, 0.0))
-    return _flows(sol, ledger, omega, shapes, q0, F0)
+    return _flows(system, ledger, omega, shapes, q0, F0)
 
 
-def _flows(sol: Solution, ledger: EnergyLedger, omega: Floats, shapes: Floats, q0: Floats, F0: Floats) -> ModalEnergy:
+def _flows(system: System, ledger: EnergyLedger, omega: Floats, shapes: Floats, q0: Floats, F0: Floats) -> ModalEnergy:
     """Modal energies at the ledger's times and the integrals of powers between them."""
-    problem = build(sol.scene).problem
-    n = len(sol.dof_names)
-    seen = sol.at(ledger.t)
-    eta, rate = shapes.T @ problem.linear.M @ (seen.q - q0[:, None]), shapes.T @ problem.linear.M @ seen.v
+    problem, n = system.problem, system.problem.n
+    q, v = motion_of(system, ledger.sol.at(ledger.t))
+    eta, rate = shapes.T @ problem.linear.M @ (q - q0[:, None]), shapes.T @ problem.linear.M @ v
     energy = 0.5 * (rate**2 + (omega[:, None] * eta) ** 2)
     nodes = ledger._at
-    speed = shapes.T @ problem.linear.M @ nodes.v
-    pull = shapes.T @ problem.contacts.W @ (nodes.record.samples.F - F0[:, None])
-    drag = shapes.T @ problem.linear.Cx[:n, :n] @ nodes.v
+    v = motion_of(system, nodes)[1]
+    speed = shapes.T @ problem.linear.M @ v
+    F = np.concatenate([nodes.force(name) for name in system.contact_names] or [np.zeros((0, nodes.t.size))])
+    pull = shapes.T @ problem.contacts.W @ (F - F0[:, None])
+    drag = shapes.T @ problem.linear.Cx[:n, :n] @ v
     friction, damping = ledger._cumulate(speed * pull), ledger._cumulate(speed * drag)
     return ModalEnergy(
         t=ledger.t,
         omega=omega,
         shapes=shapes,
-        dofs=tuple(sol.dof_names),
+        dofs=system.dof_names,
         energy=energy,
         friction=friction,
         damping=damping,

@@ -161,9 +161,7 @@ class Scene:
             result = result + coefficient * self.motion(name)
         return result
 
-    def initial_values(
-        self, dofs: Sequence[str] | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def initial_values(self, dofs: Sequence[str] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Declared initial q and v of the named dofs, (n,) each; default: all."""
         names = self.dof_names if dofs is None else dofs
         place = {name: i for i, name in enumerate(names)}

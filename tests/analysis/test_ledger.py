@@ -101,3 +101,26 @@ def test_modes_of_the_brake(brake):
     assert flows.power(2).shape == (len(flows.t) - 1,)
     total = brake.at(flows.t).energy
     assert flows.energy.sum(axis=0) == pytest.approx(total.kinetic + total.potential, rel=1e-10)
+
+
+def test_islands_and_what_was_left_out():
+    """Two scenes side by side are run apart; the ledger sees both, and refuses modes of what was not run."""
+    parts = []
+    for name, damping in (("one", 0.1), ("two", 0.3)):
+        body = fm.Body(name, mass=1.0, position={"x": 1.0})
+        parts += [body, fm.Spring(f"k{name}", body, axis="x", stiffness=2.0)]
+        parts += [fm.Damper(f"c{name}", body, axis="x", damping=damping)]
+        parts += [fm.Contact(f"s{name}", body, law=fm.laws.Coulomb(mu_s=0.05), normal_force=1.0)]
+    scene = fm.Scene("side by side", parts)
+    sol = fm.simulate(scene, t_end=10.0, rtol=1e-9)
+    ledger = energy_ledger(sol)
+    energy = sol.at(ledger.t).energy
+    assert set(ledger.damping) == {"cone", "ctwo"}
+    assert sum(ledger.damping.values()) == pytest.approx(energy.damping_loss, rel=1e-8, abs=1e-10)
+    assert sum(ledger.stored.values()) == pytest.approx(energy.potential, rel=1e-10, abs=1e-12)
+    flows = modal_energy(sol)
+    assert np.abs(flows.other).max() < 1e-9
+    part = fm.simulate(scene, t_end=10.0, rtol=1e-9, observe=["one.x"])
+    with pytest.raises(fm.FricmbError, match=r"left two\.x out"):
+        modal_energy(part)
+    assert set(energy_ledger(part).damping) == {"cone"}
