@@ -94,6 +94,10 @@ def complex_eigenvalues(
         If there is no steady sliding at a value; names it.
     UnknownNameError
         For a parameter that is not there.
+
+    Notes
+    -----
+    A window of instability that lies wholly between two neighbouring values is not seen.
     """
     grid = checked_values("complex_eigenvalues", values)
     dofs: list[str] = []

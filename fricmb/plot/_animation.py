@@ -47,7 +47,14 @@ class Animation:
 
     def _box(self, name: str) -> Rectangle:
         moves = name in self.bands
-        box = Rectangle((0, 0), WIDTH, HEIGHT, facecolor="0.93" if moves else "0.8", edgecolor=DARK, linewidth=1.0)
+        box = Rectangle(
+            (0, 0),
+            self.layout.widths[name],
+            HEIGHT,
+            facecolor="0.93" if moves else "0.8",
+            edgecolor=DARK,
+            linewidth=1.0,
+        )
         self.ax.add_patch(box)
         return box
 
@@ -73,10 +80,10 @@ class Animation:
         """Draw picture i."""
         for name, box in self.boxes.items():
             x, y = self.centre(name, i)
-            box.set_xy((x - WIDTH / 2, y - HEIGHT / 2))
+            box.set_xy((x - self.layout.widths[name] / 2, y - HEIGHT / 2))
             self.names[name].set_position((x, y))
         for name, line in self.ticks.items():
-            line.set_data(*_tick_lines(self.centre(name, i), float(self.bands[name][i])))
+            line.set_data(*_tick_lines(self.centre(name, i), float(self.bands[name][i]), self.layout.widths[name]))
         for line, (kind, _, a, b) in zip(self.links, self.layout.links, strict=True):
             line.set_data(*link(kind, self.centre(a, i), self._anchor(a, b, i), b != "ground"))
         for marks, (name, a, b) in zip(self.marks, self.layout.contacts, strict=True):
@@ -156,12 +163,11 @@ def _largest(sol: Solution, seen: Solution, contact: str) -> float:
     return float(values.max(initial=0.0)) or 1.0
 
 
-def _tick_lines(centre: Floats, shift: float) -> tuple[list[float], list[float]]:
+def _tick_lines(centre: Floats, shift: float, width: float) -> tuple[list[float], list[float]]:
     """Strokes on a band that run with it."""
     x, y = [], []
-    for k in range(8):
-        at = (k * WIDTH / 8 + shift) % WIDTH - WIDTH / 2 + centre[0]
-        x += [at, at, np.nan]
+    for at in (np.arange(0.0, width - 1e-9, WIDTH / 8) + shift) % width - width / 2 + centre[0]:
+        x += [float(at), float(at), np.nan]
         y += [centre[1] - 0.3 * HEIGHT, centre[1] + 0.3 * HEIGHT, np.nan]
     return x, y
 

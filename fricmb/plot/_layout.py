@@ -18,6 +18,7 @@ class Layout:
     """
 
     places: dict[str, tuple[float, float]] = field(default_factory=dict)
+    widths: dict[str, float] = field(default_factory=dict)
     moving: dict[str, bool] = field(default_factory=dict)
     links: list[tuple[str, str, str, str]] = field(default_factory=list)
     contacts: list[tuple[str, str, str]] = field(default_factory=list)
@@ -29,7 +30,10 @@ def layout(scene: Any) -> Layout:
     contacts = [part for part in scene.parts if isinstance(part, Contact)]
     rows, columns = _stack(scene, contacts)
     for name, row in rows.items():
-        found.places[name] = (COLUMN * columns[name], ROW * row)
+        carried = [columns[a] for a, b in _touching(contacts) if b == name and a in columns] or [columns[name]]
+        middle, reach = 0.5 * (min(carried) + max(carried)), max(carried) - min(carried)
+        found.places[name] = (COLUMN * middle, ROW * row)
+        found.widths[name] = WIDTH + COLUMN * reach
     found.moving = {body.name: False for body in scene.bodies} | {body.name: True for body in scene.driven}
     for contact in contacts:
         found.contacts.append((contact.name, _owner(contact.a), _owner(contact.b)))
@@ -45,10 +49,15 @@ def _owner(end: Any) -> str:
     return "ground" if end is GROUND else str(end.owner.name)
 
 
+def _touching(contacts: list[Any]) -> list[tuple[str, str]]:
+    """Names of the bodies at the ends of each contact."""
+    return [(_owner(c.a), _owner(c.b)) for c in contacts]
+
+
 def _stack(scene: Any, contacts: list[Any]) -> tuple[dict[str, int], dict[str, int]]:
     """Row and column of each body: the first end of a contact on its second."""
     names = [part.name for part in (*scene.bodies, *scene.driven) if part is not GROUND]
-    below = {_owner(c.a): _owner(c.b) for c in contacts}
+    below = dict(_touching(contacts))
     rows: dict[str, int] = {}
     columns: dict[str, int] = {}
 

@@ -25,9 +25,8 @@ def draw_scene(scene: Any) -> Figure:
         ax.plot(*link(kind, here, there, b in found.places), color=DARK, linewidth=0.9)
     for name, (x, y) in found.places.items():
         face = "0.93" if found.moving[name] else "0.8"
-        ax.add_patch(
-            Rectangle((x - WIDTH / 2, y - HEIGHT / 2), WIDTH, HEIGHT, facecolor=face, edgecolor=DARK, linewidth=1.0)
-        )
+        corner, width = (x - found.widths[name] / 2, y - HEIGHT / 2), found.widths[name]
+        ax.add_patch(Rectangle(corner, width, HEIGHT, facecolor=face, edgecolor=DARK, linewidth=1.0))
         ax.text(x, y, name, ha="center", va="center", fontsize=8)
     for name, a, _ in found.contacts:
         x, y = found.places[a]

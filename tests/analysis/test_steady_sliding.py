@@ -103,6 +103,20 @@ def test_friction_across_slip_is_a_dashpot():
     assert np.sort_complex(found) == pytest.approx(np.sort_complex(np.array(expected)), rel=1e-12)
 
 
+@pytest.mark.parametrize("count", [7, 8, 40])
+def test_modes_keep_their_identity_where_frequencies_cross(count):
+    """Springs along and across the slip: the one along passes the frequency of the other."""
+    puck, belt = fm.Body("puck", mass=1.0, axes="xy"), fm.Driven("belt", velocity={"x": 1.0})
+    springs = [fm.Spring(f"k{c}", puck, axis=c, stiffness=4.0) for c in "xy"]
+    sole = fm.Contact("sole", puck, belt, law=fm.laws.Coulomb(mu_s=0.1), normal_force=1.0)
+    scene = fm.Scene("puck", [puck, belt, *springs, sole])
+    found = complex_eigenvalues(scene, over="kx.stiffness", values=np.linspace(1.0, 9.1, count))
+    along = int(np.argmax(np.abs(found.shapes[0, :, 0])))
+    assert found.frequency[:, along] == pytest.approx(np.sqrt(found.values))
+    assert found.frequency[:, 1 - along] == pytest.approx(np.sqrt(4 - 0.05**2))
+    assert np.abs(found.shapes[:, along, 1]).max() < 1e-9
+
+
 def everything():
     """A scene with every kind of element, law and normal force, and a state at which all contacts slide."""
     a, b = fm.Body("a", mass=1.0, axes="xy"), fm.Body("b", mass=2.0, axes="xyz")

@@ -112,6 +112,7 @@ def test_a_file_is_a_model(capsys, tmp_path):
         (["run", "no/such/file.py"], "there is no file 'no/such/file.py'"),
         (["plan", "brake4dov"], "brake4dof"),
         (["figures", "--case", "9"], "case must be one of"),
+        (["figures", "belt_oscillator"], "unknown model with figures 'belt_oscillator'; known: 'brake4dof'"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(capsys, tmp_path, monkeypatch, arguments, named):
@@ -199,7 +200,7 @@ def test_list_equations_plan(capsys):
     assert "c1x" in text
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["list"], ["equations"], ["plan"], ["bench"], ["figures"]])
+@pytest.mark.parametrize("command", [[], ["run"], ["list"], ["equations"], ["plan"], ["bench"], ["figures"], ["plot"]])
 def test_help_everywhere(capsys, command):
     status, text, _ = run(capsys, *command, "--help")
     assert status == 0
@@ -224,6 +225,21 @@ def test_figures(capsys, tmp_path):
     assert status == 0
     assert (tmp_path / "brake4dof-case2.png").read_bytes()[:4] == b"\x89PNG"
     assert "brake4dof-case2.png" in text
+
+
+@pytest.mark.slow
+def test_figures_of_the_source(capsys, tmp_path):
+    status, _, _ = run(capsys, "figures", "brake4dof", "--case", "1", "--out", tmp_path)
+    assert status == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "brake4dof-case1.png",
+        "figure02.png",
+        "figure03.png",
+        "findings.txt",
+    ]
+    findings = (tmp_path / "findings.txt").read_text()
+    assert "[agrees] the rotor is braked almost linearly" in findings
+    assert "[DIFFERS] slip goes on first" in findings
 
 
 @pytest.mark.parametrize("arguments", [[], ["run"], ["runn", "x"], ["run", "m", "--t-end", "abc"], ["list", "-x"]])
