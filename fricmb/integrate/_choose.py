@@ -9,9 +9,10 @@ from fricmb.integrate._integrator import Integrator
 from fricmb.integrate._problem import Problem
 from fricmb.integrate._radau import Radau
 from fricmb.integrate.collocation import Collocation
+from fricmb.integrate.taylor import Taylor
 
 #: Built-in integrators by the name that ``simulate(method=...)`` takes.
-integrators: dict[str, type[Integrator]] = {kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau)}
+integrators: dict[str, type[Integrator]] = {kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor)}
 
 
 def choose(problem: Problem) -> tuple[Integrator, str]:
@@ -23,4 +24,7 @@ def choose(problem: Problem) -> tuple[Integrator, str]:
     reason = fast.refuses(problem)
     if reason is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
+    many = Taylor()
+    if problem.n_c > 1 and many.refuses(problem) is None:
+        return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
     return Bdf(), f"the general method: {reason}"

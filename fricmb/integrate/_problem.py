@@ -15,9 +15,12 @@ from.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fricmb.integrate._sparse import Csr, LazyMatrices
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -100,6 +103,22 @@ class Linear:
     fx: Floats
     B: Floats
 
+    def csr(self, name: str) -> Csr:
+        """``M``, ``Kx``, ``Cx`` or ``B`` as a sparse matrix."""
+        return Csr.of_dense(getattr(self, name))
+
+
+class SparseLinear(LazyMatrices, Linear):
+    """The same of a large scene: sparse, and dense only for those who ask for ``M``, ``Kx``, ``Cx`` or ``B``."""
+
+    def __init__(self, *, M: Csr, Kx: Csr, Cx: Csr, fx: Floats, B: Csr) -> None:
+        object.__setattr__(self, "_held", {"M": M, "Kx": Kx, "Cx": Cx, "B": B})
+        object.__setattr__(self, "fx", fx)
+
+    def csr(self, name: str) -> Csr:
+        """``M``, ``Kx``, ``Cx`` or ``B`` as it is held."""
+        return self._held[name]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Signals:
@@ -160,6 +179,27 @@ class Contacts:
     Wn: Floats
     N0: Floats = field(default_factory=lambda: _f(0))
 
+    def csr(self, name: str) -> Csr:
+        """``W``, ``Wu`` or ``Wn`` as a sparse matrix."""
+        return Csr.of_dense(getattr(self, name))
+
+
+class SparseContacts(LazyMatrices, Contacts):
+    """The same of a large scene: ``W``, ``Wu``, ``Wn`` sparse, and dense only for those who ask for them."""
+
+    def __init__(self, *, W: Csr, Wu: Csr, Wn: Csr, **others: Any) -> None:
+        super().__init__(W=_NONE, Wu=_NONE, Wn=_NONE, **others)
+        for name in ("W", "Wu", "Wn"):
+            object.__delattr__(self, name)
+        object.__setattr__(self, "_held", {"W": W, "Wu": Wu, "Wn": Wn})
+
+    def csr(self, name: str) -> Csr:
+        """``W``, ``Wu`` or ``Wn`` as it is held."""
+        return self._held[name]
+
+
+_NONE = np.zeros((0, 0))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Elements:
@@ -204,7 +244,7 @@ class Problem:
     @property
     def n(self) -> int:
         """Number of degrees of freedom."""
-        return int(self.linear.M.shape[0])
+        return len(self.linear.fx) - self.n_u
 
     @property
     def n_u(self) -> int:

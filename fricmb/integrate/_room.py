@@ -205,6 +205,9 @@ FURTHER = (
     "begin_phase",
     "stick_phase",
     "slip_phase",
+    "taylor_series",
+    "taylor_search",
+    "taylor_change",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import Problem, Signals, Start
+from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
 from fricmb.scene import Body, Contact, Element, MatrixElement, ModalBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
-from fricmb.system._spectrum import check_mass, spectrum
+from fricmb.system._spectrum import check_mass, check_masses, spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
 
@@ -43,6 +44,20 @@ def build(scene: Any, plan: Any = None) -> System:
     return found  # type: ignore[no-any-return]
 
 
+#: Above this no spectrum is computed.
+SPECTRUM = 2000
+
+
+def _spectrum(linear: Linear, n: int, dofs: Sequence[str]) -> tuple[Floats, Floats]:
+    """Frequencies and damping ratios, none for large scenes, after a check of the mass matrix."""
+    M = linear.csr("M")
+    if n <= SPECTRUM or not M.is_diagonal():
+        check_mass(linear.M, dofs)
+        return spectrum(linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n])
+    check_masses(M.diagonal(), dofs)
+    return np.zeros(0), np.zeros(0)
+
+
 def _build(scene: Any, plan: Any) -> System:
     dofs = scene.dof_names if plan is None else plan.dofs
     index = {name: i for i, name in enumerate(dofs)}
@@ -62,8 +77,7 @@ def _build(scene: Any, plan: Any) -> System:
             contacts.add(part)
     n, n_u = len(dofs), len(signals.held)
     linear = structure.linear(n_u)
-    check_mass(linear.M, dofs)
-    omega, zeta = spectrum(linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n])
+    omega, zeta = _spectrum(linear, n, dofs)
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)
     problem = Problem(

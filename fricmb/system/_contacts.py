@@ -18,9 +18,12 @@ from fricmb.integrate._problem import (
     NORMAL_EXPRESSION,
     NORMAL_LAW,
     Contacts,
+    SparseContacts,
 )
+from fricmb.integrate._sparse import Csr
 from fricmb.scene import Contact
 from fricmb.system._motions import Motions
+from fricmb.system._structure import is_sparse
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
 from fricmb.values import is_expression, value_of
 
@@ -126,31 +129,30 @@ class ContactArrays:
     def build(self, n: int, n_u: int) -> Contacts:
         """The arrays."""
         m, n_c = len(self.rows), len(self.law)
-        W, Wu, Wn = np.zeros((n, m)), np.zeros((m, n_u)), np.zeros((n, n_c))
-        for a, row in enumerate(self.rows):
-            for i, c in row.q:
-                W[i, a] += c
-            for j, c in row.u:
-                Wu[a, j] -= c
-        for k, row in enumerate(self.normal_rows):
-            for i, c in row.q:
-                Wn[i, k] += c
-        return Contacts(
-            row=np.array(self.row_start, dtype=np.int64),
-            W=W,
-            w=np.array(self.w, dtype=float) + 0.0,
-            Wu=Wu,
-            law=np.array(self.law, dtype=np.int8),
-            law_table=self.law_table.build(n, n_u),
-            mu_s=np.array(self.mu_s, dtype=float),
-            mu_0=np.array(self.mu_0, dtype=float),
-            z_start=np.array(self.z_start, dtype=np.int64),
-            normal=np.array(self.normal, dtype=np.int8),
-            N=np.array(self.N, dtype=float),
-            normal_table=self.normal_table.build(n, n_u),
-            Wn=Wn,
-            N0=np.array(self.N0, dtype=float),
-        )
+        W = _matrix([(i, a, c) for a, row in enumerate(self.rows) for i, c in row.q], (n, m))
+        Wu = _matrix([(a, j, -c) for a, row in enumerate(self.rows) for j, c in row.u], (m, n_u))
+        Wn = _matrix([(i, k, c) for k, row in enumerate(self.normal_rows) for i, c in row.q], (n, n_c))
+        others: dict[str, Any] = {
+            "row": np.array(self.row_start, dtype=np.int64),
+            "w": np.array(self.w, dtype=float) + 0.0,
+            "law": np.array(self.law, dtype=np.int8),
+            "law_table": self.law_table.build(n, n_u),
+            "mu_s": np.array(self.mu_s, dtype=float),
+            "mu_0": np.array(self.mu_0, dtype=float),
+            "z_start": np.array(self.z_start, dtype=np.int64),
+            "normal": np.array(self.normal, dtype=np.int8),
+            "N": np.array(self.N, dtype=float),
+            "normal_table": self.normal_table.build(n, n_u),
+            "N0": np.array(self.N0, dtype=float),
+        }
+        if is_sparse(n, len(W.value) + len(Wn.value)):
+            return SparseContacts(W=W, Wu=Wu, Wn=Wn, **others)
+        return Contacts(W=W.dense(), Wu=Wu.dense(), Wn=Wn.dense(), **others)
+
+
+def _matrix(entries: Sequence[tuple[int, int, float]], shape: tuple[int, int]) -> Csr:
+    i, j, values = zip(*entries, strict=True) if entries else ((), (), ())
+    return Csr.of_entries(i, j, values, shape)
 
 
 def _check_cone(contact: Contact, mu_s: float, limit: float) -> None:

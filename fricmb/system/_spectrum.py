@@ -19,9 +19,7 @@ def check_mass(M: Floats, dofs: Sequence[str]) -> None:
     """
     diagonal = np.diagonal(M)
     if np.count_nonzero(M) == np.count_nonzero(diagonal):
-        bad = np.flatnonzero(~(diagonal > 0.0))
-        if bad.size:
-            raise SceneError(f"{dofs[int(bad[0])]}: the mass must be > 0, got {diagonal[bad[0]]:g}")
+        check_masses(diagonal, dofs)
         return
     scale = np.sqrt(np.maximum(np.abs(diagonal), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(M / scale[:, None] / scale[None, :])
@@ -32,6 +30,13 @@ def check_mass(M: Floats, dofs: Sequence[str]) -> None:
             f"the mass matrix is {kind} (smallest scaled eigenvalue {values[0]:.3g}); the degree of freedom most"
             f" concerned is {dofs[worst]!r}"
         )
+
+
+def check_masses(masses: Floats, dofs: Sequence[str]) -> None:
+    """Refuse masses that are not positive."""
+    bad = np.flatnonzero(~(masses > 0.0))
+    if bad.size:
+        raise SceneError(f"{dofs[int(bad[0])]}: the mass must be > 0, got {masses[bad[0]]:g}")
 
 
 def spectrum(M: Floats, K: Floats, C: Floats) -> tuple[Floats, Floats]:

@@ -10,7 +10,8 @@ import numpy as np
 
 from fricmb.equations import Template, element_template, force_expression, force_terms, numbers, signal_expression
 from fricmb.errors import SceneError
-from fricmb.integrate._problem import Elements, Floats, Linear
+from fricmb.integrate._problem import Elements, Floats, Linear, SparseLinear
+from fricmb.integrate._sparse import Csr
 from fricmb.scene import Body, Element, Force, MatrixElement, ModalBody, PointDamper, PointSpring, modal_matrices
 from fricmb.system._motions import Motions
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
@@ -178,13 +179,13 @@ class Structure:
     def linear(self, n_u: int) -> Linear:
         """The constant matrices."""
         n = self.n
-        return Linear(
-            M=_matrix(self.M, n, n),
-            Kx=_matrix(self.K, n + n_u, n + n_u),
-            Cx=_matrix(self.C, n + n_u, n + n_u),
-            fx=_matrix([(i, 0, v) for i, v in self.f], n + n_u, 1)[:, 0].copy(),
-            B=_matrix(self.B, n, n_u),
-        )
+        M, B = _matrix(self.M, n, n), _matrix(self.B, n, n_u)
+        Kx, Cx = _matrix(self.K, n + n_u, n + n_u), _matrix(self.C, n + n_u, n + n_u)
+        places = np.array([i for i, _ in self.f], dtype=np.int64)
+        fx = np.bincount(places, np.array([v for _, v in self.f], dtype=float), n + n_u).astype(float)
+        if is_sparse(n, len(M.value) + len(Kx.value) + len(Cx.value)):
+            return SparseLinear(M=M, Kx=Kx, Cx=Cx, fx=fx, B=B)
+        return Linear(M=M.dense(), Kx=Kx.dense(), Cx=Cx.dense(), fx=fx, B=B.dense())
 
     def elements(self, n_u: int) -> Elements:
         """The nonlinear elements."""
@@ -198,11 +199,18 @@ class Structure:
         )
 
 
-def _matrix(entries: Sequence[tuple[int, int, float]], rows: int, columns: int) -> Floats:
-    matrix = np.zeros((rows, columns))
-    for i, j, value in entries:
-        matrix[i, j] += value
-    return matrix
+#: Scenes of more degrees of freedom keep sparse matrices where these are sparse.
+DENSE = 256
+
+
+def is_sparse(n: int, entries: int) -> bool:
+    """Whether matrices over n degrees of freedom with so many entries are kept as sparse ones."""
+    return n > DENSE and 8 * entries < n * n
+
+
+def _matrix(entries: Sequence[tuple[int, int, float]], rows: int, columns: int) -> Csr:
+    i, j, values = zip(*entries, strict=True) if entries else ((), (), ())
+    return Csr.of_entries(i, j, values, (rows, columns))
 
 
 def _argument(kind: str, i: int, rows: Sequence[Row]) -> Argument:

@@ -63,12 +63,11 @@ class System:
     # -- energies -----------------------------------------------------------------------------------------------
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""
-        M, v = self.problem.linear.M, samples.v
-        diagonal = np.diagonal(M)
-        if np.count_nonzero(M) == np.count_nonzero(diagonal):
-            energy: Floats = 0.5 * (diagonal @ (v * v))
+        M, v = self.problem.linear.csr("M"), samples.v
+        if M.is_diagonal():
+            energy: Floats = 0.5 * (M.diagonal() @ (v * v))
             return energy
-        return np.asarray(0.5 * np.einsum("it,it->t", v, M @ v))
+        return np.asarray(0.5 * np.einsum("it,it->t", v, self.problem.linear.M @ v))
 
     def potential(self, samples: Samples) -> Floats:
         """Stored energy (n_t,): springs, normal-force laws, and forces that are constant or linear in coordinates."""

@@ -1,0 +1,245 @@
+"""The loop of a run: a step of all, its transitions and samples in order of time, the end of the step."""
+
+from __future__ import annotations
+
+import math
+
+from fricmb.integrate._kernel import entry, kernel
+from fricmb.integrate._problem import STICK
+from fricmb.integrate.taylor._change import hold_force, taylor_change
+from fricmb.integrate.taylor._heap import pop_due, push_due
+from fricmb.integrate.taylor._layout import (
+    END,
+    INPUT,
+    LIMIT,
+    LONGEST,
+    N_EVENTS,
+    N_HEAP,
+    N_HERE,
+    N_SAMPLES,
+    N_SHORTER,
+    N_STEPS,
+    N_STOP,
+    NEXT,
+    PHASE,
+    STEP,
+    TIME,
+    TOL,
+    WORK,
+)  # fmt: skip
+from fricmb.integrate.taylor._ledger import belt_work, count_rest
+from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor._sample import sample
+from fricmb.integrate.taylor._search import bounds, taylor_search
+from fricmb.integrate.taylor._series import (
+    belt_value,
+    horner,
+    horner_rate,
+    rescale,
+    signal_series,
+    taylor_series,
+)  # fmt: skip
+from fricmb.integrate.taylor._settle import EPS, set_window, settle
+
+#: Why a run came back.
+DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE = range(6)
+#: Phases of a step.
+BEGIN, INSIDE, FINISH, SETTLE = range(4)
+
+
+@kernel
+def tail_error(net: Net, h: float) -> float:
+    """Last coefficients of the velocities relative to the tolerance."""
+    P = net.Q.shape[0] - 1
+    n = net.q.shape[0]
+    last = net.Q[P]
+    before = net.Q[P - 1]
+    work = net.flat[WORK]
+    largest = 0.0
+    rise = net.Q[2]
+    for j in range(n):
+        largest = max(largest, net.top[j], abs(rise[j]) / h)
+    if largest == 0.0:
+        return 0.0
+    for j in range(n):
+        work[j] = (P * abs(last[j]) + (P - 1) * abs(before[j])) / (net.top[j] + 0.01 * largest)
+    worst = 0.0
+    for j in range(n):
+        worst = max(worst, work[j])
+    return float(worst / (h * net.x[TOL]))
+
+
+@kernel
+def idle_step(net: Net, left: float) -> float:
+    """Where nothing accelerates: how long until the first contact breaks away, at most ``left``."""
+    h = net.x[STEP]
+    found = left
+    for c in range(net.mode.shape[0]):
+        force = hold_force(net, c, 0.0, h)
+        rate = (hold_force(net, c, 1.0, h) - force) / h
+        if rate != 0.0:
+            found = min(found, max(0.0, (math.copysign(net.stick[c], rate) - force) / rate))
+    return float(found)
+
+
+@kernel
+def begin_step(net: Net) -> bool:
+    """Choose the step and make its polynomials; False for an idle one, which has no transitions inside."""
+    t = net.x[TIME]
+    stop = net.stops[net.i[N_STOP]]
+    left = stop - t
+    h = min(net.x[NEXT], net.x[LONGEST])
+    if h > left * (1.0 - 1e-9):
+        h = left
+    elif h > 0.5 * left:
+        h = 0.5 * left
+    for _ in range(60):
+        error = signal_series(net, t, h)
+        if error <= 0.1 * net.x[TOL]:
+            break
+        h *= max(0.3, 0.9 * (0.1 * net.x[TOL] / error) ** 0.125)
+    net.x[STEP] = h
+    busy = taylor_series(net, h, net.places)
+    if not busy and net.series.shape[0] == 0:
+        idle = idle_step(net, left)
+        if idle > h:
+            rescale(net, idle / h)
+            net.x[STEP] = idle
+            return False
+    error = tail_error(net, h)
+    order = net.Q.shape[0] - 2.0
+    factor = min(1.5, 0.95 * (error + 1e-30) ** (-1.0 / order))
+    if error > 1.0:
+        net.i[N_SHORTER] += 1
+        rescale(net, factor)
+        factor = 1.0
+    net.x[NEXT] = net.x[STEP] * factor
+    return True
+
+
+@kernel
+def find_ends(net: Net) -> None:
+    """Contacts whose mode may end in the step, into the heap."""
+    bounds(net)
+    net.i[N_HEAP] = 0
+    net.i[N_HERE] = 0
+    for c in range(net.mode.shape[0]):
+        net.since[c] = -1.0
+        net.due[c] = math.inf
+        if net.slack[c] <= 0.0:
+            push_due(net, c, taylor_search(net, c, 0.0, net.places))
+
+
+@kernel
+def next_end(net: Net) -> float:
+    """When the next transition comes (s)."""
+    while net.i[N_HEAP] > 0:
+        if net.heap_t[0] == net.due[net.heap_c[0]]:
+            return float(net.heap_t[0])
+        pop_due(net)
+    return math.inf
+
+
+@kernel
+def next_sample(net: Net) -> float:
+    """When the next sample is to be taken (s)."""
+    if net.i[N_SAMPLES] >= net.times.shape[0]:
+        return math.inf
+    return float((net.times[net.i[N_SAMPLES]] - net.x[TIME]) / net.x[STEP])
+
+
+@kernel
+def go_through(net: Net) -> int:
+    """Transitions and samples of the step in order of time."""
+    grain = 4.0 * EPS * max(abs(net.x[TIME]), net.x[STEP]) / net.x[STEP]
+    final = net.x[TIME] + net.x[STEP] >= net.x[END] - 8.0 * EPS * abs(net.x[END])
+    while True:
+        end = next_end(net)
+        at = next_sample(net)
+        if at <= 1.0 + grain:
+            left = net.left[net.i[N_SAMPLES]] == 1
+            edge = end + grain if left else end - grain
+            # the right-hand value at the end of a step belongs to the next one
+            if at < edge and (left or final or at < 1.0 - grain):
+                sample(net, min(max(at, 0.0), 1.0))
+                continue
+        if end > 1.0:
+            return DONE
+        if net.i[N_EVENTS] >= net.events.shape[0]:
+            return FULL
+        if net.i[N_HERE] >= net.i[LIMIT]:
+            return CROWDED
+        net.i[N_HERE] += 1
+        c = net.heap_c[0]
+        pop_due(net)
+        if taylor_change(net, c, end, net.places) == 1:
+            return WIDE
+
+
+@kernel
+def finish_step(net: Net) -> int:
+    """The state at the end of the step."""
+    n = net.q.shape[0]
+    h = net.x[STEP]
+    last = net.Q.shape[0] - 1
+    horner(net.Q, last, 1.0, net.q)
+    horner_rate(net.Q, last, 1.0, h, net.v)
+    sound = 0.0
+    for j in range(n):
+        net.top[j] = max(net.top[j], abs(net.v[j]))
+        sound += 0.0 * (net.q[j] + net.v[j])
+    for c in range(net.mode.shape[0]):
+        if net.mode[c] == STICK and net.plain[c] == 1:
+            e = net.row_start[c]
+            net.v[net.row_dof[e]] = belt_value(net, c, 1.0) / net.row_coef[e]
+    for u in range(net.series.shape[0]):
+        for k in range(net.rates.shape[1]):
+            net.travel[u] += h * net.rates[u, k] / (k + 1)
+    at = net.i[N_STEPS]
+    net.steps[at, 0] = net.x[TIME]
+    net.steps[at, 1] = h
+    net.i[N_STEPS] = at + 1
+    stop = net.stops[net.i[N_STOP]]
+    t = net.x[TIME] + h
+    if t >= stop - 8.0 * EPS * abs(stop):
+        t = stop
+        net.i[N_STOP] += 1
+        net.i[PHASE] = SETTLE
+    else:
+        net.i[PHASE] = BEGIN
+    net.x[TIME] = t
+    return DONE if sound == 0.0 else NOT_FINITE
+
+
+@entry
+def drive_taylor(net: Net, t_pause: float, most: int) -> int:
+    """Step until the end, until there is no room, until t_pause, or until ``most`` steps are done."""
+    until = net.i[N_STEPS] + most
+    while True:
+        if net.i[PHASE] == SETTLE:
+            if net.i[N_STOP] >= net.stops.shape[0]:
+                return DONE
+            set_window(net)
+            if net.i[N_STOP] > 0 and net.series.shape[0] > 0:
+                if net.i[N_EVENTS] + net.mode.shape[0] > net.events.shape[0]:
+                    return FULL
+                settle(net, True)
+            net.i[PHASE] = BEGIN
+        if net.i[PHASE] == BEGIN:
+            if net.i[N_STEPS] >= net.steps.shape[0]:
+                return FULL
+            if net.i[N_STEPS] >= until or net.x[TIME] > t_pause:
+                return PAUSE
+            if begin_step(net):
+                find_ends(net)
+            else:
+                net.i[N_HEAP] = 0
+            net.x[INPUT] += belt_work(net, 0.0)
+            count_rest(net, 0.0, 1.0)
+            net.i[PHASE] = INSIDE
+        code = go_through(net)
+        if code != DONE:
+            return code
+        code = finish_step(net)
+        if code != DONE:
+            return code

@@ -1,0 +1,74 @@
+"""The ends of modes that are due in a step, in order of time: a binary heap; what ``due`` contradicts is void."""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate.taylor._layout import N_HEAP
+from fricmb.integrate.taylor._net import Net
+
+
+@kernel
+def renew_heap(net: Net) -> None:
+    """Fill the heap from ``due`` alone, without what is out of date."""
+    count = 0
+    for c in range(net.due.shape[0]):
+        s = net.due[c]
+        if s > 1.0:
+            continue
+        at = count
+        count += 1
+        while at > 0:
+            up = (at - 1) >> 1
+            if net.heap_t[up] <= s:
+                break
+            net.heap_t[at] = net.heap_t[up]
+            net.heap_c[at] = net.heap_c[up]
+            at = up
+        net.heap_t[at] = s
+        net.heap_c[at] = c
+    net.i[N_HEAP] = count
+
+
+@kernel
+def push_due(net: Net, c: int, s: float) -> None:
+    """Put a contact with the end of its mode into the heap."""
+    net.due[c] = s
+    if s > 1.0:
+        return
+    if net.i[N_HEAP] >= net.heap_t.shape[0]:
+        renew_heap(net)
+        return
+    at = net.i[N_HEAP]
+    net.i[N_HEAP] = at + 1
+    while at > 0:
+        up = (at - 1) >> 1
+        if net.heap_t[up] <= s:
+            break
+        net.heap_t[at] = net.heap_t[up]
+        net.heap_c[at] = net.heap_c[up]
+        at = up
+    net.heap_t[at] = s
+    net.heap_c[at] = c
+
+
+@kernel
+def pop_due(net: Net) -> None:
+    """Remove the first of the heap."""
+    last = net.i[N_HEAP] - 1
+    net.i[N_HEAP] = last
+    s = net.heap_t[last]
+    c = net.heap_c[last]
+    at = 0
+    while True:
+        below = 2 * at + 1
+        if below >= last:
+            break
+        if below + 1 < last and net.heap_t[below + 1] < net.heap_t[below]:
+            below += 1
+        if net.heap_t[below] >= s:
+            break
+        net.heap_t[at] = net.heap_t[below]
+        net.heap_c[at] = net.heap_c[below]
+        at = below
+    net.heap_t[at] = s
+    net.heap_c[at] = c

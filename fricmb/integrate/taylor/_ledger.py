@@ -1,0 +1,149 @@
+"""Energy lost in dampers and brought in by what is prescribed, by Gauss's formula on the polynomials.
+
+At a transition the rest of the step is counted again, for the dofs alone that its correction touches.
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import SLIP, STICK
+from fricmb.integrate.taylor._layout import DAMPING, INPUT, STEP, WATCH, WORK, WORK2
+from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor._series import belt_value, force_row, horner, horner_rate, polynomial
+
+
+@kernel
+def signal_at(net: Net, u: int, s: float, rate: bool) -> float:
+    """Signal u, or its rate, at s."""
+    value = 0.0
+    for k in range(net.series.shape[1] - 1, -1, -1):
+        value = value * s + (net.rates[u, k] if rate else net.series[u, k])
+    return float(value)
+
+
+@kernel
+def speed(net: Net, j: int, s: float) -> float:
+    """Velocity of dof j at s."""
+    value = 0.0
+    for k in range(net.Q.shape[0] - 1, 0, -1):
+        value = value * s + k * net.Q[k, j]
+    return float(value / net.x[STEP])
+
+
+@kernel
+def driven_power(net: Net, j: int, q: float, v: float, s: float, weight: float) -> None:
+    """Power that signals bring to dof j, and take through dampers between them and it."""
+    for e in range(net.in_start[j], net.in_start[j + 1]):
+        u = net.in_signal[e]
+        rate = signal_at(net, u, s, True)
+        viscous = -net.mass[j] * net.in_du[e]
+        stiff = net.in_b[e] - net.mass[j] * net.in_u[e]
+        net.x[INPUT] += weight * (v * net.in_b[e] * signal_at(net, u, s, False) + rate * (stiff * q + viscous * v))
+        net.x[DAMPING] += weight * 2.0 * viscous * v * rate
+
+
+@kernel
+def signal_power(net: Net, s: float, weight: float) -> None:
+    """Power between signals alone."""
+    for a in range(net.series.shape[0]):
+        rate = signal_at(net, a, s, True)
+        net.x[INPUT] -= weight * rate * net.drivers[2, a, 0]
+        for b in range(net.series.shape[0]):
+            other = signal_at(net, b, s, True)
+            dashpot = net.drivers[1, a, b] * other
+            net.x[INPUT] += weight * rate * (net.drivers[0, a, b] * signal_at(net, b, s, False) + dashpot)
+            net.x[DAMPING] += weight * rate * dashpot
+
+
+@kernel
+def count_rest(net: Net, s0: float, sign: float) -> None:
+    """Add ``sign`` times what dampers and prescribed motions do from s0 to the end of the step, contacts apart."""
+    if net.damped[0] == 0 and net.series.shape[0] == 0:
+        return
+    n = net.q.shape[0]
+    h = net.x[STEP]
+    q, v = net.flat[WORK], net.flat[WORK2]
+    last = net.Q.shape[0] - 1
+    for g in range(net.gauss.shape[1]):
+        s = s0 + (1.0 - s0) * net.gauss[0, g]
+        weight = sign * h * (1.0 - s0) * net.gauss[1, g]
+        horner_rate(net.Q, last, s, h, v)
+        if net.damped[0] == 1:
+            lost = 0.0
+            for j in range(n):
+                force = 0.0
+                for e in range(net.start[j], net.start[j + 1]):
+                    force += net.c[e] * v[net.neighbour[e]]
+                lost += net.mass[j] * v[j] * force
+            net.x[DAMPING] += weight * lost
+        if net.series.shape[0] > 0:
+            horner(net.Q, last, s, q)
+            for j in range(n):
+                driven_power(net, j, q[j], v[j], s, weight)
+            signal_power(net, s, weight)
+
+
+@kernel
+def count_local(net: Net, count: int, s0: float, sign: float) -> None:
+    """The part of :func:`count_rest` that the motion of the local dofs decides."""
+    if net.damped[0] == 0 and net.series.shape[0] == 0:
+        return
+    h = net.x[STEP]
+    for g in range(net.gauss.shape[1]):
+        s = s0 + (1.0 - s0) * net.gauss[0, g]
+        weight = sign * h * (1.0 - s0) * net.gauss[1, g]
+        for a in range(count):
+            j = net.local[a]
+            v = speed(net, j, s)
+            if net.damped[0] == 1:
+                force = 0.0
+                for e in range(net.start[j], net.start[j + 1]):
+                    i = net.neighbour[e]
+                    # a damper to a dof outside is counted from both sides
+                    force += net.c[e] * speed(net, i, s) * (1.0 if net.place[i] >= 0 else 2.0)
+                net.x[DAMPING] += weight * net.mass[j] * v * force
+            if net.in_start[j] < net.in_start[j + 1]:
+                driven_power(net, j, polynomial(net, 0, j, s), v, s, weight)
+
+
+@kernel
+def moving_belts(net: Net, s0: float) -> float:
+    """Work that belts of varying velocity bring in from s0 to the end of the step."""
+    total = 0.0
+    h = net.x[STEP]
+    for g in range(net.gauss.shape[1] if net.special.shape[0] > 0 else 0):
+        s = s0 + (1.0 - s0) * net.gauss[0, g]
+        for i in range(net.special.shape[0]):
+            c = net.special[i]
+            force = 0.0
+            for k in range(net.R.shape[0] - 1, -1, -1):
+                force = force * s + force_row(net, c, k, h)
+            total += net.gauss[1, g] * (1.0 - s0) * h * force * belt_value(net, c, s)
+    return float(total)
+
+
+@kernel
+def belt_work(net: Net, s: float) -> float:
+    """Work that belts bring in from s to the end of the step, as the polynomials now are."""
+    total = 0.0
+    weights = net.old[WATCH]
+    power = s
+    for k in range(net.R.shape[0]):
+        weights[k] = (1.0 - power) / (k + 1)
+        power *= s
+    part = net.flat[WORK]
+    for c in range(net.mode.shape[0]):
+        part[c] = 0.0
+        if net.plain[c] == 0:
+            continue
+        if net.mode[c] == STICK:
+            part[c] = -net.belt[c] * net.row_coef[net.row_start[c]] / net.compliance[c]
+        elif net.mode[c] == SLIP:
+            total -= net.belt[c] * net.slip[c] * net.sigma[c] * (1.0 - s)
+    dof = net.first_dof
+    for k in range(net.R.shape[0]):
+        row = net.R[k]
+        weight = weights[k]
+        for c in range(net.mode.shape[0]):
+            total += weight * part[c] * row[dof[c]]
+    return float(total * net.x[STEP] + moving_belts(net, s))

@@ -1,0 +1,119 @@
+"""Arrays of a run: the structure by rows and diagonals, the contacts, the step's polynomials, what is kept.
+
+With n dofs, m contacts of one row each, polynomials of degree P in s = (t - t0)/h, 0 <= s <= 1:
+
+    q_j(s) = sum_k Q[k, j] s^k           displacement
+    R_j(s) = sum_k R[k, j] s^k           M^-1 (f - K q - C v): acceleration but for the contact's own force
+    (k+1)(k+2) Q[k+2, j] = h^2 (R[k, j] + push_j F_k)
+
+and for a contact of row W, compliance D = W^T M^-1 W, belt w: slip has F constant, stick ``F = -(W^T R - w')/D``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from fricmb.integrate._pack import Table
+from fricmb.integrate._problem import Codes, Codes2, Floats, Floats2, Floats3, Ints
+
+
+class Net(NamedTuple):
+    """A network of dofs and contacts, and a run of it.
+
+    Structure: ``offset`` (d,), ``stiff``, ``visc`` (d, n): diagonals of M^-1 K and M^-1 C (none where there are many;
+    ``tridiagonal`` (1,)); ``start``, ``neighbour``, ``k``, ``c``: both by rows; ``load`` (n,) M^-1 f; ``in_start``,
+    ``in_signal``, ``in_u``, ``in_du``: M^-1 times the forces by signals and their rates, by rows; ``in_b``: forces by
+    signals that are no motions; ``mass`` (n,); ``drivers`` (3, n_u, n_u): K, C and, in the first column, f of the
+    signals; ``gauss`` (2, 8) nodes and weights; ``damped`` (1,).
+    Contacts: ``row_start``, ``row_dof``, ``row_coef``, ``push`` (M^-1 W); ``compliance``, ``belt``, ``stick``, ``slip``
+    (m,): D, w, mu_s N, mu_k N; ``wu_start``, ``wu_signal``, ``wu_coef``: Wu; ``owner`` (n,): contact of a dof or -1;
+    ``plain`` (m,): whether a contact is of one dof against a constant belt, ``special`` those that are not,
+    ``first_dof`` (m,); ``free`` (n,): 0 for a dof that a plain contact holds, else 1.
+    Signals: ``signals``, ``series``, ``rates`` (n_u, P+3) powers of s of u and u', ``large`` (2, n_u) their running
+    maxima, ``window``, ``fit``.
+    State: ``q``, ``v``, ``top`` (n,) running maxima of |v|; ``mode``, ``sigma``, ``loss``, ``mark`` (m,) with the
+    relative displacement at which a slip began; ``travel`` (n_u,): integrals of u'; ``x``, ``i``: see _layout.
+    Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (4, n).
+    Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
+    Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
+    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.  ``places``: table of blocks.
+    """
+
+    offset: Ints
+    tridiagonal: Ints
+    stiff: Floats2
+    visc: Floats2
+    start: Ints
+    neighbour: Ints
+    k: Floats
+    c: Floats
+    load: Floats
+    in_start: Ints
+    in_signal: Ints
+    in_u: Floats
+    in_du: Floats
+    in_b: Floats
+    mass: Floats
+    drivers: Floats3
+    gauss: Floats2
+    row_start: Ints
+    row_dof: Ints
+    row_coef: Floats
+    push: Floats
+    compliance: Floats
+    belt: Floats
+    stick: Floats
+    slip: Floats
+    wu_start: Ints
+    wu_signal: Ints
+    wu_coef: Floats
+    damped: Ints
+    owner: Ints
+    plain: Codes
+    special: Ints
+    first_dof: Ints
+    free: Floats
+    signals: Table
+    series: Floats2
+    rates: Floats2
+    large: Floats2
+    window: Floats
+    fit: Floats2
+    q: Floats
+    v: Floats
+    top: Floats
+    mode: Codes
+    sigma: Floats
+    loss: Floats
+    mark: Floats
+    travel: Floats
+    x: Floats
+    i: Ints
+    Q: Floats2
+    R: Floats2
+    slack: Floats
+    due: Floats
+    since: Floats
+    heap_t: Floats
+    heap_c: Ints
+    flat: Floats2
+    local: Ints
+    grown: Codes
+    kind: Codes
+    place: Ints
+    dQ: Floats2
+    dR: Floats2
+    old: Floats2
+    events: Floats2
+    times: Floats
+    left: Codes
+    steps: Floats2
+    out_q: Floats2
+    out_v: Floats2
+    out_F: Floats2
+    out_g: Floats2
+    out_loss: Floats2
+    out_mode: Codes2
+    out_x: Floats2
+    stops: Floats
+    places: Ints

@@ -1,0 +1,229 @@
+"""From a problem to the arrays of a run; why a problem cannot be run this way."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate._kept import kept
+from fricmb.integrate._lapack import addresses
+from fricmb.integrate._pack import _table
+from fricmb.integrate._problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate._room import room
+from fricmb.integrate._sparse import Csr
+from fricmb.integrate.taylor._net import Net
+
+#: A structure of at most so many diagonals is kept by diagonals.
+DIAGONALS = 9
+#: Most dofs that the correction of one transition may touch.
+WIDEST = 8192
+BLOCKS = ("taylor_series", "taylor_search", "taylor_change")
+
+
+def refusal(problem: Problem) -> str | None:
+    """What stands against Taylor steps for a problem, or None."""
+    return kept(problem, "taylor refusal", lambda: _refusal(problem))
+
+
+def _refusal(problem: Problem) -> str | None:
+    contacts, linear = problem.contacts, problem.linear
+    if len(problem.elements.table.address):
+        return "this scene has nonlinear elements"
+    if (contacts.law != LAW_CONSTANT).any() or (contacts.normal != NORMAL_CONSTANT).any() or problem.n_z:
+        return "every contact needs constant coefficients of friction and a constant normal force"
+    if problem.m != problem.n_c:
+        return "every contact must slide along one direction"
+    if not linear.csr("M").is_diagonal():
+        return "the mass matrix must be diagonal"
+    if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
+        return "the stiffness must be symmetric"
+    W = contacts.csr("W")
+    if (np.bincount(W.rows, minlength=1) > 1).any():
+        return "contacts must not share a degree of freedom"
+    return None
+
+
+def _joint(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
+    """Two matrices over their joint symmetric pattern: start, index, values of each."""
+    rows = np.concatenate([A.rows, B.rows, A.index, B.index])
+    columns = np.concatenate([A.index, B.index, A.rows, B.rows])
+    nothing = np.zeros(len(rows) - len(A.value))
+    a = Csr.of_entries(rows, columns, np.concatenate([A.value, nothing]), A.shape)
+    b_values = np.concatenate([np.zeros(len(A.value)), B.value, np.zeros(len(rows) - len(A.value) - len(B.value))])
+    b = Csr.of_entries(rows, columns, b_values, A.shape)
+    return a.start, a.index, a.value, b.value
+
+
+def _diagonals(start: Ints, index: Ints, values: Floats, n: int) -> tuple[Ints, Floats]:
+    """Offsets and diagonals (d, n), none where they are many or mostly empty."""
+    rows = np.repeat(np.arange(n), np.diff(start))
+    offset = np.unique(index - rows)
+    if len(offset) > DIAGONALS or 3 * len(index) < len(offset) * n:
+        return np.zeros(0, np.int64), np.zeros((0, n))
+    table = np.zeros((len(offset), n))
+    table[np.searchsorted(offset, index - rows), rows] = values
+    return offset, table
+
+
+def _scaled(matrix: Csr, by: Floats) -> Csr:
+    return Csr(matrix.shape, matrix.start, matrix.index, matrix.value * by[matrix.rows])
+
+
+def fastest(problem: Problem) -> float:
+    """A bound on the frequencies and decay rates of the structure (Gershgorin)."""
+    return kept(problem, "taylor fastest", lambda: _fastest(problem))
+
+
+def _fastest(problem: Problem) -> float:
+    n = problem.n
+    inside = slice(0, n), slice(0, n)
+    M = problem.linear.csr("M").diagonal()
+    K, C = problem.linear.csr("Kx").block(*inside), problem.linear.csr("Cx").block(*inside)
+    scale = 1.0 / np.sqrt(M)
+    sums = [
+        np.bincount(A.rows, np.abs(A.value) * scale[A.rows] * scale[A.index], n).max(initial=0.0) for A in (K, C)
+    ]
+    return float(0.5 * sums[1] + np.sqrt(0.25 * sums[1] ** 2 + sums[0]))
+
+
+def _statics(problem: Problem) -> dict[str, Any]:
+    n, linear = problem.n, problem.linear
+    inside, drivers = slice(0, n), slice(n, n + problem.n_u)
+    inverse = 1.0 / linear.csr("M").diagonal()
+    Kx, Cx, B = linear.csr("Kx"), linear.csr("Cx"), linear.csr("B")
+    K, C = _scaled(Kx.block(inside, inside), inverse), _scaled(Cx.block(inside, inside), inverse)
+    start, index, k, c = _joint(K, C)
+    offset, stiff = _diagonals(start, index, k, n)
+    damped = bool(c.any())
+    visc = _diagonals(start, index, c, n)[1] if damped and len(offset) else np.zeros((0, n))
+    Ku, Cu = Kx.block(inside, drivers), Cx.block(inside, drivers)
+    Fu = Csr.of_entries(
+        np.concatenate([B.rows, Ku.rows]), np.concatenate([B.index, Ku.index]),
+        np.concatenate([B.value, -Ku.value]), (n, problem.n_u),
+    )  # fmt: skip
+    Fu, Cu = _scaled(Fu, inverse), _scaled(Cu, -inverse)
+    in_start, in_signal, in_u, in_du = _rectangular(Fu, Cu)
+    # the same pattern: where B has nothing, 0
+    in_b = _rectangular(Csr(Fu.shape, Fu.start, Fu.index, 0.0 * Fu.value), _over(B, Cu))[3]
+    at, weights = np.polynomial.legendre.leggauss(8)
+    outside = np.zeros((3, problem.n_u, problem.n_u))
+    outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
+    outside[2, :, :1] = linear.fx[n:, None]
+    return {
+        "offset": offset, "tridiagonal": np.array([int(n > 2 and np.array_equal(offset, [-1, 0, 1]))]),
+        "stiff": stiff, "visc": visc, "start": start, "neighbour": index, "k": k, "c": c,
+        "load": inverse * linear.fx[:n], "in_start": in_start, "in_signal": in_signal, "in_u": in_u, "in_du": in_du,
+        "in_b": in_b, "mass": 1.0 / inverse, "drivers": outside,
+        "gauss": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "damped": np.array([int(damped)]),
+        "signals": _table(problem.signals.table), **_contact_arrays(problem, inverse),
+    }  # fmt: skip
+
+
+def _over(A: Csr, B: Csr) -> Csr:
+    """A over the joint pattern of both."""
+    rows, columns = np.concatenate([A.rows, B.rows]), np.concatenate([A.index, B.index])
+    return Csr.of_entries(rows, columns, np.concatenate([A.value, 0.0 * B.value]), A.shape)
+
+
+def _rectangular(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
+    rows, columns = np.concatenate([A.rows, B.rows]), np.concatenate([A.index, B.index])
+    a = Csr.of_entries(rows, columns, np.concatenate([A.value, 0.0 * B.value]), A.shape)
+    b = Csr.of_entries(rows, columns, np.concatenate([0.0 * A.value, B.value]), A.shape)
+    return a.start, a.index, a.value, b.value
+
+
+def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
+    contacts, n, m = problem.contacts, problem.n, problem.n_c
+    rows = contacts.csr("W").transposed()
+    Wu = contacts.csr("Wu")
+    push = inverse[rows.index] * rows.value
+    compliance = np.bincount(rows.rows, rows.value * push, m)
+    owner = np.full(n, -1, dtype=np.int64)
+    owner[rows.index] = rows.rows
+    plain = (np.diff(rows.start) == 1) & (np.diff(Wu.start) == 0)
+    N = contacts.N
+    return {
+        "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
+        "compliance": compliance, "belt": contacts.w, "stick": contacts.mu_s * N, "slip": contacts.mu_0 * N,
+        "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "owner": owner,
+        "plain": plain.astype(np.int8), "special": np.flatnonzero(~plain),
+        "first_dof": rows.index[rows.start[:-1]],
+    }  # fmt: skip
+
+
+def _fit() -> Floats:
+    """Powers of s (9, 9) of a polynomial by value, slope and second derivative at 0, 1/2 and 1; row 9 is room."""
+    powers = np.arange(9)
+    lines = []
+    for s in (0.0, 0.5, 1.0):
+        lines.append(s**powers)
+        lines.append(powers * s ** np.maximum(powers - 1, 0))
+        lines.append(powers * (powers - 1) * s ** np.maximum(powers - 2, 0))
+    return np.vstack([np.linalg.inv(np.array(lines)), np.zeros((1, 9))])
+
+
+def net_of(problem: Problem, degree: int) -> Net:
+    """The arrays of a run with polynomials of this degree, all but what is kept of it; made once."""
+    return kept(problem, ("taylor", degree), lambda: _net(problem, degree))
+
+
+def _net(problem: Problem, P: int) -> Net:
+    n, m, n_u = problem.n, problem.n_c, problem.n_u
+    statics = kept(problem, "taylor statics", lambda: _statics(problem))
+    widest = _widest(statics, n, P)
+    # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
+    wide = 8 * ((n + 7) // 8 | 1)
+    i, z = np.int64, np.zeros
+    arrays = {
+        **statics,
+        "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit(),
+        "q": z(n), "v": z(n), "top": z(n), "mode": z(m, np.int8), "sigma": np.ones(m), "loss": z(m), "mark": z(m),
+        "travel": z(n_u), "free": np.ones(n), "x": z(16), "i": z(16, i), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
+        "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
+        "flat": z((5, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
+        "place": np.full(n, -1, dtype=i),
+        "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)), "stops": z(1),
+        "places": addresses(*BLOCKS), **no_samples(n, m), "events": z((64, 3)), "steps": z((64, 2)),
+    }  # fmt: skip
+    return room(Net(**{name: _solid(arrays[name]) for name in Net._fields}))
+
+
+def _widest(statics: dict[str, Any], n: int, degree: int) -> int:
+    """How many dofs the correction of a transition may touch: twice as many as around some of them."""
+    start, index = statics["start"], statics["neighbour"]
+    rings = degree if statics["damped"][0] else degree // 2
+    largest = 1
+    for first in {0, n // 2, n - 1, int(np.argmax(np.diff(start)))}:
+        inside = np.zeros(n, dtype=bool)
+        inside[first] = True
+        front = np.array([first])
+        for _ in range(rings):
+            around = np.unique(np.concatenate([index[start[j] : start[j + 1]] for j in front]))
+            front = around[~inside[around]]
+            inside[front] = True
+            if not len(front) or inside.sum() > WIDEST:
+                break
+        largest = max(largest, int(inside.sum()))
+    return min(2 * largest + 8, WIDEST)
+
+
+def _solid(x: Any) -> Any:
+    if not isinstance(x, np.ndarray):
+        return x
+    return np.ascontiguousarray(x, dtype=None if x.dtype in (np.int8, np.float64) else np.int64)
+
+
+def no_samples(n: int, m: int, count: int = 0) -> dict[str, Any]:
+    """Room for so many samples."""
+    z = np.zeros
+    return {
+        "times": z(count), "left": z(count, np.int8), "out_q": z((count, n)), "out_v": z((count, n)),
+        "out_F": z((count, m)), "out_g": z((count, m)), "out_loss": z((count, m)),
+        "out_mode": z((count, m), np.int8), "out_x": z((count, 2)),
+    }  # fmt: skip
+
+
+def with_arrays(net: Net, **arrays: Any) -> Net:
+    """The same run with some arrays exchanged."""
+    return room(Net._make([arrays.get(name, getattr(net, name)) for name in Net._fields]))

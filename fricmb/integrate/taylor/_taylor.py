@@ -1,0 +1,196 @@
+"""The integrator: degree and step from the tolerance, the run, its checkpoints."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._problem import SLIP, Floats, Problem, Start
+from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
+from fricmb.integrate.taylor._drive import (
+    CROWDED,
+    DONE,
+    FULL,
+    NOT_FINITE,
+    PAUSE,
+    SETTLE,
+    WIDE,
+    drive_taylor,
+)  # fmt: skip
+from fricmb.integrate.taylor._layout import (
+    CUT,
+    END,
+    LIMIT,
+    LONGEST,
+    N_EVENTS,
+    N_SAMPLES,
+    N_SEARCHES,
+    N_SHORTER,
+    N_STEPS,
+    NEXT,
+    NOISE,
+    PHASE,
+    STEP,
+    TIME,
+    TOL,
+)  # fmt: skip
+from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor._prepare import fastest, net_of, no_samples, refusal, with_arrays
+from fricmb.integrate.taylor._settle import settle_start
+from fricmb.integrate.taylor._trajectory import Checkpoints, TaylorRun
+
+FAILURES = {
+    CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (timestepping takes them)",
+    WIDE: "a transition is felt by too many degrees of freedom within one step (timestepping or bdf take this)",
+    NOT_FINITE: "the state grew beyond what numbers hold",
+}
+
+
+def degree_for(rtol: float) -> int:
+    """Degree of the polynomials that takes the least time to a tolerance."""
+    return int(np.clip(round(7.0 - 1.1 * math.log10(rtol)), 8, 22))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Taylor(Integrator):
+    """Taylor steps of all degrees of freedom at once, with polynomial corrections around every transition.
+
+    For many contacts along one direction each under constant coefficients, in structures with a diagonal mass matrix
+    and few neighbours a degree of freedom (chains, grids).  Explicit: the step is limited by the fastest mode.
+
+    Attributes
+    ----------
+    degree : int or None
+        Of the polynomials, 6 to 30; None: from the tolerance.
+    reach : float
+        Longest step times the highest frequency.
+    crowd : int
+        Transitions a contact, on average, from which on a step counts as too crowded.
+    """
+
+    degree: int | None = None
+    reach: float = 3.0
+    crowd: int = 20
+
+    name: ClassVar[str] = "taylor"
+    order: ClassVar[str] = "8 to 22"
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports"})
+
+    def refuses(self, problem: Problem) -> str | None:
+        """Why this integrator cannot run the problem, or None."""
+        reason = refusal(problem)
+        return None if reason is None else f"taylor takes chains and their like; {reason}"
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> Trajectory:
+        """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
+        degree = self.degree or degree_for(tolerance.rtol)
+        with _running:
+            net = net_of(problem, degree)
+            net = set_start(problem, net, start, t_end, tolerance, self.reach, self.crowd)
+            if t_eval is not None:
+                room = no_samples(problem.n, problem.n_c, len(t_eval))
+                net = with_arrays(net, **{**room, "times": np.ascontiguousarray(t_eval, dtype=float)})
+            settle_start(net)
+            marks = Checkpoints(problem.n)
+            code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
+            return _trajectory(problem, net, degree, marks, code, t_eval)
+
+
+#: Arrays are kept with the problem, for one run at a time.
+_running = threading.Lock()
+
+
+def set_start(
+    problem: Problem, net: Net, start: Start, t_end: float, tolerance: Tolerance, reach: float, crowd: int
+) -> Net:
+    """The state and the numbers of a run."""
+    net.q[:], net.v[:] = start.q, start.v
+    net.top[:] = np.abs(start.v)
+    if tolerance.atol_v is not None:
+        np.maximum(net.top, tolerance.atol_v / tolerance.rtol, out=net.top)
+    breaks = problem.signals.breakpoints
+    inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
+    net = with_arrays(net, stops=np.append(inside, t_end))
+    span = t_end - start.t
+    w = fastest(problem)
+    longest = min(span, reach / w) if w > 0.0 else span
+    speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
+    net.x[:] = 0.0
+    net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest
+    net.x[TOL], net.x[CUT] = 0.3 * tolerance.rtol, 0.0
+    net.x[STEP] = longest
+    net.x[NOISE] = 1e-13 * speed
+    net.i[:] = 0
+    net.i[LIMIT] = crowd * problem.n_c + 1000
+    net.i[PHASE] = SETTLE
+    net.loss[:], net.travel[:], net.large[:] = 0.0, 0.0, 0.0
+    net.mode[:], net.sigma[:] = SLIP, 1.0
+    net.free[:] = 1.0
+    if start.mode is not None:
+        net.mode[:] = start.mode
+        if start.direction is not None:
+            net.sigma[:] = np.where(start.direction == 0.0, 1.0, np.sign(start.direction))
+    return net
+
+
+def run(
+    net: Net, marks: Checkpoints, every: float, progress: Callable[[float], None] | None
+) -> tuple[int, Net]:
+    """Drive to the end; checkpoints are taken where the steps of a stride are done."""
+    marks.add(net)
+    report = float(net.x[TIME]) + every
+    while True:
+        code = drive_taylor(net, math.inf, marks.stride)
+        if code == PAUSE:
+            marks.add(net)
+            if progress is not None and net.x[TIME] > report:
+                report += every
+                progress(float(net.x[TIME]))
+        elif code == FULL:
+            events = _longer(net.events, int(net.i[N_EVENTS]) + len(net.mode))
+            net = with_arrays(net, events=events, steps=_longer(net.steps, int(net.i[N_STEPS])))
+        else:
+            return code, net
+
+
+def _longer(table: Floats, wanted: int) -> Floats:
+    if wanted < len(table):
+        return table
+    return np.concatenate([table, np.zeros((max(len(table), wanted), table.shape[1]))])
+
+
+def _trajectory(
+    problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
+) -> TaylorRun:
+    events = net.events[: net.i[N_EVENTS]].copy()
+    transitions = Transitions(t=events[:, 0].copy(), contact=events[:, 1].astype(int), kind=events[:, 2].astype(int))
+    steps = int(net.i[N_STEPS])
+    counters = Counters(
+        n_steps=steps, n_rejected=int(net.i[N_SHORTER]), n_rhs=steps * degree, n_jac=int(net.i[N_SEARCHES])
+    )
+    end = Start(
+        t=float(net.x[TIME]), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0), mode=net.mode.copy(),
+        direction=net.sigma.copy(),
+    )  # fmt: skip
+    failure = None if code == DONE else FAILURES[code].format(limit=int(net.i[LIMIT]))
+    taken = int(net.i[N_SAMPLES])
+    held = None if t_eval is None or code != DONE else net
+    return TaylorRun(
+        problem, degree, net.steps[:steps].copy(), transitions, counters, end, failure, marks, held, taken
+    )

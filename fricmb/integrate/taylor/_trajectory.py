@@ -1,0 +1,135 @@
+"""A run kept as its steps, its transitions and a few states from which any part can be run again."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate._problem import Codes, Floats, Problem, Start
+from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.taylor._drive import PAUSE, drive_taylor
+from fricmb.integrate.taylor._layout import N_SAMPLES
+from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor._prepare import net_of, no_samples, with_arrays
+
+#: Numbers that checkpoints and rows may hold altogether.
+NUMBERS, ROWS = 3_000_000, 20_000_000
+#: Arrays of the state.
+STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "travel", "large", "free", "x", "i", "stops")
+
+
+class Checkpoints:
+    """States at the starts of steps, a stride apart; every other one goes when they are too many."""
+
+    def __init__(self, n: int) -> None:
+        self._most = int(np.clip(NUMBERS / (7 * max(n, 1)), 4, 64))
+        self.stride = 4
+        self.held: list[dict[str, Any]] = []
+
+    def add(self, net: Net) -> None:
+        """Keep the present state."""
+        self.held.append({name: getattr(net, name).copy() for name in STATE})
+        if len(self.held) > self._most:
+            del self.held[1::2]
+            self.stride *= 2
+
+    def before(self, t: float) -> dict[str, Any]:
+        """The last state not after t."""
+        times = [float(state["x"][0]) for state in self.held]
+        return self.held[max(0, int(np.searchsorted(times, t, side="right")) - 1)]
+
+
+class TaylorRun(Trajectory):
+    """See the module; values at the times asked for in advance are held, others are run again from a checkpoint."""
+
+    def __init__(
+        self, problem: Problem, degree: int, steps: Floats, transitions: Transitions, counters: Counters, end: Start,
+        failure: str | None, marks: Checkpoints, held: Net | None, taken: int,
+    ) -> None:  # fmt: skip
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._degree = degree
+        self._steps = steps
+        self._marks = marks.held
+        self._kept = None if held is None else _samples(problem, held, slice(0, taken))
+
+    def _row_times(self) -> tuple[Floats, Codes]:
+        """Times of the rows, and whether the left-hand value is meant."""
+        starts = np.append(self._steps[:, 0], self.end.t)
+        width = 2 * self.problem.n + 4 * max(self.problem.n_c, 1)
+        events = self.transitions.t
+        if (len(starts) + 2 * len(events)) * width <= ROWS:
+            inner = starts[~np.isin(starts, events)]
+            t = np.concatenate([inner, events, events])
+            left = np.concatenate([np.zeros(len(inner)), np.ones(len(events)), np.zeros(len(events))])
+            # transitions at one instant share their rows
+            table = np.unique(np.stack([t, 1.0 - left], axis=1), axis=0)
+            return table[:, 0], (1.0 - table[:, 1]).astype(np.int8)
+        thin = max(1, -(-len(starts) * width // ROWS))
+        chosen = np.append(starts[:-1:thin], starts[-1])
+        return chosen, np.zeros(len(chosen), np.int8)
+
+    @property
+    def t(self) -> Floats:
+        """Times of the rows."""
+        return self._row_times()[0]
+
+    def rows(self) -> Samples:
+        """Values at the steps, and on both sides of transitions where these are not too many."""
+        return self._again(*self._row_times())
+
+    def sample(self, t: Floats) -> Samples:
+        """Values at any times within the run."""
+        t = np.ascontiguousarray(t, dtype=float)
+        if self._kept is not None and np.array_equal(t, self._kept.t):
+            return self._kept
+        order = np.argsort(t, kind="stable")
+        found = self._again(t[order], np.zeros(len(t), np.int8))
+        if np.array_equal(order, np.arange(len(t))):
+            return found
+        back = np.empty_like(order)
+        back[order] = np.arange(len(t))
+        return Samples(**{name: getattr(found, name)[..., back] for name in Samples.__dataclass_fields__})
+
+    def _again(self, t: Floats, left: Codes) -> Samples:
+        """Run again through rising times."""
+        problem = self.problem
+        net = net_of(problem, self._degree)
+        if len(t) == 0:
+            return _samples(problem, with_arrays(net, **no_samples(problem.n, problem.n_c)), slice(0, 0))
+        from fricmb.integrate.taylor._taylor import _running
+
+        with _running:
+            state = self._state_before(float(t[0]))
+            for name in STATE:
+                if name != "stops":
+                    getattr(net, name)[:] = state[name]
+            last = len(self.transitions.t)
+            net = with_arrays(
+                net, stops=state["stops"], events=np.zeros((last + problem.n_c + 1, 3)),
+                steps=np.zeros((len(self._steps) + 1, 2)),
+                **{**no_samples(problem.n, problem.n_c, len(t)), "times": np.ascontiguousarray(t), "left": left},
+            )  # fmt: skip
+            net.i[N_SAMPLES] = 0
+            while net.i[N_SAMPLES] < len(t) and drive_taylor(net, np.inf, 1) == PAUSE:
+                pass
+            return _samples(problem, net, slice(0, len(t)))
+
+    def _state_before(self, t: float) -> dict[str, Any]:
+        times = [float(state["x"][0]) for state in self._marks]
+        # a left-hand value at the start of a step belongs to the step before
+        return self._marks[max(0, int(np.searchsorted(times, t, side="left")) - 1)]
+
+
+def _samples(problem: Problem, net: Net, part: slice) -> Samples:
+    t = net.times[part]
+    N = np.broadcast_to(np.asarray(problem.contacts.N, float)[:, None], (problem.n_c, len(t)))
+    return Samples(
+        t=t, q=net.out_q[part].T, v=net.out_v[part].T, z=np.empty((0, len(t))), F=net.out_F[part].T,
+        g=net.out_g[part].T, N=N, mode=net.out_mode[part].T, friction_loss=net.out_loss[part].T,
+        damping_loss=net.out_x[part, 1].copy(), input=net.out_x[part, 0].copy(),
+    )  # fmt: skip
