@@ -21,8 +21,10 @@ _STYLE = (
     "padding:1px 10px 1px 0;font-weight:normal}.fricmb th{color:#555}.fricmb canvas{border:1px solid #ccc;width:100%}"
     ".fricmb pre{font-size:12px;line-height:1.25}.fricmb details{margin:4px 0}</style>"
 )
-#: Points of a curve in a view of a run.
-_POINTS = 3000
+#: Points of a curve in a view of a run, numbers in it altogether, and signals that are offered at most.
+_POINTS, _NUMBERS, _SIGNALS = 3000, 300_000, 200
+#: Scenes of more bodies are not drawn.
+_DRAWN = 60
 
 
 def _block(*parts: str) -> str:
@@ -53,7 +55,7 @@ def scene_html(scene: Any) -> str:
     values = [(name, _short(value)) for name, value in scene.parameters.items()]
     return _block(
         f"<b>{escape(scene.name)}</b> ({len(scene.dof_names)} degrees of freedom)<br>",
-        _image(draw_scene(scene)),
+        _image(draw_scene(scene)) if len(scene.bodies) <= _DRAWN else "",
         f"<details><summary>{len(parts)} parts</summary>{_table(parts)}</details>",
         f"<details><summary>{len(values)} parameters</summary>{_table(values)}</details>",
     )
@@ -74,8 +76,10 @@ def law_html(law: Any) -> str:
 
 def solution_html(sol: Solution) -> str:
     """A run: any of its signals over time, with stick shaded; drag to enlarge, double click for the whole."""
-    t = np.linspace(sol.t_start, sol.t_end, _POINTS)
-    columns = sol.at(t).columns()
+    names = list(sol.columns())[:_SIGNALS]
+    t = np.linspace(sol.t_start, sol.t_end, max(300, min(_POINTS, _NUMBERS // max(1, len(names)))))
+    every = sol.at(t).columns()
+    columns = {name: every[name] for name in names}
     signals = {name: [float(f"{x:.6g}") for x in np.asarray(x, dtype=float)] for name, x in columns.items()}
     data = {"t": [float(f"{x:.8g}") for x in t], "signals": signals, "stick": _stuck(sol)}
     options = "".join(f"<option>{escape(name)}</option>" for name in signals)
@@ -91,6 +95,13 @@ def solution_html(sol: Solution) -> str:
         '<canvas width="1700" height="600"></canvas>',
         f"<script>{script}</script>",
     )
+
+
+def solution_notebook(sol: Solution) -> str:
+    """What a notebook shows; of a loaded file a line, since more would open the pickle in it unasked."""
+    if isinstance(sol._run, bytes):
+        return _block(f"<pre>{escape(repr(sol))}</pre>sol.plot.view(path) writes an interactive view")
+    return solution_html(sol)
 
 
 def solution_page(sol: Solution) -> str:

@@ -61,14 +61,15 @@ def _stack(scene: Any, contacts: list[Any]) -> tuple[dict[str, int], dict[str, i
     rows: dict[str, int] = {}
     columns: dict[str, int] = {}
 
-    def row_of(name: str, seen: tuple[str, ...] = ()) -> int:
-        if name == "ground":
-            return 0
-        under = below.get(name)
-        return 1 + row_of(under, (*seen, name)) if under is not None and under not in seen else 1
-
     for name in names:
-        rows[name] = row_of(name)
+        tower = [name]
+        while tower[-1] in below and below[tower[-1]] not in tower and tower[-1] not in rows:
+            tower.append(below[tower[-1]])
+        # the lowest stands on the ground, or was placed before
+        base = rows.get(tower[-1], 0 if tower[-1] == "ground" else 1)
+        for height, member in enumerate(reversed(tower)):
+            rows[member] = base + height
+    rows.pop("ground", None)
     taken: set[tuple[int, int]] = set()
     for name in sorted(names, key=lambda n: rows[n]):
         column = columns.get(below.get(name, ""), 0)

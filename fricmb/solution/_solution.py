@@ -274,9 +274,9 @@ class Solution:
         return summarise(self)
 
     def _repr_html_(self) -> str:
-        from fricmb.plot._html import solution_html
+        from fricmb.plot._html import solution_notebook
 
-        return solution_html(self)
+        return solution_notebook(self)
 
     def __repr__(self) -> str:
         return describe(self)

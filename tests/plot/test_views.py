@@ -126,6 +126,22 @@ def test_notebooks_show_scene_plan_run_and_law(belt):
     assert "&lt;b&gt;&amp;" in odd._repr_html_()
 
 
+def test_a_loaded_run_is_not_opened_unasked(belt, tmp_path):
+    belt.save(tmp_path / "run.npz")
+    loaded = fm.Solution.load(tmp_path / "run.npz")
+    assert f"{len(belt.events)} events" in loaded._repr_html_()
+    assert isinstance(loaded._run, bytes)
+    assert "<canvas" in loaded.plot.view(tmp_path / "view.html").read_text()
+
+
+def test_large_scenes_are_listed_not_drawn():
+    stack = fm.models.block_stack(1500, mu_s=[0.5] * 1500)
+    html = stack._repr_html_()
+    assert "<img" not in html
+    assert "block1500" in html
+    assert layout(stack).places["block1500"][1] > 1000
+
+
 def test_command(belt, tmp_path, capsys):
     belt.save(tmp_path / "solution.npz")
     for kind, name, ending in (("spectrum", "mass.x", "png"), ("sound", "mass.x", "wav"), ("view", None, "html")):
