@@ -34,15 +34,7 @@ scene = fm.Scene(
 
 modes = fm.analysis.complex_eigenvalues(scene, over="sole.law.mu_k", values=np.linspace(0.0, 1.2, 61))
 print(modes)
-figure, (top, bottom) = plt.subplots(2, 1, figsize=(6.5, 5), sharex=True, layout="constrained")
-for k, (colour, style) in enumerate((("#006BA4", "-"), ("#C85200", "--"))):
-    top.plot(modes.values, modes.frequency[:, k], style, color=colour)
-    bottom.plot(modes.values, modes.growth[:, k], style, color=colour)
-top.set_ylabel("angular frequency [1]")
-bottom.set_ylabel("growth rate [1]")
-bottom.set_xlabel("coefficient of friction [1]")
-for ax in (top, bottom):
-    ax.axvline(modes.critical[0].value, color="0.5", linewidth=0.8)
+fm.plot.eigenvalues(modes)
 plt.show()
 
 # %%
@@ -53,12 +45,7 @@ damped = scene.with_parameters({"cx.damping": 0.02})
 found = fm.analysis.stability_map(
     damped, over=("sole.law.mu_k", "cy.damping"), values=(np.linspace(0.4, 1.0, 16), np.linspace(0.0, 0.4, 11))
 )
-figure, ax = plt.subplots(figsize=(6.5, 4), layout="constrained")
-filled = ax.contourf(found.values[1], found.values[0], found.growth, levels=12, cmap="cividis")
-ax.contour(found.values[1], found.values[0], found.growth, levels=[0.0], colors="white", linewidths=1.5)
-figure.colorbar(filled, label="largest growth rate [1]")
-ax.set_xlabel("damping towards the belt [1]")
-ax.set_ylabel("coefficient of friction [1]")
+fm.plot.stability(found)
 plt.show()
 
 # %%

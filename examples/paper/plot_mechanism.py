@@ -35,7 +35,7 @@ passed_on = {key: k.impulse / runs[key].at(k.begin).velocity("rotor.y") for key,
 # Impulses, swing by swing; filled where the lining sticks. They grow as the valleys deepen, and are there before the
 # first stick.
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2), layout="constrained")
 markers = {3.0: "o", 5.0: "s", 10.0: "^"}
 colours = {100.0: "#006BA4", 1000.0: "#C85200"}
 for (load, mass_ratio), k in kicks.items():
@@ -61,7 +61,7 @@ for (load, mass_ratio), k in kicks.items():
     )
 left.set_xlabel("time [1]")
 left.set_ylabel("impulse across in each valley [1]")
-left.legend(fontsize="small")
+figure.legend(loc="outside upper center", ncols=3, fontsize="small", frameon=False)
 right.set_xlabel("least slip over load [1]")
 right.set_ylabel("impulse over the rotor's speed across [1]")
 for ax in (left, right):

@@ -1,4 +1,6 @@
 from ._solution import SolutionPlots as SolutionPlots
+from ._stability import eigenvalues as eigenvalues
+from ._stability import stability as stability
 from ._style import BLUE as BLUE
 from ._style import COLOURS as COLOURS
 from ._style import DARK as DARK
@@ -8,4 +10,16 @@ from ._style import finish as finish
 from ._units import SCENE_UNITS as SCENE_UNITS
 from ._units import Units as Units
 
-__all__ = ["BLUE", "COLOURS", "DARK", "ORANGE", "SCENE_UNITS", "THIN", "SolutionPlots", "Units", "finish"]
+__all__ = [
+    "BLUE",
+    "COLOURS",
+    "DARK",
+    "ORANGE",
+    "SCENE_UNITS",
+    "THIN",
+    "SolutionPlots",
+    "Units",
+    "eigenvalues",
+    "finish",
+    "stability",
+]

@@ -73,6 +73,23 @@ def test_bodies_stand_on_what_they_touch():
     assert len({x for x, _ in places.values()}) == 1
 
 
+def test_stability_pictures():
+    law = fm.laws.Stribeck(mu_s=0.5, mu_k=0.3, v_s=0.2, exponent=1.0)
+    scene = fm.models.belt_oscillator(damping=0.05, law=law)
+    speeds = np.linspace(0.2, 1.0, 5)
+    found = fm.analysis.complex_eigenvalues(scene, over="belt.velocity.x", values=speeds)
+    top, bottom = fm.plot.eigenvalues(found).axes
+    assert top.lines[0].get_ydata() == pytest.approx(found.frequency[:, 0])
+    assert bottom.lines[0].get_ydata() == pytest.approx(found.growth[:, 0])
+    assert bottom.lines[1].get_xdata()[0] == found.critical[0].value
+    assert bottom.get_xlabel() == "belt.velocity.x"
+    chart = fm.analysis.stability_map(
+        scene, over=("belt.velocity.x", "damper.damping"), values=(speeds, [0.0, 0.05, 0.1])
+    )
+    ax, _ = fm.plot.stability(chart).axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("damper.damping", "belt.velocity.x")
+
+
 def test_animation_files(belt, tmp_path):
     gif = belt.plot.animation(tmp_path / "a.gif", frames=4)
     assert Image.open(gif).n_frames == 4

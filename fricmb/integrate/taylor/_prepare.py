@@ -81,9 +81,7 @@ def _fastest(problem: Problem) -> float:
     M = problem.linear.csr("M").diagonal()
     K, C = problem.linear.csr("Kx").block(*inside), problem.linear.csr("Cx").block(*inside)
     scale = 1.0 / np.sqrt(M)
-    sums = [
-        np.bincount(A.rows, np.abs(A.value) * scale[A.rows] * scale[A.index], n).max(initial=0.0) for A in (K, C)
-    ]
+    sums = [np.bincount(A.rows, np.abs(A.value) * scale[A.rows] * scale[A.index], n).max(initial=0.0) for A in (K, C)]
     return float(0.5 * sums[1] + np.sqrt(0.25 * sums[1] ** 2 + sums[0]))
 
 

@@ -149,9 +149,7 @@ def set_start(
     return net
 
 
-def run(
-    net: Net, marks: Checkpoints, every: float, progress: Callable[[float], None] | None
-) -> tuple[int, Net]:
+def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], None] | None) -> tuple[int, Net]:
     """Drive to the end; checkpoints are taken where the steps of a stride are done."""
     marks.add(net)
     report = float(net.x[TIME]) + every
@@ -191,6 +189,4 @@ def _trajectory(
     failure = None if code == DONE else FAILURES[code].format(limit=int(net.i[LIMIT]))
     taken = int(net.i[N_SAMPLES])
     held = None if t_eval is None or code != DONE else net
-    return TaylorRun(
-        problem, degree, net.steps[:steps].copy(), transitions, counters, end, failure, marks, held, taken
-    )
+    return TaylorRun(problem, degree, net.steps[:steps].copy(), transitions, counters, end, failure, marks, held, taken)
