@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
-from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of
+from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of, row_scale
 from fricmb.errors import SceneError
 from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
@@ -138,6 +138,7 @@ class SceneMechanics:
             contacts=tuple(contact.name for contact in contacts),
             directions=tuple(directions for directions, _ in labels),
             states=tuple(states for _, states in labels),
+            scale=tuple(row_scale(contact) for contact in contacts),
             motions=_points(self.placed, self.plan.dofs),
             signals={name: i for i, name in enumerate(self.driven.names)},
         )

@@ -111,8 +111,13 @@ def _ranges(contacts: list[int], start: Ints) -> Ints:
 def contact_names(contact: Contact) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Labels of a contact's directions and of its law's states, as its arrays have them."""
     letters = tuple(direction.label for direction in contact.directions())
-    d = len(letters)
-    return letters, tuple(f"{state}.{c}" if d > 1 else state for state in contact.law.states for c in letters)
+    return letters, contact.law.state_labels(letters)
+
+
+def row_scale(contact: Contact) -> tuple[float, ...]:
+    """Factors of a contact's rows: those of a law that is not isotropic are stored scaled (see ``Names.scale``)."""
+    scale = contact.law.numeric().axis_scale() or (1.0,) * len(contact.directions())
+    return tuple(float(s) for s in scale)
 
 
 @dataclass(frozen=True, kw_only=True)

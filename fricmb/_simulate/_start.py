@@ -138,7 +138,8 @@ def _modes(mechanics: SceneMechanics, before: Solution) -> tuple[Any, Any]:
     for k, name in enumerate(new.contacts):
         j = old.contact_index.get(name)
         smooth = bool(is_smooth[k])
-        if j is None or old.directions[j] != new.directions[k] or (was_smooth[j] and not smooth):
+        rescaled = j is not None and old.scale[j : j + 1] != new.scale[k : k + 1]
+        if j is None or rescaled or old.directions[j] != new.directions[k] or (was_smooth[j] and not smooth):
             return None, None
         mode[k] = SLIP if smooth and end.mode[j] != 2 else end.mode[j]
         direction[new.row[k] : new.row[k + 1]] = end.direction[old.row[j] : old.row[j + 1]]

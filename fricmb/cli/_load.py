@@ -7,7 +7,7 @@ import importlib.util
 import inspect
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -31,17 +31,23 @@ class Loaded:
 
 def load(model: str, *, case: str | None = None, values: Sequence[str] = ()) -> Loaded:
     """The scene of a built-in model or of a Python file, with the settings of the command line."""
-    settings = dict(_setting(text) for text in values)
+    settings = dict(setting(text) for text in values)
     if case is not None:
         settings = {"case": case, **settings}
     if model in catalogue:
-        return _built_in(model, settings)
+        known = catalogue[model]
+        return _built_in(model, settings, known.build, known.t_end, known.units)
     if model.endswith(".py") or Path(model).is_file():
         return _from_file(Path(model), settings)
-    raise unknown_name("model", model, catalogue)
+    found, broken = fm.laws.published("fricmb.models")
+    if model in found:
+        return _built_in(model, settings, found[model], None, SCENE_UNITS)
+    if model in broken:
+        raise SceneError(f"model {model!r}: {broken[model]}")
+    raise unknown_name("model", model, [*catalogue, *found])
 
 
-def _setting(text: str) -> tuple[str, Any]:
+def setting(text: str) -> tuple[str, Any]:
     """``name=value``; a value that is no Python literal is a string."""
     name, equals, value = text.partition("=")
     if not (name and equals and value):
@@ -52,14 +58,15 @@ def _setting(text: str) -> tuple[str, Any]:
         return name.strip(), value.strip()
 
 
-def _built_in(name: str, settings: dict[str, Any]) -> Loaded:
-    model = catalogue[name]
-    arguments = inspect.signature(model.build).parameters
+def _built_in(
+    name: str, settings: dict[str, Any], build: Callable[..., Any], t_end: float | None, units: Units
+) -> Loaded:
+    arguments = inspect.signature(build).parameters
     own = {key: value for key, value in settings.items() if key in arguments}
     if "case" in settings and "case" not in arguments:
         raise SceneError(f"--case: {name} has no cases; its arguments are {', '.join(arguments)}")
     try:
-        scene = model.build(**own)
+        scene = build(**own)
     except (TypeError, ValueError) as error:
         if isinstance(error, FricmbError):
             raise
@@ -70,7 +77,7 @@ def _built_in(name: str, settings: dict[str, Any]) -> Loaded:
         scene = _with_parameters(scene, rest)
     except KeyError as error:
         raise SceneError(f"--set: {error}; arguments of {name}: {', '.join(arguments)}") from None
-    return Loaded(scene=scene, label=label, t_end=model.t_end, units=model.units)
+    return Loaded(scene=scene, label=label, t_end=t_end, units=units)
 
 
 def _from_file(path: Path, settings: dict[str, Any]) -> Loaded:

@@ -61,6 +61,7 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
     _add_run(commands)
     _add_list(commands)
+    _add_law(commands)
     _add_equations(commands)
     _add_plan(commands)
     _add_bench(commands)
@@ -126,7 +127,22 @@ def _add_run(commands: _Commands) -> None:
 
 
 def _add_list(commands: _Commands) -> None:
-    _command(commands, "list", "list the built-in models, laws and integrators", "_show:show_list")
+    sub = _command(commands, "list", "list models, laws and integrators, built in and published", "_show:show_list")
+    sub.add_argument("what", nargs="?", choices=("models", "laws", "integrators"), help="only these")
+
+
+def _add_law(commands: _Commands) -> None:
+    sub = _command(commands, "law", "draw a friction law: coefficient, hysteresis, break-away, lag", "_law:show_law")
+    sub.add_argument("law", metavar="NAME", help="a law of fricmb list laws")
+    sub.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", dest="values", help="a parameter; may be repeated"
+    )
+    sub.add_argument(
+        "--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)"
+    )
+    sub.add_argument(
+        "--out", type=Path, default=Path("fricmb-out/laws"), metavar="DIR", help="folder (default: %(default)s)"
+    )
 
 
 def _add_equations(commands: _Commands) -> None:

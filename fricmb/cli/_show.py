@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import inspect
+import sys
+from collections.abc import Callable
+from typing import Any
 
 import fricmb as fm
 from fricmb.cli._load import load
@@ -11,15 +15,53 @@ from fricmb.models import catalogue
 
 
 def show_list(options: argparse.Namespace) -> int:
-    """Models with their arguments, laws, integrators."""
-    print("models (fricmb run NAME --set argument=value)")
-    for model in catalogue.values():
-        print(f"  {model.name}\n      {model.summary}")
-        arguments = inspect.signature(model.build).parameters.values()
-        print("      " + ", ".join(f"{a.name}={a.default!r}" for a in arguments))
-    print("laws          " + ", ".join(fm.laws.names))
-    print("integrators   " + ", ".join(fm.integrators))
+    """Models with their arguments, laws, integrators; those of installed packages, and what is wrong with them."""
+    wanted = options.what
+    if wanted in (None, "models"):
+        print("models (fricmb run NAME --set argument=value)")
+        for model in catalogue.values():
+            _show_model(model.name, model.summary, model.build)
+        found, broken = fm.laws.published("fricmb.models")
+        for name, build in found.items():
+            _show_model(name, _summary(build), build)
+        _complain(broken)
+    if wanted == "laws":
+        _show_laws()
+    elif wanted is None:
+        found, broken = fm.laws.published("fricmb.friction_laws")
+        print("laws          " + ", ".join([*fm.laws.names, *found]))
+        _complain(broken)
+    if wanted in (None, "integrators"):
+        print("integrators   " + ", ".join(fm.integrators))
     return 0
+
+
+def _show_model(name: str, summary: str, build: Callable[..., Any]) -> None:
+    print(f"  {name}\n      {summary}")
+    arguments = inspect.signature(build).parameters.values()
+    held = (a.name if a.default is inspect.Parameter.empty else f"{a.name}={a.default!r}" for a in arguments)
+    print("      " + ", ".join(held))
+
+
+def _show_laws() -> None:
+    """Every law with its first line, its parameters, and whether it sticks."""
+    found, broken = fm.laws.published("fricmb.friction_laws")
+    print("laws (fricmb law NAME --set parameter=value)")
+    for name, kind in {**{name: getattr(fm.laws, name) for name in fm.laws.names}, **found}.items():
+        law = kind.example()
+        sort = "set-valued" if law.kind != "smooth" else "with states" if law.states else "regularised"
+        print(f"  {name} ({sort})\n      {_summary(kind)}")
+        print("      " + ", ".join(f"{f.name}={getattr(law, f.name)!r}" for f in dataclasses.fields(law)))
+    _complain(broken)
+
+
+def _summary(held: Any) -> str:
+    return (inspect.getdoc(held) or "").partition("\n")[0]
+
+
+def _complain(broken: dict[str, str]) -> None:
+    for name, why in broken.items():
+        print(f"fricmb: {name!r} is left out: {why}", file=sys.stderr)
 
 
 def show_equations(options: argparse.Namespace) -> int:

@@ -137,9 +137,13 @@ def _root(base: Any) -> str:
     if isinstance(base, sympy.Abs):
         return f"abs({source(base.args[0])})"
     radicand = base.args[0]
-    terms = sympy.Add.make_args(radicand)
-    if len(terms) == 2 and all(term.is_Pow and term.exp == 2 for term in terms):
-        return f"hypot({source(terms[0].base)}, {source(terms[1].base)})"
+    # the guard of a norm is far below the floor that a kernel gives every root
+    terms = [t for t in sympy.Add.make_args(radicand) if not (_is_guarded(radicand) and t.is_Float)]
+    if terms and all(term.is_Pow and term.exp == 2 for term in terms):
+        text = f"abs({source(terms[0].base)})"
+        for term in terms[1:]:
+            text = f"hypot({text}, {source(term.base)})"
+        return text
     return f"sqrt({source(radicand)})"
 
 

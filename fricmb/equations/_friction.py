@@ -126,18 +126,28 @@ def _law(collector: Any, contact: Any, velocity: tuple[Any, ...], normal: Any) -
         d = len(velocity)
         v, N, z, force, rate = force_expression(law, stand, d)
         letters = [direction.label for direction in contact.directions()]
-        names = [subscript(state, contact.name, c) for state in law.states for c in letters]
+        names = [subscript(*_named(law, label, contact.name, letters)) for label in law.state_labels(letters)]
         replacement |= dict(zip((*v, *z), (*velocity, *names), strict=True)) | {N: normal}
         states = {name: e.xreplace(replacement) for name, e in zip(names, rate, strict=True)}
         return None, None, tuple(e.xreplace(replacement) for e in force), states
     r, N, mu = coefficient_expression(law, stand)
-    held = law.slots().get("mu_s")
-    if held is None:
+    path = law.static_path
+    if path is None:
         break_away = _at_rest(mu, r).xreplace(replacement | {N: normal})
     else:
-        break_away = collector.number(contact, "law.mu_s", held)
-    mu = mu.xreplace(replacement | {r: _norm(velocity), N: normal})
-    return mu, break_away, _opposing(mu, normal, velocity), {}
+        break_away = collector.number(contact, f"law.{path}", law.slots()[path])
+    scale = [sympy.sympify(s).xreplace(replacement) for s in stand.standin.axis_scale() or (1,) * len(velocity)]
+    scaled = tuple(s * g for s, g in zip(scale, velocity, strict=True))
+    mu = mu.xreplace(replacement | {r: _norm(scaled), N: normal})
+    return mu, break_away, tuple(s * f for s, f in zip(scale, _opposing(mu, normal, scaled), strict=True)), {}
+
+
+def _named(law: Any, label: str, contact: str, directions: list[str]) -> tuple[str, ...]:
+    """A state's letter, its contact, its direction."""
+    letter, _, direction = label.partition(".")
+    if letter in law.scalars:
+        return (letter, contact)
+    return (letter, contact, direction or directions[0])
 
 
 def _at_rest(mu: Any, r: Any) -> Any:

@@ -10,6 +10,8 @@ import sympy
 from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
 from fricmb.equations._split import split
+from fricmb.equations._tape import Tape
+from fricmb.laws._numeric import FASTEST
 
 #: Slip speeds in a kernel of a coefficient start here, so that r**n/r has its limit instead of 0/0.
 _TINY = _code.FLOOR
@@ -94,8 +96,14 @@ def derive_smooth(
     """Facts and kernel of a smooth law: x = [v, N, z], out = [F, z', Jacobian by rows]."""
     values = [sympy.sympify(e) for e in (*force, *rate)]
     arguments = [*v, N, *z]
-    outputs = [*values, *(sympy.diff(value, a) for value in values for a in arguments)]
-    for expression in outputs:
+    for expression in values:
         _code.check(expression, title)
     facts = {"kind": "smooth", "n_z": len(z)}
-    return facts, _code.kernel(arguments, parameters, outputs, title)
+    rename, reads = _code.read_arguments(arguments, parameters, values)
+    # no product of velocities overflows
+    cut = [f"x{i} = min(max(x[{i}], {-FASTEST!r}), {FASTEST!r})" for i in range(len(v))]
+    taken = tuple(f"x{i} =" for i in range(len(v)))
+    lines = [*(line for line in reads if not line.startswith(taken)), *cut]
+    plain = [expression.xreplace(rename) for expression in values]
+    lines += Tape([rename[a] for a in arguments]).outputs(plain, len(arguments))
+    return facts, _code.module(title, lines)

@@ -9,7 +9,7 @@ from functools import cache, cached_property
 from typing import Any
 
 from fricmb.equations import _store
-from fricmb.equations._values import source_fingerprint, structure
+from fricmb.equations._values import fingerprint, structure
 
 _NAMES = {name: getattr(math, name) for name in dir(math) if not name.startswith("_")}
 
@@ -121,9 +121,9 @@ def get(kind: str, content: Sequence[object], derive: Callable[[], tuple[dict[st
 def _content(declaration: Any, shape: tuple[Any, ...], text: Callable[[], str]) -> list[object]:
     """What identifies a derivation: the source of our own types, the derived expressions of anybody else's."""
     kind: type = type(declaration)
-    fingerprint = source_fingerprint(kind)
+    source = fingerprint(declaration)
     own = (kind.__module__, kind.__qualname__)
-    return [*own, *shape[1:], fingerprint if fingerprint is not None else text()]
+    return [*own, *shape[1:], source if source is not None else text()]
 
 
 def element_template(element: Any, *, driven: bool) -> Template:
@@ -146,15 +146,15 @@ def element_template(element: Any, *, driven: bool) -> Template:
 
 def law_template(law: Any, d: int) -> Template:
     """Template of a friction law in ``d`` tangential directions (a coefficient serves any number)."""
-    own = law.compiled_coefficient()
+    smooth = law.kind == "smooth"
+    own = law.compiled_force(d) if smooth else law.compiled_coefficient()
     if own is not None:
         key = ("compiled", own)
         if key not in _found:
-            facts = {"kind": "coefficient", "all_zero": ["1"], "any_zero": [], "mu_0": None, "compiled": True}
-            _found[key] = Template(own.__qualname__, facts, own)
+            facts = {"kind": "smooth" if smooth else "coefficient", "all_zero": ["1"], "any_zero": [], "mu_0": None}
+            _found[key] = Template(own.__qualname__, facts | {"compiled": True}, own)
         return _found[key]
     shape = structure(law)
-    smooth = law.kind == "smooth"
     rows = d if smooth else 0
     found = _found.get((shape, rows))
     if found is None:

@@ -12,7 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from fricmb import laws
 from fricmb.values import Declaration, Parameter, is_expression, value_of
+
+_LAWS = "fricmb.laws"
 
 
 def _symbolic_slots(declaration: Declaration) -> list[tuple[str, Any]]:
@@ -22,6 +25,9 @@ def _symbolic_slots(declaration: Declaration) -> list[tuple[str, Any]]:
         if field.name in declaration._fixed:
             continue
         held = getattr(declaration, field.name)
+        if isinstance(held, Declaration):
+            found += [] if held._referred else [(f"{field.name}.{p}", v) for p, v in _symbolic_slots(held)]
+            continue
         entries = held.items() if isinstance(held, Mapping) else ((None, held),)
         for key, value in entries:
             if _is_number(value):
@@ -70,7 +76,14 @@ def structure(declaration: Declaration) -> tuple[Any, ...]:
     own = () if _is_ours(type(declaration)) else names
     fixed = tuple((n, repr(getattr(declaration, n))) for n in own if _plain(getattr(declaration, n)) and n != "name")
     options = tuple(sorted((n, repr(value)) for n, value in declaration.options().items() if _plain(value)))
-    return (type(declaration), shapes, options, fixed)
+    inner = tuple(structure(held) for held in _inner(declaration))
+    return (type(declaration), shapes, options, fixed, *inner)
+
+
+def _inner(declaration: Declaration) -> list[Declaration]:
+    """Declarations inside fields: a law made of another."""
+    held = [getattr(declaration, f.name) for f in dataclasses.fields(declaration)]  # type: ignore[arg-type]
+    return [value for value in held if isinstance(value, Declaration) and not value._referred]
 
 
 def _plain(value: Any) -> bool:
@@ -84,12 +97,21 @@ def _is_ours(kind: type) -> bool:
     return all(base.__module__.split(".")[0] in ("fricmb", "builtins", "abc", "typing") for base in kind.__mro__)
 
 
+def fingerprint(declaration: Declaration) -> str | None:
+    """Fingerprint of the source of a declaration and of those inside it; None where one is anybody else's."""
+    kind: Any = type(declaration)
+    held = [source_fingerprint(kind), *(fingerprint(inner) for inner in _inner(declaration))]
+    return None if None in held else "".join(map(str, held))
+
+
 @cache
 def source_fingerprint(kind: type) -> str | None:
     """Fingerprint of the source of a type of this package; None for a type of anybody else's."""
     if not _is_ours(kind):
         return None
     files = {sys.modules[base.__module__].__file__ for base in kind.__mro__ if base.__module__.startswith("fricmb")}
+    # what the laws of this package share
+    files |= {str(path) for path in Path(laws.__file__).parent.glob("_*.py") if kind.__module__.startswith(_LAWS)}
     digest = hashlib.sha256(kind.__qualname__.encode())
     for file in sorted(f for f in files if f is not None):
         digest.update(Path(file).read_bytes())

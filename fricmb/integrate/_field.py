@@ -28,7 +28,7 @@ class Scratch(NamedTuple):
 
 def scratch(problem: Problem) -> Scratch:
     """Room for evaluating the given problem."""
-    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 2
+    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 3
     n_x = max(8, states + 2)
     for templates in (problem.elements.table, problem.contacts.normal_table):
         n_x = max(n_x, int(np.max(np.diff(templates.x_start), initial=0)))

@@ -96,7 +96,8 @@ def slip_speed(g: Floats, row0: int, d: int) -> float:
     """|g| of one contact, without overflow or underflow."""
     if d == 1:
         return float(abs(g[row0]))
-    return float(np.hypot(g[row0], g[row0 + 1]))
+    speed = np.hypot(g[row0], g[row0 + 1])
+    return float(speed if d == 2 else np.hypot(speed, g[row0 + 2]))
 
 
 @kernel

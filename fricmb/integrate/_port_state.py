@@ -75,7 +75,7 @@ def port_state(problem: Problem, s: int) -> PortState:
         (nz,),
     ]
     rooms = [np.zeros(shape) for shape in shapes]
-    local = np.zeros((s, nc, 2 + states, 3 + states))
+    local = np.zeros((s, nc, 3 + states, 4 + states))
     G = np.zeros((s * (m + nv), s * (m + nv)))
     sizes, pivots = np.zeros(3, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
     solver = [np.zeros(unknowns * unknowns), np.zeros(unknowns), sizes, pivots]

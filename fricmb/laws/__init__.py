@@ -1,35 +1,31 @@
-"""Friction laws: the map from slip velocity, normal force and internal state to the friction force."""
+"""Friction laws: the map from slip velocity, normal force and internal state to the friction force.
 
-from collections.abc import Sequence
+Each law is loaded when it is first used.
+"""
+
 from typing import Any
 
-from fricmb.laws._base import FrictionLaw, LawKind
-from fricmb.laws._coulomb import Coulomb
-from fricmb.laws._hyperbolic import HyperbolicStribeck
-from fricmb.laws._lugre import LuGre
-from fricmb.laws._stribeck import Stribeck
-from fricmb.laws._tabulated import Tabulated
-from fricmb.values import symbolic
+import lazy_loader
+
+from fricmb.laws._published import published as published
+
+_load, _, _names = lazy_loader.attach_stub(__name__, __file__)
 
 #: Names of the laws of the catalogue.
-names = ("Coulomb", "HyperbolicStribeck", "LuGre", "Stribeck", "Tabulated")
+names = (
+    "Ambrosio", "ArctanRegularised", "BengisuAkay", "BlimanSorine", "BoucWen", "Bristle", "BrownMcPhee", "Contensou",
+    "ContensouPade", "Coulomb", "CoulombViscous", "Cubic", "Dahl", "ElastoPlastic", "Elliptic", "FlashHeating",
+    "GeneralisedMaxwellSlip", "Gonthier", "HyperbolicStribeck", "Iwan", "Jenkins", "Karnopp", "Leuven",
+    "LinearRegularised", "LoadDependent", "Logarithmic", "Lorentzian", "LuGre", "Makkar", "RateAndState",
+    "Regularised", "SquareRootRegularised", "Stribeck", "Tabulated", "TanhRegularised", "Threlfall",
+)  # fmt: skip
 
-__all__ = [
-    "Coulomb",
-    "FrictionLaw",
-    "HyperbolicStribeck",
-    "LawKind",
-    "LuGre",
-    "Stribeck",
-    "Tabulated",
-    "names",
-    "norm",
-    "symbolic",
-]
+__all__ = [*_names, "names", "published"]
 
 
-def norm(components: Sequence[Any]) -> Any:
-    """Length of a vector of SymPy expressions, with derivatives that stay finite at 0."""
-    from fricmb.values._symbols import norm as length
+def __getattr__(name: str) -> Any:
+    return _load(name)
 
-    return length(components)
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.errors import FricmbError, LawError
+from fricmb.laws._check import check_cone, field_value, required_numbers
+from fricmb.laws._regimes import Regimes
 from fricmb.values import Declaration
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -18,7 +20,7 @@ LawKind: TypeAlias = Literal["constant", "coefficient", "smooth"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrictionLaw(Declaration):
+class FrictionLaw(Regimes, Declaration):
     """Base of all friction laws.
 
     A law is a frozen dataclass; its fields are its parameters (numbers, or tuples of numbers).  It states either a
@@ -49,8 +51,16 @@ class FrictionLaw(Declaration):
 
     _error: ClassVar[type[FricmbError]] = LawError
 
-    #: Names of internal states; each stands for one state per tangential direction.
+    #: Names of internal states; each stands for one state per tangential direction (and see :meth:`copies`).
     states: ClassVar[tuple[str, ...]] = ()
+    #: Those of ``states`` that are one number for the contact, whatever its directions (a contact's age).
+    scalars: ClassVar[tuple[str, ...]] = ()
+    #: Numbers of tangential directions that the law can serve; 3: two of sliding, and the rim speed of spin.
+    dimensions: ClassVar[tuple[int, ...]] = (1, 2)
+    #: Whether a rotation of the velocity rotates the force (checked by the conformance kit).
+    isotropic: ClassVar[bool] = True
+    #: Whether states stay as they are at rest; False where a contact ages.
+    rests: ClassVar[bool] = True
 
     # -- what an author states ----------------------------------------------------------------------------------
     def define_coefficient(self, r: Any) -> Any:
@@ -60,14 +70,19 @@ class FrictionLaw(Declaration):
     def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
         """Force on the contact's a (a tuple, one for each direction), in SymPy.
 
-        ``v``: relative velocity, one symbol for each tangential direction (1 or 2); ``N``: normal force; ``z``: states,
-        name by name, each with one symbol for each direction.  A force that opposes slip has the sign of ``-v``.
+        ``v``: relative velocity, one symbol for each tangential direction; ``N``: normal force; ``z``: states, name by
+        name, copy by copy, each with one symbol for each direction (a scalar has one).  A force that opposes slip has
+        the sign of ``-v``.
         """
         raise LawError(f"{type(self).__name__}: defines no force")
 
     def define_rate(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
         """Time derivative of the states ``z`` (a tuple of the same length), in SymPy."""
         raise LawError(f"{type(self).__name__}: has the states {', '.join(self.states)} but defines no rate")
+
+    def copies(self) -> Mapping[str, int]:
+        """How many times a name in ``states`` occurs per direction, where that is not once (sliders side by side)."""
+        return {}
 
     def validate(self) -> None:
         """Check the numbers (named parameters are replaced by theirs); raises :class:`LawError`."""
@@ -81,6 +96,14 @@ class FrictionLaw(Declaration):
         """
         return None
 
+    def compiled_force(self, d: int) -> Callable[..., None] | None:
+        """A compiled force in ``d`` directions in place of a symbolic one, or None.
+
+        As :meth:`compiled_coefficient`, with ``x = [v (d), N, z]`` and ``out = [F (d), z', Jacobian by rows]`` (of F
+        and z' with respect to x).  Such a law has ``kind`` "smooth".
+        """
+        return None
+
     def parameter_block(self) -> Floats:
         """The numbers a compiled law reads, in order; by default all slots one after the other."""
         parts = [np.atleast_1d(np.asarray(value, dtype=float)) for value in self.numeric_slots().values()]
@@ -89,14 +112,35 @@ class FrictionLaw(Declaration):
     @classmethod
     def example(cls) -> Self:
         """A typical instance: each required field gets 0.5 unless a law knows better."""
-        required = {f.name: 0.5 for f in fields(cls) if _required(f)}
-        return cls(**required)
+        return cls(**required_numbers(cls))
 
     # -- facts --------------------------------------------------------------------------------------------------
     @property
     def kind(self) -> LawKind:
         """``"constant"``, ``"coefficient"`` or ``"smooth"`` (a force law, which never sticks)."""
-        return "smooth" if type(self).define_force is not FrictionLaw.define_force else "coefficient"
+        own = type(self).define_force is not FrictionLaw.define_force
+        return "smooth" if own or type(self).compiled_force is not FrictionLaw.compiled_force else "coefficient"
+
+    def state_labels(self, directions: Sequence[str]) -> tuple[str, ...]:
+        """Labels of all states over the given directions: "z", "z.x", "z2.x", "theta"."""
+        found = []
+        for name in self.states:
+            count = self.copies().get(name, 1)
+            numbered = [name] if count == 1 else [f"{name}{i + 1}" for i in range(count)]
+            over = [""] if name in self.scalars or len(directions) == 1 else [f".{c}" for c in directions]
+            found += [f"{label}{c}" for label in numbered for c in over]
+        return tuple(found)
+
+    def n_states(self, d: int) -> int:
+        """Number of states over ``d`` directions."""
+        return len(self.state_labels("xyz"[:d]))
+
+    def axis_scale(self) -> tuple[Any, ...]:
+        """Friction along the contact's directions relative to the first; () for an isotropic law.
+
+        With S = diag(scale) and the scaled velocity S v the law is the isotropic one: F = -mu(|S v|) N S (S v)/|S v|.
+        """
+        return ()
 
     @property
     def has_coefficient(self) -> bool:
@@ -115,8 +159,13 @@ class FrictionLaw(Declaration):
 
     def break_away(self, normal_force: float = 1.0) -> float:
         """Coefficient up to which the contact sticks."""
-        mu_s = self.numeric_slots().get("mu_s")
-        return self.slip_limit(normal_force) if mu_s is None else float(mu_s)
+        path = self.static_path
+        return self.slip_limit(normal_force) if path is None else float(self.numeric_slots()[path])
+
+    @property
+    def static_path(self) -> str | None:
+        """Slot of the break-away coefficient, None where that is the limit of the coefficient for r -> 0."""
+        return "mu_s" if "mu_s" in self.slots() else None
 
     # -- numbers ------------------------------------------------------------------------------------------------
     def coefficient(self, r: ArrayLike, normal_force: ArrayLike = 1.0) -> Any:
@@ -188,7 +237,7 @@ class FrictionLaw(Declaration):
                 " @dataclass(frozen=True, kw_only=True)"
             )
         for field in fields(self):
-            self._set(field.name, _field_value(self, field.name, field.type))
+            self._set(field.name, field_value(self, field.name, field.type))
         if self.kind == "coefficient" and not self.has_coefficient:
             raise LawError(f"{self._label()}: must define define_coefficient(self, r) or define_force(self, v, N, z)")
         if self.states and self.kind != "smooth":
@@ -197,36 +246,4 @@ class FrictionLaw(Declaration):
         numbers = self.numeric()
         numbers.validate()
         if self.kind != "smooth":
-            _check_cone(numbers)
-
-
-def _required(field: Any) -> bool:
-    from dataclasses import MISSING
-
-    return field.default is MISSING and field.default_factory is MISSING
-
-
-def _field_value(law: FrictionLaw, name: str, annotation: Any) -> Any:
-    value = getattr(law, name)
-    text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
-    if isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1:
-        return tuple(law._number(f"{name}[{i}]", entry) for i, entry in enumerate(value))
-    if value is None or isinstance(value, bool):
-        if text in ("float", "int"):
-            law._refuse(name, value, "a finite number")
-        return value
-    if isinstance(value, str) and "float" not in text:
-        return value
-    return law._number(name, value)
-
-
-def _check_cone(law: FrictionLaw) -> None:
-    limit, mu_s = law.slip_limit(), law.break_away()
-    if not np.isfinite(limit):
-        raise LawError(f"{law._label()}: the coefficient must be finite at r = 0, got {limit!r}")
-    if limit < 0.0:
-        raise LawError(f"{law._label()}: the coefficient must be >= 0 at r = 0, got {limit!r}")
-    if mu_s < limit * (1.0 - 1e-12):
-        raise LawError(
-            f"{law._label()}: mu_s must be at least the coefficient of slip for r -> 0 ({limit:g}), got {mu_s!r}"
-        )
+            check_cone(numbers)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -24,7 +25,7 @@ def coefficient_expression(law: Any, stand: Symbolic) -> tuple[Any, Any, Any]:
     """Symbols r and N, and mu of them."""
     import sympy
 
-    r, N = sympy.Symbol("r", nonnegative=True), sympy.Symbol("N", nonnegative=True)
+    r, N = sympy.Symbol("|v|", nonnegative=True), sympy.Symbol("N[]", nonnegative=True)
     mu = stand.standin.define_coefficient(r, N) if law.load_dependent else stand.standin.define_coefficient(r)
     return r, N, sympy.sympify(mu)
 
@@ -33,9 +34,9 @@ def force_expression(law: Any, stand: Symbolic, d: int) -> tuple[Any, Any, Any, 
     """Symbols v, N, z, and force and rate of them, in ``d`` directions."""
     import sympy
 
-    v = tuple(sympy.Symbol(f"v_{i}", real=True) for i in range(d))
-    z = tuple(sympy.Symbol(f"{name}_{i}", real=True) for name in law.states for i in range(d))
-    N = sympy.Symbol("N", nonnegative=True)
+    v = tuple(sympy.Symbol(f"v[{i}]", real=True) for i in range(d))
+    z = tuple(sympy.Symbol(f"z[{i}]", real=True) for i in range(law.n_states(d)))
+    N = sympy.Symbol("N[]", nonnegative=True)
     force = _vector(law, "define_force", stand.standin.define_force(v, N, z), d)
     rate = _vector(law, "define_rate", stand.standin.define_rate(v, N, z), len(z)) if z else ()
     return v, N, z, force, rate
@@ -62,10 +63,54 @@ def _make(law: Any, what: str, d: int) -> Callable[..., Any]:
     if what in ("coefficient", "derivative"):
         r, N, mu = coefficient_expression(law, stand)
         expression = mu if what == "coefficient" else sympy.diff(mu, r)
-        return sympy.lambdify([r, N, *stand.flat], expression, "numpy")  # type: ignore[no-any-return]
+        return sympy.lambdify([r, N, *stand.flat], expression, _MODULES)  # type: ignore[no-any-return]
     v, N, z, force_, rate_ = force_expression(law, stand, d)
     chosen = force_ if what == "force" else rate_
-    return sympy.lambdify([*v, N, *z, *stand.flat], list(chosen), "numpy")  # type: ignore[no-any-return]
+    arguments = [*v, N, *z, *stand.flat]
+    return sympy.lambdify(arguments, [_lengths(e) for e in chosen], _MODULES)  # type: ignore[no-any-return]
+
+
+def _lengths(expression: Any) -> Any:
+    """Guarded roots of sums of squares as a function that neither overflows nor underflows."""
+    import sympy
+
+    length = sympy.Function("vector_length", positive=True)
+
+    def replaced(node: Any) -> Any:
+        parts = squares(node.base)
+        return node if parts is None else length(*parts) ** (2 * node.exp)
+
+    return sympy.sympify(expression).replace(lambda node: node.is_Pow and squares(node.base) is not None, replaced)
+
+
+def squares(radicand: Any) -> list[Any] | None:
+    """The components of a guarded sum of squares (see ``norm``), or None for any other expression."""
+    if not radicand.is_Add:
+        return None
+    guard = [term for term in radicand.args if term.is_Float and 0 < term < 1e-150]
+    rest = [term for term in radicand.args if term not in guard]
+    if not guard or not all(term.is_Pow and term.exp == 2 for term in rest):
+        return None
+    return [term.base for term in rest]
+
+
+def _length(*components: Any) -> Any:
+    value = np.abs(components[0])
+    for component in components[1:]:
+        value = np.hypot(value, component)
+    return np.maximum(value, 1e-100)
+
+
+def _largest(values: Any, axis: int = 0) -> Any:
+    return reduce(np.maximum, values)
+
+
+def _least(values: Any, axis: int = 0) -> Any:
+    return reduce(np.minimum, values)
+
+
+#: Functions of the numpy code; Max and Min take numbers beside arrays.
+_MODULES = [{"vector_length": _length, "amax": _largest, "amin": _least}, "numpy"]
 
 
 def _function(law: Any, what: str, d: int = 0) -> Callable[..., Any]:
@@ -126,11 +171,11 @@ def _columns(law: Any, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLi
     v = np.asarray(v_rel, dtype=float)
     columns = np.atleast_1d(v).reshape(max(1, v.shape[0] if v.ndim else 1), -1)
     d = columns.shape[0]
-    if v.ndim > 2 or d not in (1, 2):
-        accepted = "a number, (d,) or (d, n_t) with d = 1 or 2"
+    if v.ndim > 2 or d not in law.dimensions:
+        accepted = f"a number, (d,) or (d, n_t) with d = {' or '.join(map(str, law.dimensions))}"
         raise LawError(f"{law._label()}: v_rel must be {accepted}, got shape {v.shape}")
     N = np.broadcast_to(np.asarray(normal_force, dtype=float), columns.shape[1:])
-    n_z = d * len(law.states)
+    n_z = law.n_states(d)
     z = np.zeros((n_z, columns.shape[1]))
     if state is not None:
         given = np.asarray(state, dtype=float)
@@ -144,13 +189,12 @@ def force(law: Any, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLike 
     """Force on the contact's a."""
     v, N, z, shape = _columns(law, v_rel, normal_force, state)
     if law.kind == "smooth":
-        function = _function(law, "force", v.shape[0])
-        with np.errstate(all="ignore"):
-            rows = function(*v, N, *z, *law.parameter_block())
-        value = np.array([_array(row, N.shape) for row in rows])
+        value = _smooth(law, "force", v, N, z)
     else:
         r = np.hypot(v[0], v[1]) if v.shape[0] == 2 else np.abs(v[0])
-        direction = np.divide(v, r, out=np.zeros_like(v), where=r > 0.0)
+        scale = np.array(law.numeric().axis_scale() or (1.0,) * len(v), dtype=float)[:, None]
+        r = _length(*(scale * v)) * (r > 0.0)
+        direction = scale * np.divide(scale * v, r, out=np.zeros_like(v), where=r > 0.0)
         value = -law.coefficient(r, N) * N * direction
     value = value.reshape(shape)
     return value if value.ndim else float(value)
@@ -161,8 +205,35 @@ def rate(law: Any, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLike |
     v, N, z, shape = _columns(law, v_rel, normal_force, state)
     if not law.states:
         return np.zeros((0, *shape[1:]))
-    function = _function(law, "rate", v.shape[0])
-    with np.errstate(all="ignore"):
-        rows = function(*v, N, *z, *law.parameter_block())
-    value = np.array([_array(row, N.shape) for row in rows])
+    value = _smooth(law, "rate", v, N, z)
     return value.reshape(len(z), *shape[1:]) if len(shape) else value.ravel()
+
+
+#: Components of velocity beyond this are cut in laws that are forces: no product of them overflows.
+FASTEST = 1e20
+
+
+def _smooth(law: Any, what: str, v: NDArray[np.float64], N: Any, z: Any) -> NDArray[np.float64]:
+    """Force or rate of a law that is a force; where it overflows, that at the fastest speed."""
+    if law.compiled_force(v.shape[0]) is not None:
+        return _called(law, what, v, N, z)
+    function, p = _function(law, what, v.shape[0]), law.parameter_block()
+    with np.errstate(all="ignore"):
+        value = np.array([_array(row, N.shape) for row in function(*v, N, *z, *p)])
+        bad = ~np.isfinite(value)
+        if np.any(bad):
+            rows = function(*np.clip(v, -FASTEST, FASTEST), N, *z, *p)
+            value[bad] = np.array([_array(row, N.shape) for row in rows])[bad]
+    return value
+
+
+def _called(law: Any, what: str, v: NDArray[np.float64], N: Any, z: Any) -> NDArray[np.float64]:
+    """A law that brings its own compiled force, called column by column."""
+    d, n_z = v.shape[0], z.shape[0]
+    function, p = law.compiled_force(d), law.parameter_block()
+    rows = np.zeros((d + n_z, v.shape[1]))
+    out = np.zeros((d + n_z) * (d + n_z + 2))
+    for j in range(v.shape[1]):
+        function(np.array([*v[:, j], N[j], *z[:, j]]), p, out)
+        rows[:, j] = out[: d + n_z]
+    return rows[:d] if what == "force" else rows[d:]

@@ -32,7 +32,7 @@ def counts(parts: Iterable[Part], links: Sequence[Link], n: int, islands: int, s
         "forces of time": sum(f.signal for f in facts),
         "contacts": len(contacts),
         "contact rows": sum(rows),
-        "law states": sum(d * len(contact.law.states) for d, contact in zip(rows, contacts, strict=True)),
+        "law states": sum(contact.law.n_states(d) for d, contact in zip(rows, contacts, strict=True)),
         "islands": islands,
         "islands at rest": still,
     }

@@ -1,3 +1,4 @@
+from ._law import law_figure as law_figure
 from ._solution import SolutionPlots as SolutionPlots
 from ._stability import eigenvalues as eigenvalues
 from ._stability import stability as stability
@@ -21,5 +22,6 @@ __all__ = [
     "Units",
     "eigenvalues",
     "finish",
+    "law_figure",
     "stability",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
+from itertools import combinations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -29,8 +30,9 @@ class Contact(Part):
     normal_force : float, SymPy expression or law of ``fm.normal``
         A number or an expression (as in :class:`Force`; acts on nobody, below 0 counts as 0), or a law.
     axes : str or sequence, optional
-        Tangential directions: one or two letters or direction tuples, at right angles.  Default: the axes that the
-        ends with degrees of freedom share, less the axis of a normal-force law.
+        Tangential directions: one or two letters or direction tuples, at right angles (a law of sliding and spinning
+        takes three, the third the speed of the rim).  Default: the axes that the ends with degrees of freedom share,
+        less the axis of a normal-force law.
     slide : float, expression in ``fm.t``, or a sequence of one or two, optional
         Added to a's velocity relative to b, one for each direction.
 
@@ -100,8 +102,8 @@ class Contact(Part):
             entries = tuple(axes)
         else:
             self._refuse("axes", axes, "letters such as 'xy', or one or two direction tuples")
-        if not 1 <= len(entries) <= 2:
-            self._refuse("axes", axes, "one or two tangential directions")
+        if len(entries) not in self.law.dimensions:
+            self._refuse("axes", axes, self._accepted_directions())
         return tuple(check_axis(self, "axes", entry) for entry in entries)
 
     def shared_letters(self) -> tuple[str, ...]:
@@ -113,10 +115,10 @@ class Contact(Part):
     def directions(self) -> tuple[Direction, ...]:
         """Tangential directions, one or two, each with the motion of a less that of b along it (without slide)."""
         if self.axes is not None:
-            labels = ("t",) if len(self.axes) == 1 else ("t1", "t2")
+            labels = ("t",) if len(self.axes) == 1 else ("t1", "t2", "t3")
             return tuple(
                 direction(self, "axes", axis, self.a, self.b, axis if isinstance(axis, str) else label)
-                for axis, label in zip(self.axes, labels, strict=True)
+                for axis, label in zip(self.axes, labels, strict=False)
             )
         letters = self.shared_letters()
         if not letters:
@@ -138,13 +140,13 @@ class Contact(Part):
 
     def _check_directions(self, directions: tuple[Direction, ...]) -> None:
         shown = "".join(d.label for d in directions)
-        if not 1 <= len(directions) <= 2:
+        if len(directions) not in self.law.dimensions:
             raise SceneError(
-                f"{self._label()}: axes must be given: one or two tangential directions of {shown!r}"
+                f"{self._label()}: axes must be given: {self._accepted_directions()} of {shown!r}"
                 if directions
                 else f"{self._label()}: no tangential direction is left beside the normal-force law's axis"
             )
-        if len(directions) == 2 and abs(directions[0].dot(directions[1])) > 1e-9:
+        if any(abs(first.dot(second)) > 1e-9 for first, second in combinations(directions, 2)):
             self._refuse("axes", self.axes, "two directions at right angles")
         normal = self.normal_direction()
         for tangent in directions:
@@ -152,6 +154,10 @@ class Contact(Part):
                 self._refuse("axes", self.axes, "other directions than that of the normal-force law")
         if self.axes is None and self.normal_kind == "expression":
             self._check_default_axes(directions)
+
+    def _accepted_directions(self) -> str:
+        words = {1: "one", 2: "two", 3: "three"}
+        return " or ".join(words[d] for d in self.law.dimensions) + " tangential directions"
 
     def _check_default_axes(self, directions: tuple[Direction, ...]) -> None:
         """A normal force that depends on a coordinate along a default direction: which one is meant is not clear."""

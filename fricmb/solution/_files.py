@@ -51,11 +51,14 @@ def load(path: str | PathLike[str]) -> Solution:
         about = json.loads(str(data["about"]))
         if about["format"] > FORMAT:
             raise FricmbError(f"{source} was written by a later fricmb ({about['fricmb']})")
+        names = _names(data, about)
+        values = {f.name: data[f.name] for f in fields(Samples)}
+        values["F"], values["g"] = values["F"] / names.row_scale, values["g"] * names.row_scale
         return restore(
-            names=_names(data, about),
+            names=names,
             stats=_stats(about["stats"]),
             events=_events(data),
-            record=Record(samples=Samples(**{f.name: data[f.name] for f in fields(Samples)}), piece=data.get("piece")),
+            record=Record(samples=Samples(**values), piece=data.get("piece")),
             span=(about["t_start"], about["t_end"]),
             has_rows=about["has_rows"],
             energies=(data["kinetic"], data["potential"]),
@@ -77,6 +80,7 @@ def open_run(data: bytes) -> Run:
 def _arrays(sol: Solution) -> dict[str, Any]:
     names, record, energy = sol.names, sol.record, sol.energy
     arrays = {f.name: getattr(record.samples, f.name) for f in fields(Samples)}
+    arrays["F"], arrays["g"] = arrays["F"] * names.row_scale, arrays["g"] / names.row_scale
     if record.piece is not None:
         arrays["piece"] = record.piece
     about = {
@@ -84,6 +88,7 @@ def _arrays(sol: Solution) -> dict[str, Any]:
         "fricmb": fricmb.__version__,
         "directions": names.directions,
         "states": names.states,
+        "scale": names.scale,
         "motions": {
             name: {"index": motion.index.tolist(), "coefficient": motion.coefficient.tolist()}
             for name, motion in names.motions.items()
@@ -122,6 +127,7 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
         contacts=tuple(data["contact_names"].tolist()),
         directions=tuple(tuple(labels) for labels in about["directions"]),
         states=tuple(tuple(labels) for labels in about["states"]),
+        scale=tuple(tuple(factors) for factors in about.get("scale", ())),
         motions={
             name: Motion(
                 index=np.array(motion["index"], dtype=np.int64),

@@ -37,7 +37,7 @@ def join(solutions: Iterable[Solution]) -> Solution:
 
 
 def _check(earlier: Solution, later: Solution) -> None:
-    for what in ("dofs", "contacts", "directions", "states"):
+    for what in ("dofs", "contacts", "directions", "states", "scale"):
         ours, theirs = getattr(earlier.names, what), getattr(later.names, what)
         if ours != theirs:
             raise SceneError(f"Solution.join: the solutions have different {what}: {ours!r} and {theirs!r}")

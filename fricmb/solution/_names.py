@@ -44,6 +44,8 @@ class Names:
         Further motions: points of modal bodies.
     signals : mapping of str to int
         Motions of driven bodies by the index of their signal.
+    scale : tuple of tuple of float
+        By contact: factor s of every row; a run holds s v and F/s.  Empty: all 1.
     """
 
     dofs: tuple[str, ...]
@@ -52,6 +54,7 @@ class Names:
     states: tuple[tuple[str, ...], ...] = ()
     motions: Mapping[str, Motion] = field(default_factory=dict)
     signals: Mapping[str, int] = field(default_factory=dict)
+    scale: tuple[tuple[float, ...], ...] = ()
 
     @cached_property
     def dof_index(self) -> dict[str, int]:
@@ -67,6 +70,12 @@ class Names:
     def row(self) -> Ints:
         """Contact k owns the rows ``row[k]:row[k+1]`` of forces and relative velocities."""
         return _starts(self.directions)
+
+    @cached_property
+    def row_scale(self) -> Floats:
+        """Factor of every row of forces and relative velocities (m, 1)."""
+        held = [s for scale in self.scale for s in scale] or [1.0] * int(self.row[-1])
+        return np.array(held, dtype=float)[:, None]
 
     @cached_property
     def z_start(self) -> Ints:

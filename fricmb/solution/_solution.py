@@ -137,11 +137,11 @@ class Solution:
 
     def force(self, contact: str) -> Floats:
         """Friction force on the contact's first end (d, n_t)."""
-        return self._rows(self.record.samples.F, contact)
+        return self._rows(self.record.samples.F, contact, 1)
 
     def relative_velocity(self, contact: str) -> Floats:
         """Velocity of the first end relative to the second, with the slide (d, n_t)."""
-        return self._rows(self.record.samples.g, contact)
+        return self._rows(self.record.samples.g, contact, -1)
 
     def normal_force(self, contact: str) -> Floats:
         """Normal force (n_t,), at least 0."""
@@ -157,9 +157,11 @@ class Solution:
         k, start = self.names.contact(contact), self.names.z_start
         return self.record.samples.z[start[k] : start[k + 1]]
 
-    def _rows(self, values: Floats, contact: str) -> Floats:
+    def _rows(self, values: Floats, contact: str, power: int) -> Floats:
         k, row = self.names.contact(contact), self.names.row
-        return values[row[k] : row[k + 1]]
+        own = slice(row[k], row[k + 1])
+        scale = self.names.row_scale[own]
+        return values[own] if np.all(scale == 1.0) else values[own] * scale**power
 
     @cached_property
     def events(self) -> Events:

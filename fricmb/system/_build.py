@@ -96,6 +96,7 @@ def _build(scene: Any, plan: Any) -> System:
         start=Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)),
         contact_axes=tuple(contacts.labels),
         state_names=tuple(contacts.states),
+        axis_scale=tuple(contacts.scale),
         stores=tuple(structure.stores),
         switches=searched,
     )

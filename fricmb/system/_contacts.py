@@ -48,19 +48,23 @@ class ContactArrays:
     N0: list[float] = field(default_factory=list)
     labels: list[tuple[str, ...]] = field(default_factory=list)
     states: list[tuple[str, ...]] = field(default_factory=list)
+    scale: list[tuple[float, ...]] = field(default_factory=list)
     timed: list[tuple[Template, tuple[float, ...]]] = field(default_factory=list)
 
     def add(self, contact: Contact) -> None:
         """Append a contact."""
         directions = contact.directions()
-        for direction, slide in zip(directions, contact.slides(), strict=True):
-            self._add_row(contact, direction.label, direction.form, slide)
+        scale = contact.law.numeric().axis_scale() or (1.0,) * len(directions)
+        for direction, slide, s in zip(directions, contact.slides(), scale, strict=True):
+            self._add_row(contact, direction.label, direction.form, slide, s)
+        self.scale.append(tuple(float(s) for s in scale))
         self.row_start.append(len(self.rows))
         self.labels.append(tuple(direction.label for direction in directions))
         self._add_normal(contact)
         self._add_law(contact, len(directions))
 
-    def _add_row(self, contact: Contact, label: str, form: Any, slide: Any) -> None:
+    def _add_row(self, contact: Contact, label: str, form: Any, slide: Any, scale: float) -> None:
+        """A row of relative velocity; that of a law that is not isotropic in its scaled direction."""
         row, uniform = self.motions.slip_row(form)
         u = row.u
         w = -uniform
@@ -71,17 +75,17 @@ class ContactArrays:
             name = f"{contact.name}.slide.{label}"
             j = self.motions.signals.add(name, lambda: signal_expression(slide, "rate", 0.0, what))
             u = (*u, (j, 1.0))
-        self.rows.append(Row(row.q, u))
-        self.w.append(w)
+        self.rows.append(Row(tuple((i, scale * c) for i, c in row.q), tuple((j, scale * c) for j, c in u)))
+        self.w.append(scale * w)
 
     def _add_law(self, contact: Contact, d: int) -> None:
         law = contact.law
         template = law_template(law, d)
         compiled = template.function is not None
         p: Sequence[float] = law.parameter_block().tolist() if compiled else numbers(law)
-        self.z_start.append(self.z_start[-1] + d * len(law.states))
-        letters = self.labels[-1]
-        self.states.append(tuple(f"{state}.{c}" if d > 1 else state for state in law.states for c in letters))
+        labels = law.state_labels(self.labels[-1])
+        self.z_start.append(self.z_start[-1] + len(labels))
+        self.states.append(labels)
         if template.facts["kind"] == "smooth":
             self.law.append(LAW_SMOOTH)
             self.law_table.add(template.address, p)
@@ -90,8 +94,7 @@ class ContactArrays:
             return
         N = max(self.N[-1], self.N0[-1]) or 1.0
         limit = law.slip_limit(N) if template.at_rest is None else float(template.at_rest((*p, N)))
-        held = law.numeric_slots().get("mu_s")
-        mu_s = limit if held is None else float(held)
+        mu_s = limit if law.static_path is None else float(law.numeric_slots()[law.static_path])
         _check_cone(contact, mu_s, limit)
         constant = template.is_constant(p)
         self.law.append(LAW_CONSTANT if constant else LAW_COEFFICIENT)

@@ -26,6 +26,9 @@ class System:
         Declared initial state.
     contact_axes, state_names : tuple of tuple of str
         By contact: labels of its tangential directions and of the states of its law.
+    axis_scale : tuple of tuple of float
+        By contact: factor s of every row.  The problem holds s v and F/s of a law that is not isotropic, so that to an
+        integrator it is; their power is that of v and F.
     stores : tuple of Store
         Potential of every element.
     switches : tuple of Switch
@@ -36,6 +39,7 @@ class System:
     start: Start
     contact_axes: tuple[tuple[str, ...], ...]
     state_names: tuple[tuple[str, ...], ...]
+    axis_scale: tuple[tuple[float, ...], ...]
     stores: tuple[Store, ...]
     switches: tuple[Switch, ...] = ()
 

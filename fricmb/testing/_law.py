@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-import pickle
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fricmb.errors import FricmbError
+from fricmb.analysis import compiled_force
 from fricmb.laws import FrictionLaw
+from fricmb.testing._base import ConformanceError, Floats, Rule, findings, pickles
+from fricmb.testing._law_states import STATE_RULES
+from fricmb.testing._trial import AT_REST, SPEEDS, random_state, velocities
 
-Floats = NDArray[np.float64]
-
-#: From far below any speed that matters to far above.
-SPEEDS = np.array([0.0, 1e-300, 1e-12, 1e-6, 1e-3, 0.03, 0.3, 1.0, 7.0, 1e3, 1e150])
-
-#: A length of a vector that is safe at 0 may leave this much.
-AT_REST = 1e-60
-
-
-class ConformanceError(FricmbError, AssertionError):
-    """A law that breaks the rules; the message lists every rule it breaks."""
+__all__ = ["ConformanceError", "check_law"]
 
 
 def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
@@ -41,30 +31,34 @@ def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
 
     Notes
     -----
-    Of every law: it pickles; its force is finite, opposes steady slip, and is 0 at rest where there are no states.  Of
-    a coefficient: finite, not negative up to a slip speed of 7, its derivative the slope of its values.  Of a force
-    with states: finite rates of the states, 0 at rest.
+    Of every law: it pickles; wrong parameters are refused by name; its force is finite from v = 0 to 1e300, odd, turns
+    with the velocity if the law is isotropic; the compiled Jacobian of a force is that of its values.  Of a
+    coefficient: finite, not negative up to a slip speed of 7, its derivative the slope of its values, its limit at
+    r = 0 the declared one.  Of a law without states: the force opposes the slip and is 0 at rest.  Of states:
+    finite rates, 0 at rest unless the law ages (``rests``), and no work gained over a closed cycle.
     """
-    broken = [f"{type(law).__name__}: {finding}" for rule in _rules(law) for finding in rule(law, normal_force)]
-    if broken:
-        raise ConformanceError("; ".join(broken))
-
-
-_Rule = Callable[[FrictionLaw, float], Iterator[str]]
-
-
-def _rules(law: FrictionLaw) -> tuple[_Rule, ...]:
-    rules: tuple[_Rule, ...] = (_pickles, _finite_force)
+    rules: tuple[Rule, ...] = (pickles, _refuses, _finite_force, _odd, _turns, _jacobian)
     if law.has_coefficient:
-        rules += (_coefficient, _derivative)
-    if law.states:
-        return (*rules, _rates)
-    return (*rules, _opposes, _rests)
+        rules += (_coefficient, _derivative, _limit)
+    rules += STATE_RULES if law.states else (_opposes, _rests)
+    findings(type(law).__name__, rules, law, normal_force)
 
 
-def _pickles(law: FrictionLaw, normal_force: float) -> Iterator[str]:
-    if pickle.loads(pickle.dumps(law)) != law:
-        yield "does not come back equal from a pickle"
+def _refuses(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    """Numbers that cannot be, by the name of their field."""
+    for path, value in law.slots().items():
+        wrong = [float("nan"), float("inf")]
+        if path in law.positive:
+            wrong += [0.0, -1.0]
+        for number in wrong:
+            bad = (number, *value[1:]) if isinstance(value, tuple) else number
+            try:
+                law.with_slots({path: bad})
+            except Exception as error:
+                if not isinstance(error, ValueError) or path.rsplit(".", 1)[-1] not in str(error):
+                    yield f"{path} = {number!r} is refused by {type(error).__name__} without its name: {error}"
+            else:
+                yield f"{path} = {number!r} is accepted"
 
 
 def _coefficient(law: FrictionLaw, normal_force: float) -> Iterator[str]:
@@ -79,22 +73,29 @@ def _coefficient(law: FrictionLaw, normal_force: float) -> Iterator[str]:
 def _derivative(law: FrictionLaw, normal_force: float) -> Iterator[str]:
     for speed in SPEEDS[(SPEEDS > 1e-4) & (SPEEDS < 1e4)]:
         h = 1e-5 * speed
-        high, low = law.coefficient(speed + h, normal_force), law.coefficient(speed - h, normal_force)
-        slope, given = (high - low) / (2 * h), law.derivative(speed, normal_force)
-        allowed = 1e-4 * abs(slope) + 1e-6 * max(abs(high), 1.0) / speed  # a table's slope may have a kink here
-        if not abs(slope - given) <= allowed:
-            yield f"derivative({speed:g}) is {given:g}, the slope of the coefficient there {slope:g}"
+        low, mu, high = law.coefficient(np.array([speed - h, speed, speed + h]), normal_force)
+        slopes = (high - mu) / h, (mu - low) / h
+        given = law.derivative(speed, normal_force)
+        # between the slopes on both sides, where the curve may have a corner
+        allowed = 1e-4 * max(map(abs, slopes)) + 1e-6 * max(abs(high), 1.0) / speed
+        if not min(slopes) - allowed <= given <= max(slopes) + allowed:
+            yield f"derivative({speed:g}) is {given:g}, the slope of the coefficient there {0.5 * sum(slopes):g}"
 
 
-def _velocities(d: int) -> Iterator[Floats]:
-    directions = [np.array([1.0]), np.array([-1.0])] if d == 1 else [np.array([0.6, -0.8]), np.array([0.0, 1.0])]
-    yield from (speed * n for n in directions for speed in SPEEDS if speed)
+def _limit(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    if law.kind == "smooth":
+        return
+    declared, found = law.slip_limit(normal_force), float(law.coefficient(1e-12, normal_force))
+    if not abs(declared - found) <= 1e-3 * max(abs(declared), 1e-6):
+        yield f"slip_limit is {declared:g}, the coefficient at r = 1e-12 is {found:g}"
+    if law.break_away(normal_force) < declared * (1.0 - 1e-12):
+        yield f"break-away {law.break_away(normal_force):g} is below the limit of slip {declared:g}"
 
 
 def _finite_force(law: FrictionLaw, normal_force: float) -> Iterator[str]:
-    for d in (1, 2):
-        for v in [np.zeros(d), *_velocities(d)]:
-            force = np.asarray(law.force(v, normal_force, _state(law, d)))
+    for d in law.dimensions:
+        for v in [np.zeros(d), *velocities(d)]:
+            force = np.asarray(law.force(v, normal_force, random_state(law, d)))
             if force.shape != v.shape:
                 yield f"force at v = {v.tolist()} has the shape {force.shape}"
             elif not np.isfinite(force).all():
@@ -102,32 +103,83 @@ def _finite_force(law: FrictionLaw, normal_force: float) -> Iterator[str]:
 
 
 def _opposes(law: FrictionLaw, normal_force: float) -> Iterator[str]:
-    for d in (1, 2):
-        for v in _velocities(d):
-            unit = v / np.linalg.norm(v) if np.abs(v).max() > 1e-200 else v / np.abs(v).max()
+    for d in law.dimensions:
+        for v in velocities(d):
+            unit = v / np.abs(v).max()
             power = float(np.asarray(law.force(v, normal_force)) @ unit)
             if power > 0 and np.abs(v).max() <= 7.0:
                 yield f"force at v = {v.tolist()} drives the slip"
 
 
 def _rests(law: FrictionLaw, normal_force: float) -> Iterator[str]:
-    for d in (1, 2):
+    for d in law.dimensions:
         force = np.asarray(law.force(np.zeros(d), normal_force))
         if (np.abs(force) > AT_REST).any():
             yield f"force at rest is {force.tolist()}, not 0"
 
 
-def _rates(law: FrictionLaw, normal_force: float) -> Iterator[str]:
-    for d in (1, 2):
-        state = _state(law, d)
-        for v in [np.zeros(d), *(v for v in _velocities(d) if np.abs(v).max() < 1e4)]:
-            rate = np.asarray(law.rate(v, normal_force, state))
-            if not np.isfinite(rate).all():
-                yield f"rate at v = {v.tolist()} is {rate.tolist()}"
-        rest = np.asarray(law.rate(np.zeros(d), normal_force, state))
-        if (np.abs(rest) > AT_REST).any():
-            yield f"states move at rest: rate {rest.tolist()}"
+def _close(a: Floats, b: Floats) -> bool:
+    return bool(np.allclose(a, b, rtol=1e-9, atol=1e-9 * max(np.abs(a).max(initial=0.0), 1e-200)))
 
 
-def _state(law: FrictionLaw, d: int) -> Any:
-    return np.full(len(law.states) * d, 1e-6) if law.states else None
+def _odd(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    for d in law.dimensions:
+        state = random_state(law, d)
+        sign = law_signs(law, d)
+        for v in velocities(d, 1e-4, 1e4):
+            force, other = law.force(v, normal_force, state), law.force(-v, normal_force, sign * state)
+            if not _close(np.asarray(force), -np.asarray(other)):
+                yield f"force at v = {v.tolist()} is {force}, at -v it is {other}"
+
+
+def law_signs(law: FrictionLaw, d: int) -> Floats:
+    """-1 for states that turn round with the velocity, 1 for scalars."""
+    labels = law.state_labels("xyz"[:d])
+    return np.array([1.0 if label in law.scalars else -1.0 for label in labels])
+
+
+def _turns(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    if not law.isotropic:
+        return
+    c, s = np.cos(0.7), np.sin(0.7)
+    for d in law.dimensions:
+        if d == 1:
+            continue
+        turn = np.eye(d)
+        turn[:2, :2] = [[c, -s], [s, c]]
+        state = random_state(law, d)
+        turned = state.copy()
+        vectors = [i for i, sign in enumerate(law_signs(law, d)) if sign < 0]
+        for first in vectors[::d]:
+            turned[first : first + d] = turn @ state[first : first + d]
+        for v in velocities(d, 1e-4, 1e4):
+            force, other = law.force(v, normal_force, state), law.force(turn @ v, normal_force, turned)
+            if not _close(turn @ force, np.asarray(other)):
+                yield f"turning v = {v.tolist()} does not turn the force {force}"
+
+
+def _jacobian(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    """The compiled Jacobian of a force against differences, from small to large speeds."""
+    if law.kind != "smooth":
+        return
+    rng = np.random.default_rng(0)
+    for d in law.dimensions:
+        evaluate, n_z = compiled_force(law, d)
+        for speed in 10.0 ** rng.uniform(-4, 1, 12):
+            state = random_state(law, d) * rng.normal(size=n_z)
+            x = np.concatenate([rng.normal(size=d) * speed, [normal_force], state])
+            values, jacobian = evaluate(x)
+            if not (np.isfinite(values).all() and np.isfinite(jacobian).all()):
+                yield f"the compiled force at x = [v, N, z] = {x.tolist()} is not finite"
+                continue
+            for a in range(len(x)):
+                h = 1e-6 * max(abs(x[a]), 1e-9)
+                step = np.eye(len(x))[a] * h
+                high, low = evaluate(x + step)[0], evaluate(x - step)[0]
+                slopes = (high - values) / h, (values - low) / h
+                noise = 1e-9 * np.abs(jacobian).max(axis=1) + 4e-15 * np.abs(values) / h
+                allowed = 1e-3 * np.maximum(*np.abs(slopes)) + noise
+                given = jacobian[:, a]
+                if ((given < np.minimum(*slopes) - allowed) | (given > np.maximum(*slopes) + allowed)).any():
+                    yield f"the Jacobian at x = [v, N, z] = {x.tolist()} is wrong in column {a}: {given.tolist()}"
+                    return

@@ -49,28 +49,42 @@ def symbolic(declaration: Declaration, **fields: Any) -> Symbolic:
         A law, an element, a normal-force law.
     **fields
         Fields that get this value instead (an expression whose coordinates are local symbols).  Arrays, matrices and
-        declarations inside fields are left as they are.
+        parts that fields refer to are left as they are.
     """
-    copy = object.__new__(type(declaration))
     symbols: dict[str, tuple[Any, ...]] = {}
     values: list[float] = []
+    return Symbolic(_stand_in(declaration, "", symbols, values, fields), symbols, tuple(values))
+
+
+def _stand_in(
+    declaration: Declaration,
+    prefix: str,
+    symbols: dict[str, tuple[Any, ...]],
+    values: list[float],
+    fields: Mapping[str, Any] = MappingProxyType({}),
+) -> Any:
+    """The stand-in itself; a declaration inside a field (a law made of another) is stood in for as well."""
+    copy = object.__new__(type(declaration))
     numbers = declaration.numeric_slots()
     for field in dataclasses.fields(declaration):  # type: ignore[arg-type]
         held = getattr(declaration, field.name)
         if field.name in fields:
             held = fields[field.name]
+        elif isinstance(held, Declaration):
+            if not held._referred:
+                held = _stand_in(held, f"{prefix}{field.name}.", symbols, values)
         elif field.name in numbers and (is_plain(held) or isinstance(held, Parameter | tuple) or is_expression(held)):
             sign = {"positive": True} if field.name in declaration.positive else {"real": True}
-            held = _symbols(field.name, held, numbers[field.name], symbols, values, sign)
+            held = _symbols(prefix + field.name, held, numbers[field.name], symbols, values, sign)
         elif isinstance(held, Mapping):
             held = {
-                key: _symbols(f"{field.name}.{key}", entry, numbers[f"{field.name}.{key}"], symbols, values)
+                key: _symbols(f"{prefix}{field.name}.{key}", entry, numbers[f"{field.name}.{key}"], symbols, values)
                 if f"{field.name}.{key}" in numbers
                 else entry
                 for key, entry in held.items()
             }
         object.__setattr__(copy, field.name, held)
-    return Symbolic(copy, symbols, tuple(values))
+    return copy
 
 
 def _symbols(

@@ -18,10 +18,11 @@ SPEEDS = np.array([0.0, 1e-300, 1e-12, 1e-3, 0.1, 1.0, 30.0, 1e3, 1e150, 1e300])
 @pytest.mark.parametrize("law_type", EVERY)
 def test_numbers_are_finite_everywhere_without_warnings(law_type):
     law = law_type.example()
+    d = law.dimensions[-1]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         mu, slope = law.coefficient(SPEEDS), law.derivative(SPEEDS)
-        force = law.force(np.array([SPEEDS[:8], -SPEEDS[:8]]), 2.0)
+        force = law.force(np.array([SPEEDS, -SPEEDS, SPEEDS][:d]), 2.0)
     assert mu.shape == slope.shape == SPEEDS.shape
     assert np.all(np.isfinite(mu))
     assert np.all(np.isfinite(slope))
@@ -43,22 +44,26 @@ def test_scalars_give_scalars(law_type):
     law = law_type.example()
     assert isinstance(law.coefficient(0.3), float)
     assert isinstance(law.derivative(0.3), float)
-    assert isinstance(law.force(0.3, 2.0), float)
-    assert law.force(np.array([0.3]), 2.0).shape == (1,)
-    assert law.force(np.full((2, 5), 0.3), np.linspace(0, 1, 5)).shape == (2, 5)
+    if 1 in law.dimensions:
+        assert isinstance(law.force(0.3, 2.0), float)
+        assert law.force(np.array([0.3]), 2.0).shape == (1,)
+    d = law.dimensions[-1]
+    assert law.force(np.full((d, 5), 0.3), np.linspace(0, 1, 5)).shape == (d, 5)
 
 
-@pytest.mark.parametrize("law_type", [t for t in EVERY if not t.states])
+@pytest.mark.parametrize("law_type", [t for t in EVERY if not t.states and 3 not in t.example().dimensions])
 def test_force_opposes_slip_and_vanishes_at_rest(law_type):
     law = law_type.example()
     v = np.array([[0.3, 0.0, -0.4], [0.4, 0.0, 0.0]])
     N = np.array([2.0, 2.0, 3.0])
-    r = np.array([0.5, 0.0, 0.4])
     force = law.force(v, N)
-    np.testing.assert_allclose(np.hypot(*force), law.coefficient(r) * N * (r > 0), rtol=1e-14)
-    np.testing.assert_allclose(force[0] * v[1] - force[1] * v[0], 0.0, atol=1e-15)
+    scale = np.array(law.axis_scale() or (1.0, 1.0))[:, None]
+    scaled = scale * v
+    r = np.hypot(*scaled)
+    np.testing.assert_allclose(np.hypot(*(force / scale)), law.coefficient(r, N) * N * (r > 0), rtol=1e-14)
+    np.testing.assert_allclose(force[0] * scaled[1] * scale[1] - force[1] * scaled[0] * scale[0], 0.0, atol=1e-15)
     assert np.all((force * v).sum(axis=0) <= 0.0)
-    np.testing.assert_array_equal(force[:, 1], 0.0)
+    np.testing.assert_allclose(force[:, 1], 0.0, atol=1e-60)
 
 
 @pytest.mark.parametrize("law_type", EVERY)
@@ -68,7 +73,7 @@ def test_laws_pickle_compare_and_hash(law_type):
     assert again == law
     assert hash(again) == hash(law)
     name, value = next(iter(law.slots().items()))
-    other = law.with_slots({name: tuple(1.01 * v + 1e-3 for v in value) if isinstance(value, tuple) else 1.5 * value})
+    other = law.with_slots({name: tuple(1.01 * v + 1e-3 for v in value) if isinstance(value, tuple) else 1.1 * value})
     assert other != law
 
 

@@ -68,7 +68,7 @@ class LuGre(FrictionLaw):
 
     def define_rate(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
         """Bristles follow the slip and saturate."""
-        from fricmb.laws import norm
+        from fricmb.laws._curves import norm
 
         r = norm(v)
         return tuple(v_ - self.sigma0 * r / self._steady(r) * z_ for v_, z_ in zip(v, z, strict=True))

@@ -1,0 +1,178 @@
+"""How a friction law answers a prescribed motion of its contact: loops, break-away, lag."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.equations import function, law_template, numbers
+from fricmb.integrate._problem import Floats
+from fricmb.laws import FrictionLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class Path:
+    """Motion of a contact along its first direction, and the friction force on its ``a``.
+
+    Attributes
+    ----------
+    t, displacement, velocity, force : ndarray, (n_t,)
+    state : ndarray, (n_states, n_t)
+    """
+
+    t: Floats
+    displacement: Floats
+    velocity: Floats
+    force: Floats
+    state: Floats
+
+    @property
+    def work(self) -> float:
+        """Work of the friction force along the path; negative where friction takes energy."""
+        return float(np.trapezoid(self.force * self.velocity, self.t))
+
+    @property
+    def amplitude(self) -> float:
+        """Half the range of the displacement."""
+        return float(0.5 * np.ptp(self.displacement))
+
+
+def path(
+    law: FrictionLaw,
+    velocity: Callable[[Any], Any],
+    t: Floats,
+    *,
+    normal_force: float = 1.0,
+    state: Floats | None = None,
+    rtol: float = 1e-8,
+) -> Path:
+    """Friction along a prescribed motion.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        A set-valued law answers with its force in slip (0 at v = 0).
+    velocity : callable
+        Velocity of the contact along its first direction at times (n,).
+    t : ndarray, (n_t,)
+        Increasing times.
+    normal_force : float
+    state : ndarray, (n_states,), optional
+        States at t[0]; default 0.
+    rtol : float
+        Of the states.
+
+    Returns
+    -------
+    Path
+    """
+    d = law.dimensions[0]
+    v = np.asarray(velocity(t), dtype=float)
+    x = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
+    directions = np.vstack([v, np.zeros((d - 1, len(t)))])
+    z = np.zeros((law.n_states(d), len(t)))
+    if len(z):
+        z = _states(law, d, velocity, t, normal_force, np.zeros(len(z)) if state is None else state, rtol)
+    force = np.asarray(law.force(directions, normal_force, z if len(z) else None))[0]
+    return Path(t=t, displacement=x, velocity=v, force=force, state=z)
+
+
+def compiled_force(law: FrictionLaw, d: int) -> tuple[Callable[[Floats], tuple[Floats, Floats]], int]:
+    """The compiled force: x = [v, N, z] -> values [F, z'] and Jacobian; and the number of states."""
+    template = law_template(law, d)
+    p = law.parameter_block() if template.function is not None else np.array(numbers(law))
+    compiled, n_z = function(template.address), law.n_states(d)
+    rows, columns = d + n_z, d + n_z + 1
+
+    def evaluate(x: Floats) -> tuple[Floats, Floats]:
+        out = np.full(rows * (columns + 1), np.nan)
+        compiled(np.ascontiguousarray(x), p, out)
+        return out[:rows].copy(), out[rows:].reshape(rows, columns).copy()
+
+    return evaluate, n_z
+
+
+def _states(
+    law: FrictionLaw, d: int, velocity: Callable[[Any], Any], t: Floats, N: float, start: Floats, rtol: float
+) -> Floats:
+    from scipy.integrate import solve_ivp
+
+    evaluate, n_z = compiled_force(law, d)
+
+    def at(time: float, z: Floats) -> tuple[Floats, Floats]:
+        return evaluate(np.concatenate([[float(velocity(time))], np.zeros(d - 1), [N], z]))
+
+    scale = np.maximum(np.abs(start), 1e-3 * rtol)
+    found = solve_ivp(
+        lambda time, z: at(time, z)[0][d:], (t[0], t[-1]), start, method="Radau", t_eval=t,
+        jac=lambda time, z: at(time, z)[1][d:, d + 1 :], rtol=rtol, atol=1e-6 * rtol * scale,
+        max_step=(t[-1] - t[0]) / 50.0,
+    )  # fmt: skip
+    return np.asarray(found.y) if found.success else np.full((n_z, len(t)), np.nan)
+
+
+def cycle(
+    law: FrictionLaw, *, amplitude: float, period: float, normal_force: float = 1.0, cycles: int = 3, points: int = 400
+) -> Path:
+    """The last of several harmonic cycles of the displacement: the hysteresis loop of a law.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+    amplitude : float
+        Of the displacement: below the law's presliding distance the loop is one of presliding, far above of sliding.
+    period : float
+    normal_force : float
+    cycles : int
+    points : int
+        On the last cycle.
+    """
+    omega = 2.0 * np.pi / period
+    t = np.linspace(0.0, cycles * period, cycles * points + 1)
+    whole = path(
+        law, lambda time: amplitude * omega * np.cos(omega * np.asarray(time)), t, normal_force=normal_force, rtol=1e-7
+    )
+    last = slice((cycles - 1) * points, None)
+    moved = amplitude * np.sin(omega * t)
+    return Path(
+        t=t[last], displacement=moved[last], velocity=whole.velocity[last], force=whole.force[last],
+        state=whole.state[:, last],
+    )  # fmt: skip
+
+
+def settling_distance(law: FrictionLaw, normal_force: float = 1.0) -> float:
+    """Distance of slip over which friction comes to its steady value (to a factor), by sliding from rest."""
+    d, speed = law.dimensions[0], 1e-3
+    v = np.zeros(d)
+    v[0] = speed
+    evaluate, n_z = compiled_force(law, d)
+    state, distance = np.zeros(n_z), 1e-12
+    while distance < 1e3:
+        values, jacobian = evaluate(np.concatenate([v, [normal_force], state]))
+        rate = values[d:]
+        pace = np.abs(np.diag(jacobian[d:, d + 1 :])).max(initial=0.0)
+        if pace * distance / speed > 0.5 or not np.isfinite(rate).all():
+            return distance
+        state = rate * distance / speed
+        distance *= 2.0
+    return 1e-3
+
+
+def pull(law: FrictionLaw, *, normal_force: float = 1.0, speed: float = 1e-6, points: int = 800) -> Path:
+    """Slow pulling from rest into slip: presliding, break-away, and the way to steady slip.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        With internal states.
+    normal_force : float
+    speed : float
+        Of the pulling.
+    points : int
+    """
+    distance = 20.0 * settling_distance(law, normal_force)
+    t = np.linspace(0.0, 1.0, points + 1) ** 2 * distance / speed
+    return path(law, lambda time: np.full(np.shape(time), speed), t, normal_force=normal_force, rtol=1e-7)

@@ -1,0 +1,46 @@
+"""Checks of the fields and of the cone of a friction law."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, fields
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import LawError
+from fricmb.values import Declaration
+
+
+def required_numbers(kind: Any) -> dict[str, float]:
+    """0.5 for every field without a default."""
+    return {f.name: 0.5 for f in fields(kind) if f.default is MISSING and f.default_factory is MISSING}
+
+
+def field_value(law: Any, name: str, annotation: Any) -> Any:
+    """A field in its form: a number, a tuple of numbers, an inner law, an option."""
+    value = getattr(law, name)
+    text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
+    if isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1:
+        return tuple(law._number(f"{name}[{i}]", entry) for i, entry in enumerate(value))
+    if isinstance(value, Declaration):
+        return value
+    if value is None or isinstance(value, bool):
+        if text in ("float", "int"):
+            law._refuse(name, value, "a finite number")
+        return value
+    if isinstance(value, str) and "float" not in text:
+        return value
+    return law._number(name, value)
+
+
+def check_cone(law: Any) -> None:
+    """The break-away coefficient is not below the limit of slip, and both are finite and >= 0."""
+    limit, mu_s = law.slip_limit(), law.break_away()
+    if not np.isfinite(limit):
+        raise LawError(f"{law._label()}: the coefficient must be finite at r = 0, got {limit!r}")
+    if limit < 0.0:
+        raise LawError(f"{law._label()}: the coefficient must be >= 0 at r = 0, got {limit!r}")
+    if mu_s < limit * (1.0 - 1e-12):
+        raise LawError(
+            f"{law._label()}: mu_s must be at least the coefficient of slip for r -> 0 ({limit:g}), got {mu_s!r}"
+        )

@@ -1,0 +1,106 @@
+"""Rate-and-state friction of Dieterich and Ruina."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from fricmb.laws._base import FrictionLaw
+from fricmb.laws._curves import norm
+
+
+@dataclass(frozen=True, kw_only=True)
+class RateAndState(FrictionLaw):
+    """mu = a asinh(|v|/(2 v_0) exp((mu_0 + b psi)/a)) with psi = log(v_0 theta/L), F = -N (mu v/|v| + viscous v).
+
+    ``evolution`` "aging" (Dieterich): theta' = 1 - |v| theta/L; "slip" (Ruina):
+    theta' = -(|v| theta/L) log(|v| theta/L).  For |v| > 0 mu is mu_0 + a log(|v|/v_0) + b log(v_0 theta/L), and it is
+    finite at v = 0.  The state is psi, one number for the contact; 0 is the steady state at v_0.
+    A contact of the aging law strengthens at rest.
+
+    Parameters
+    ----------
+    mu_0 : float
+        Coefficient in steady slip at v_0, > 0.
+    a, b : float
+        Direct effect, > 0, and evolution effect, >= 0.
+    L : float
+        Slip distance over which the state evolves, > 0.
+    v_0 : float
+        Reference speed, > 0.
+    evolution : str
+        "aging" or "slip".
+    viscous : float
+        Coefficient per speed (radiation damping), >= 0.
+
+    Raises
+    ------
+    LawError
+        If a value is outside its range.
+
+    References
+    ----------
+    J. H. Dieterich, Modeling of rock friction 1, Journal of Geophysical Research 84 (1979) 2161-2168; A. Ruina, Slip
+    instability and state variable friction laws, ibid. 88 (1983) 10359-10370; the regular form: J. R. Rice,
+    N. Lapusta, K. Ranjith, Rate and state dependent friction and the stability of sliding between elastically
+    deformable solids, Journal of the Mechanics and Physics of Solids 49 (2001) 1865-1898.
+    """
+
+    states: ClassVar[tuple[str, ...]] = ("psi",)
+    scalars: ClassVar[tuple[str, ...]] = ("psi",)
+    positive: ClassVar[tuple[str, ...]] = ("mu_0", "a", "L", "v_0",)
+
+    mu_0: Any
+    a: Any
+    b: Any
+    L: Any
+    v_0: Any
+    evolution: str = "aging"
+    viscous: Any = 0.0
+
+    @property
+    def rests(self) -> bool:  # type: ignore[override]
+        """The slip law rests, the aging law does not."""
+        return self.evolution == "slip"
+
+    def _coefficient(self, r: Any, psi: Any) -> Any:
+        """asinh(exp(x)) by its logarithm where exp(x) is large."""
+        import sympy
+
+        x = sympy.log(r / (2 * self.v_0)) + (self.mu_0 + self.b * psi) / self.a
+        return self.a * sympy.Piecewise((sympy.asinh(sympy.exp(x)), x < 30), (x + sympy.log(2), True))
+
+    def define_coefficient(self, r: Any) -> Any:
+        """Steady sliding, where psi = -log(r/v_0)."""
+        import sympy
+
+        r = norm((r,))
+        return self._coefficient(r, -sympy.log(r / self.v_0)) + self.viscous * r
+
+    def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
+        """Opposes the slip."""
+        r = norm(v)
+        push = N * (self._coefficient(r, z[0]) / r + self.viscous)
+        return tuple(-push * c for c in v)
+
+    def define_rate(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
+        """Rate of psi = log(v_0 theta/L)."""
+        import sympy
+
+        r, psi = norm(v), z[0]
+        if self.evolution == "aging":
+            # where exp would overflow, psi is pushed up as fast as can be
+            return ((self.v_0 * sympy.exp(sympy.Min(-psi, 300)) - r) / self.L,)
+        return (-r / self.L * (sympy.log(r / self.v_0) + psi),)
+
+    def validate(self) -> None:
+        """Ranges."""
+        self._number("b", self.b, minimum=0.0)
+        self._number("viscous", self.viscous, minimum=0.0)
+        if self.evolution not in ("aging", "slip"):
+            self._refuse("evolution", self.evolution, "'aging' or 'slip'")
+
+    @classmethod
+    def example(cls) -> Self:
+        """A fault gouge, in metres and seconds."""
+        return cls(mu_0=0.6, a=0.01, b=0.015, L=1e-5, v_0=1e-6)

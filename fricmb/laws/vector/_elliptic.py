@@ -1,0 +1,108 @@
+"""Orthotropic friction: an elliptic cone with maximum dissipation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fricmb.laws._base import FrictionLaw, LawKind
+
+
+@dataclass(frozen=True, kw_only=True)
+class Elliptic(FrictionLaw):
+    """Friction of ``law`` along the contact's first direction, ``ratio`` times as much along the second.
+
+    Of all forces in the ellipse |S^-1 F| <= mu N, S = diag(1, ratio), slip meets the one of greatest dissipation:
+    F = -mu N S (S v)/|S v|.  It is not opposite to v but for slip along an axis.  In the scaled velocity S v and force
+    S^-1 F the law is the isotropic one and the power the same, so that the same kernels serve: r = |S v|.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        Set-valued and isotropic.
+    ratio : float
+        Coefficient along the second direction over that along the first, > 0.  Choose the principal axes by the
+        contact's ``axes``.
+
+    Raises
+    ------
+    LawError
+        If the ratio is not positive, or the law not set-valued and isotropic.
+
+    References
+    ----------
+    A. Zmitrowicz, A theoretical model of anisotropic dry friction, Wear 73 (1981) 9-39; the principle of maximum
+    dissipation: S. Goyal, A. Ruina, J. Papadopoulos, Planar sliding with dry friction, Wear 143 (1991) 307-330.
+    """
+
+    dimensions: ClassVar[tuple[int, ...]] = (2,)
+    isotropic: ClassVar[bool] = False
+    positive: ClassVar[tuple[str, ...]] = ("ratio",)
+
+    law: Any
+    ratio: Any
+
+    def define_coefficient(self, r: Any) -> Any:
+        """That of the law, at the scaled speed."""
+        return self.law.define_coefficient(r)
+
+    def axis_scale(self) -> tuple[Any, ...]:
+        """(1, ratio)."""
+        return (1.0, self.ratio)
+
+    @property
+    def kind(self) -> LawKind:
+        """As the law inside."""
+        kind: LawKind = self.law.kind
+        return kind
+
+    @property
+    def has_coefficient(self) -> bool:
+        """As the law inside."""
+        return bool(self.law.has_coefficient)
+
+    @property
+    def static_path(self) -> str | None:
+        """That of the law inside."""
+        path = self.law.static_path
+        return None if path is None else f"law.{path}"
+
+    def slip_limit(self, normal_force: float = 1.0) -> float:
+        """That of the law inside."""
+        return float(self.law.slip_limit(normal_force))
+
+    def compiled_coefficient(self) -> Callable[..., None] | None:
+        """That of the law inside."""
+        function: Callable[..., None] | None = self.law.compiled_coefficient()
+        return function
+
+    def parameter_block(self) -> NDArray[np.float64]:
+        """That of the law inside: the ratio is in the rows of the contact."""
+        return np.asarray(self.law.parameter_block(), dtype=float)
+
+    def coefficient(self, r: Any, normal_force: Any = 1.0) -> Any:
+        """Coefficient along the first direction at the scaled speed r."""
+        return self.law.coefficient(r, normal_force)
+
+    def derivative(self, r: Any, normal_force: Any = 1.0) -> Any:
+        """Slope of :meth:`coefficient`."""
+        return self.law.derivative(r, normal_force)
+
+    def check(self) -> None:
+        """The law inside is set-valued and isotropic."""
+        law = self.law
+        if not isinstance(law, FrictionLaw) or law.kind == "smooth" or law.axis_scale() or law.load_dependent:
+            self._refuse("law", law, "an isotropic set-valued law of the slip speed, such as fm.laws.Coulomb(mu_s=0.5)")
+        super().check()
+
+    @classmethod
+    def example(cls) -> Self:
+        """A ground surface: twice the friction across the grinding marks."""
+        from fricmb.laws.set_valued import Coulomb
+
+        law: FrictionLaw = Coulomb(mu_s=0.3, mu_k=0.25)
+        return cls(law=law, ratio=2.0)

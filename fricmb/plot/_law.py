@@ -1,0 +1,120 @@
+"""Pictures of a friction law: its coefficient, hysteresis, break-away and lag."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from fricmb.analysis import cycle, path, pull, settling_distance
+from fricmb.laws import FrictionLaw
+from fricmb.plot._style import ORANGE, finish, line
+
+Floats = NDArray[np.float64]
+
+
+def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
+    """Four panels: coefficient over slip speed, hysteresis loops, break-away, lag behind a varying speed.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+    normal_force : float
+        Forces are drawn per unit of it.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.4), layout="constrained")
+    figure.suptitle(type(law).__name__, x=0.02, ha="left")
+    speeds = speed_range(law, normal_force)
+    speed = float(np.sqrt(speeds[0] * speeds[-1]))
+    length = settling_distance(law, normal_force) if law.states else speed
+    draw_coefficient(law, axes[0, 0], speeds, normal_force)
+    draw_loops(law, axes[0, 1], length, speed, normal_force)
+    draw_break_away(law, axes[1, 0], normal_force)
+    draw_lag(law, axes[1, 1], length, speed, normal_force)
+    return figure
+
+
+def speed_range(law: FrictionLaw, normal_force: float = 1.0) -> Floats:
+    """Slip speeds (logarithmic) over which the coefficient changes, with a decade on either side."""
+    grid = np.logspace(-9, 2, 441)
+    mu = np.asarray(law.coefficient(grid, normal_force))
+    step = np.diff(mu) / np.maximum(mu[:-1], 1e-300)
+    falls = np.flatnonzero(step < -5e-4)
+    # from rest, not the viscous rise
+    rises = np.flatnonzero(step > 2e-2) if mu[0] < 0.5 * np.median(mu) else np.array([], dtype=np.int64)
+    seen = (grid[rises] < 1.0) & (mu[rises] > 0.01 * np.median(mu))
+    moving = np.concatenate([falls, rises[seen]])
+    low, high = (grid[moving.min()] / 3.0, grid[moving.max()] * 3.0) if len(moving) else (1e-3, 1.0)
+    return np.logspace(np.log10(low), np.log10(min(high, 1e2)), 400)
+
+
+def draw_coefficient(law: FrictionLaw, ax: Axes, speeds: Floats, normal_force: float) -> None:
+    """Steady coefficient over slip speed, and what holds at rest."""
+    ax.semilogx(speeds, law.coefficient(speeds, normal_force), **line(0))
+    if law.kind != "smooth":
+        held = law.break_away(normal_force)
+        ax.axhline(held, color=ORANGE, linestyle="--", linewidth=0.9, label="break-away")
+    ax.set_ylim(bottom=0.0)
+    finish(ax, x="slip speed", y="coefficient in steady slip", legend=law.kind != "smooth")
+
+
+def draw_loops(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_force: float) -> None:
+    """Friction over displacement in harmonic cycles, from presliding to gross slip."""
+    shares = (0.5, 2.0, 8.0) if law.states else (0.1, 1.0, 10.0)
+    for i, share in enumerate(shares):
+        amplitude = share * length
+        top = 0.03 * speed * (1.0 if law.states else 30.0 * share)
+        loop = cycle(law, amplitude=amplitude, period=2 * np.pi * amplitude / top, normal_force=normal_force)
+        x = loop.displacement / amplitude if not law.states else loop.displacement / length
+        label = f"amplitude {_short(amplitude)}" if law.states else f"speed {_short(top)}"
+        ax.plot(x, -loop.force / normal_force, label=label, **line(i))
+    what = f"displacement / {_short(length)}" if law.states else "displacement / amplitude"
+    _finish(ax, x=what, y="friction / normal force", legend=True)
+
+
+def draw_break_away(law: FrictionLaw, ax: Axes, normal_force: float) -> None:
+    """Slow pulling from rest."""
+    if law.states:
+        pulled = pull(law, normal_force=normal_force)
+        ax.plot(pulled.displacement, -pulled.force / normal_force, **line(0))
+        _finish(ax, x="displacement, pulled slowly from rest", y="friction / normal force")
+        return
+    held = law.break_away(normal_force) if law.kind != "smooth" else 0.0
+    slip = law.slip_limit(normal_force) if law.kind != "smooth" else law.creep(0.5).break_away
+    ax.plot([0.0, 0.0, 0.0, 1.0], [0.0, held, slip, slip], **line(0))
+    _finish(ax, x="displacement, pulled slowly from rest", y="friction / normal force")
+
+
+def draw_lag(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_force: float) -> None:
+    """Friction over speed while the speed swings without turning round, slow and fast."""
+    for i, swings in enumerate((200.0, 10.0, 2.0)):
+        omega = speed / (swings * length)
+        t = np.linspace(0.0, 6.0 * np.pi / omega, 901)
+        found = path(law, _swing(speed, omega), t, normal_force=normal_force, rtol=1e-6)
+        last = slice(600, None)
+        ax.plot(found.velocity[last], -found.force[last] / normal_force, label=f"frequency {_short(omega)}", **line(i))
+    _finish(ax, x="slip speed", y="friction / normal force", legend=True)
+
+
+def _finish(ax: Axes, x: str, y: str, *, legend: bool = False) -> None:
+    ax.ticklabel_format(axis="x", style="sci", scilimits=(-2, 3))
+    ax.locator_params(axis="x", nbins=6)
+    finish(ax, x=x, y=y, legend=legend)
+
+
+def _swing(speed: float, omega: float) -> Callable[[Any], Any]:
+    return lambda time: speed * (1.0 + 0.8 * np.sin(omega * np.asarray(time)))
+
+
+def _short(value: Any) -> str:
+    return f"{float(value):.2g}"
