@@ -54,7 +54,7 @@ def rabinowicz() -> fm.Scene:
     return fm.Scene("Rabinowicz", [mass, hand, spring, fm.Contact("sole", mass, law=law, normal_force=1.0)])
 
 
-_FINE = (1e-2, 3e-3, 1e-3, 3e-4)
+_FINE = (1e-2, 3e-3, 1e-3)
 _BRAKES = tuple(
     SceneCase(
         name=f"brake{case}", title=f"brake, case {case}", build=partial(models.brake4dof, case),

@@ -164,7 +164,8 @@ def _measured(worker: Worker, cell: Cell, limit: float, given_up: bool) -> dict[
     try:
         if given_up:
             raise CellEnded("not tried: an easier setting was not done after the time limit")
-        value: dict[str, Any] = worker.run(measure_named, cell, limit=limit)
+        patience = 3.0 * limit if cell.family == "size" else limit  # a size is run once, and the last one counts
+        value: dict[str, Any] = worker.run(measure_named, cell, limit=patience)
         return value
     except CellEnded as error:
         failure = str(error)
