@@ -19,7 +19,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "_scenes": ["SCENES"],
         "_startup": ["start_up_times"],
         "_store": ["Store"],
-        "_suite": ["Options", "fingerprint", "names", "run"],
+        "_suite": ["Options", "about", "fingerprint", "names", "run"],
         "_tables": ["scoreboard", "tolerance_statistic"],
     },
 )

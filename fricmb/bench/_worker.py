@@ -27,6 +27,7 @@ def _serve() -> None:
     import warnings
 
     warnings.simplefilter("ignore")
+    _limit_memory()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     while True:
@@ -40,6 +41,20 @@ def _serve() -> None:
             answer = (False, f"{type(error).__name__}: {' '.join(str(error).split())}")
         pickle.dump(answer, answers)
         answers.flush()
+
+
+#: Bytes that a process may ask for: a run without end must not take the machine with it.
+MEMORY = 8 << 30
+
+
+def _limit_memory() -> None:
+    try:
+        import resource
+    except ImportError:  # not on this system
+        return
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    most = MEMORY if hard == resource.RLIM_INFINITY else min(MEMORY, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (most, hard))
 
 
 def _listen(stream: IO[bytes], answers: queue.Queue[Any]) -> None:

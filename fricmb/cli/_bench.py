@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 from fricmb.bench import (
     Options,
     Store,
+    about,
     fingerprint,
     names,
     report,
@@ -26,6 +28,8 @@ from fricmb.errors import unknown_name
 
 def bench(options: argparse.Namespace) -> int:
     """Measure, with a bar; write the report and the numbers."""
+    if options.what == "stability":
+        return _stability(options)
     known = names()
     for name in options.scene:
         if name not in known:
@@ -45,6 +49,30 @@ def bench(options: argparse.Namespace) -> int:
     else:
         _summary(result, options.out)
     return 0
+
+
+def _stability(options: argparse.Namespace) -> int:
+    """The grid of extreme scenes and the regions; exit status 3 where something was wrong without a word."""
+    from fricmb.bench.stability import run_stability, stability_report
+
+    chosen = Options(quick=options.quick, limit=options.limit)
+    store = Store(options.out / "stability.jsonl", fingerprint(chosen))
+    if options.again:
+        store.clear()
+    with _bar() as progress:
+        result = {"about": about(chosen), **run_stability(options.quick, options.limit, store, progress)}
+    _write(options.out, "stability.html", stability_report(result))
+    _write(options.out, "stability.json", json.dumps(result, indent=1))
+    bad = [row for row in result["grid"] if row["verdict"] in ("wrong", "crashed")]
+    if options.json:
+        print(json.dumps(result))
+    else:
+        for verdict, count in Counter(row["verdict"] for row in result["grid"]).most_common():
+            print(f"{verdict:10} {count}")
+        for row in bad:
+            print(f"{row['verdict']}: {row['group']}: {row['value']}, {row['method']}")
+        print(f"written: {options.out / 'stability.html'}, {options.out / 'stability.json'}")
+    return 3 if bad else 0
 
 
 @contextmanager

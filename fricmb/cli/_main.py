@@ -161,7 +161,9 @@ def _add_plan(commands: _Commands) -> None:
 
 
 def _add_bench(commands: _Commands) -> None:
-    sub = _command(commands, "bench", "measure error against run time of all integrators and peers", "_bench:bench")
+    sub = _command(commands, "bench", "measure error against run time, or stability, of integrators", "_bench:bench")
+    kinds = ("suite", "stability")
+    sub.add_argument("what", nargs="?", choices=kinds, default="suite", help="what to measure (default: %(default)s)")
     sub.add_argument("--quick", action="store_true", help="a few scenes and settings, in under a minute")
     sub.add_argument(
         "--scene", action="append", default=[], metavar="NAME", help="only this scene of the suite; may be repeated"
