@@ -110,6 +110,12 @@ class Worker:
             raise CellEnded(value)
         return value
 
+    def warm(self, *jobs: tuple[Callable[..., Any], tuple[Any, ...]]) -> None:
+        """Run jobs whose only purpose is to fill the cache: no limit, and failures do not matter."""
+        for function, arguments in jobs:
+            with contextlib.suppress(CellEnded):
+                self.run(function, *arguments, limit=3600.0)
+
     def _started(self) -> subprocess.Popen[bytes]:
         if self._process is None:
             command = [sys.executable, "-c", "from fricmb.bench._worker import _serve; _serve()"]

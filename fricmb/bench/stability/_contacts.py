@@ -154,7 +154,7 @@ def contacts() -> list[Extreme]:
     found.append(Extreme(group="grazing", value="mu_s = mu_k", build=partial(belt, 1.0), t_end=60.0, error=_grazes))
     found += [
         Extreme(group="chatter", value=f"{4 * n} transitions in {2 * math.pi * n / w:.2g}", build=partial(shaken, w),
-                t_end=(2 * math.pi * n - 0.01) / w, error=partial(_shakes, frequency=w, count=2 * n))
+                t_end=(2 * math.pi * n + 0.5) / w, error=partial(_shakes, frequency=w, count=2 * n))
         for n, w in ((10, 1e2), (100, 1e4), (1000, 1e6))
     ]  # fmt: skip
     found += [

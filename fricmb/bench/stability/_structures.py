@@ -156,7 +156,7 @@ def structures() -> list[Extreme]:
     found += [
         Extreme(group="mu", value=f"{mu:g}", build=partial(models.puck_on_belt, mu=mu),
                 t_end=1.25 * math.hypot(1.0, 1.5) / (mu * GRAVITY), error=partial(_slides, mu=mu))
-        for mu in (1e-8, 1e-4, 1e2, 1e4)
+        for mu in (1e-4, 1e-8, 1e2, 1e4)
     ]  # fmt: skip
     found += [
         Extreme(group="mu_s / mu_k", value=f"{r:g}", build=partial(belt, r),
