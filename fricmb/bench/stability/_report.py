@@ -35,8 +35,8 @@ def _parts(result: dict[str, Any]) -> Iterator[str]:
 
 def _axis(rows: list[dict[str, Any]]) -> str:
     text = (
-        f"<p class='note'>Undamped modes that start at {SMALL:g} of a slow one (frequency 1), run for 200 at rtol "
-        "and atol 1e-5: amplitude at the end. It should be near what it was; less is damping by the formula, more is growth.</p>"
+        f"<p class='note'>Undamped modes that start at {SMALL:g} of a slow one (frequency 1), run for 200 at rtol and "
+        "atol 1e-5: amplitude at the end. It should be near what it was, or damped away; more is growth.</p>"
     )
     head = ("integrator", "contact", "steps", *(f"ω = {w:g}" for w in FAST), "energy residual", "failure")
     return text + table(
