@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from fricmb.equations._expressions import force_terms
@@ -47,12 +48,18 @@ def element_facts(element: Any, driven: bool = False) -> ElementFacts:
         )
     template = element_template(element, driven=driven)
     p = numbers(element)
-    entries = template.matrices(p)
+    left = template.terms(p)
+    return _facts(bool(left.K), bool(left.C), bool(left.f), left.rest, template.facts["compiled"])
+
+
+@cache
+def _facts(stiffness: bool, damping: bool, constant: bool, nonlinear: bool, could_be_nonlinear: bool) -> ElementFacts:
+    """One object for all elements of the same kind."""
     return ElementFacts(
-        stiffness=bool(entries["K"] or entries["work_K"]),
-        damping=bool(entries["C"] or entries["work_C"]),
-        constant=bool(entries["f"] or entries["work_f"]),
+        stiffness=stiffness,
+        damping=damping,
+        constant=constant,
         signal=False,
-        nonlinear=bool(template.rest(p)),
-        could_be_nonlinear=template.facts["compiled"],
+        nonlinear=nonlinear,
+        could_be_nonlinear=could_be_nonlinear,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 from fricmb.equations import _store
@@ -28,6 +28,20 @@ def _compiled(function: Callable[..., None]) -> Any:
     from fricmb.integrate._call import template
 
     return template(function)
+
+
+Entries = tuple[tuple[int, int, float], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Terms:
+    """Entries of an element for its numbers: stiffness, force, damping; V at x = 0; whether anything else remains."""
+
+    K: Entries
+    f: Entries
+    C: Entries
+    constant: float
+    rest: bool
 
 
 @dataclass(frozen=True)
@@ -65,6 +79,23 @@ class Template:
             return {name: [entry for entry in values[part] if entry[2] != 0.0] for name, part in slices.items()}
 
         return entries
+
+    @cached_property
+    def terms(self) -> Callable[[tuple[float, ...]], Terms]:
+        """The affine part for given parameters, once for elements that share them."""
+
+        @lru_cache(maxsize=256)
+        def terms(p: tuple[float, ...]) -> Terms:
+            e = self.matrices(p)
+            return Terms(
+                K=(*e["K"], *e["work_K"]),
+                f=(*e["f"], *e["work_f"]),
+                C=(*e["C"], *e["work_C"]),
+                constant=float(self.constant(p)),
+                rest=self.rest(p),
+            )
+
+        return terms
 
     @cached_property
     def constant(self) -> Callable[[Sequence[float]], float]:

@@ -55,6 +55,9 @@ def _of_parameters(value: Any) -> bool:
 
 def numbers(declaration: Declaration) -> tuple[float, ...]:
     """The numbers behind a stand-in's symbols, in the order of ``symbolic(declaration).flat``."""
+    plain = declaration.plain_numbers()
+    if plain is not None:
+        return plain
     found: list[float] = []
     for _, value in _symbolic_slots(declaration):
         if isinstance(value, tuple):
@@ -69,6 +72,23 @@ def structure(declaration: Declaration) -> tuple[Any, ...]:
 
     A ``name`` and the parts that an element acts on never enter a formula.
     """
+    if declaration.plain_numbers() is not None and _is_ours(type(declaration)):
+        return _plain_structure(declaration)
+    return _structure(declaration)
+
+
+_plain_structures: dict[type, tuple[Any, ...]] = {}
+
+
+def _plain_structure(declaration: Declaration) -> tuple[Any, ...]:
+    """That of a type of this package all of whose numbers are floats: always the same."""
+    kind = type(declaration)
+    if kind not in _plain_structures:
+        _plain_structures[kind] = _structure(declaration)
+    return _plain_structures[kind]
+
+
+def _structure(declaration: Declaration) -> tuple[Any, ...]:
     shapes = tuple(
         (path, len(value) if isinstance(value, tuple) else 0) for path, value in _symbolic_slots(declaration)
     )
@@ -92,8 +112,17 @@ def _plain(value: Any) -> bool:
     return value is None or isinstance(value, str | bool | int | float)
 
 
+_ours: dict[type, bool] = {}
+
+
 def _is_ours(kind: type) -> bool:
     """Whether a type and all it inherits from belong to this package, so that its source file identifies it."""
+    if kind not in _ours:
+        _ours[kind] = _belongs(kind)
+    return _ours[kind]
+
+
+def _belongs(kind: type) -> bool:
     return all(base.__module__.split(".")[0] in ("fricmb", "builtins", "abc", "typing") for base in kind.__mro__)
 
 

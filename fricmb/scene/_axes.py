@@ -121,7 +121,12 @@ def direction(owner: Part, argument: str, axis: Any, a: End, b: End, label: str 
 
 def from_vector(vector: tuple[tuple[str, float], ...], a: End, b: End, label: str) -> Direction:
     """A direction from its components."""
-    form = LinearForm()
+    terms: dict[str, float] = {}
+    constant = 0.0
     for letter, c in vector:
-        form = form + c * (a.motion(letter) - b.motion(letter))
-    return Direction(label, vector, form)
+        for end, factor in ((a, c), (b, -c)):
+            form = end.motion(letter)
+            constant += factor * form.constant
+            for name, coefficient in form.terms:
+                terms[name] = terms.get(name, 0.0) + factor * coefficient
+    return Direction(label, vector, LinearForm.of(terms, constant))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class LinearForm:
     """``constant + sum(coefficient * motion)``.
 
@@ -23,7 +23,7 @@ class LinearForm:
     @classmethod
     def of(cls, terms: Mapping[str, float], constant: float = 0.0) -> LinearForm:
         """From a mapping; coefficients of 0 are left out."""
-        return cls(tuple((name, float(c)) for name, c in terms.items() if c != 0.0), float(constant))
+        return cls(tuple([(name, float(c)) for name, c in terms.items() if c != 0.0]), float(constant))
 
     def __add__(self, other: LinearForm) -> LinearForm:
         merged = dict(self.terms)

@@ -10,6 +10,7 @@ from fricmb.errors import SceneError
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._forms import LinearForm
 from fricmb.values import Declaration, is_expression
+from fricmb.values._declaration import field_names
 
 LETTERS = ("x", "y", "z")
 
@@ -39,11 +40,13 @@ class Part(Declaration):
 
     def ends(self) -> tuple[End, ...]:
         """Ends that this part acts on, in the order of its fields."""
-        values = (getattr(self, f.name) for f in dataclasses.fields(self))
-        return tuple(value for value in values if isinstance(value, End))
+        values = [getattr(self, name) for name in field_names(type(self))]
+        return tuple([value for value in values if isinstance(value, End)])
 
     def expressions(self) -> dict[str, Any]:
         """Slots that hold SymPy expressions of time or motions: path -> expression."""
+        if self.plain_numbers() is not None:
+            return {}
         return {
             path: value
             for path, value in self._entries()
@@ -52,6 +55,8 @@ class Part(Declaration):
 
     def uses(self) -> dict[str, Uses]:
         """What each slot depends on, for slots that are no plain numbers."""
+        if self.plain_numbers() is not None:
+            return {}
         found = {path: expression_uses(value) for path, value in self._entries() if not isinstance(value, float)}
         return {path: uses for path, uses in found.items() if uses != Uses()}
 

@@ -95,7 +95,10 @@ class Scene:
     @property
     def driven(self) -> tuple[Driven, ...]:
         """Parts whose motion is prescribed."""
-        return tuple(part for part in self.parts if isinstance(part, Driven))
+        found = self._cache.get("driven")
+        if found is None:
+            found = self._cache["driven"] = tuple(part for part in self.parts if isinstance(part, Driven))
+        return tuple(found)
 
     @property
     def elements(self) -> tuple[Element, ...]:
@@ -156,6 +159,9 @@ class Scene:
 
     def expand(self, form: LinearForm) -> LinearForm:
         """``form`` in dofs and prescribed motions alone: points of modal bodies become sums of modes."""
+        motions = self._named_motions()
+        if all(motions.get(name, form).terms == ((name, 1.0),) for name, _ in form.terms):
+            return form
         result = LinearForm((), form.constant)
         for name, coefficient in form.terms:
             result = result + coefficient * self.motion(name)

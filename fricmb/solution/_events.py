@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import operator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate import EVENT_KINDS, Transitions
-from fricmb.integrate._problem import Floats
+from fricmb.integrate._problem import Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -39,46 +40,71 @@ class Events(Sequence[Event]):
     """
 
     def __init__(self, events: Iterable[Event]) -> None:
-        self._events = tuple(events)
+        held = list(events)
+        self._names = tuple(dict.fromkeys(event.contact for event in held))
+        place = {name: i for i, name in enumerate(self._names)}
+        self._t = np.array([event.t for event in held], dtype=float)
+        self._contact = np.array([place[event.contact] for event in held], dtype=np.int64)
+        self._kind = np.array([EVENT_KINDS.index(event.kind) for event in held], dtype=np.int64)
 
     @classmethod
     def from_transitions(cls, transitions: Transitions, contacts: tuple[str, ...]) -> Events:
-        """Name the transitions that an integrator recorded."""
-        columns = zip(transitions.t.tolist(), transitions.contact.tolist(), transitions.kind.tolist(), strict=True)
-        return cls(Event(t, contacts[contact], EVENT_KINDS[kind]) for t, contact, kind in columns)
+        """Name the transitions that an integrator recorded; objects are made when they are looked at."""
+        return cls._of(contacts, transitions.t, transitions.contact, transitions.kind)
+
+    @classmethod
+    def _of(cls, names: tuple[str, ...], t: Floats, contact: Ints, kind: Ints) -> Events:
+        events = cls.__new__(cls)
+        events._names, events._t, events._contact, events._kind = names, t, contact, kind
+        return events
+
+    def _part(self, chosen: Any) -> Events:
+        return self._of(self._names, self._t[chosen], self._contact[chosen], self._kind[chosen])
 
     @property
     def t(self) -> Floats:
         """Times (n_events,)."""
-        return np.array([event.t for event in self._events])
+        return self._t.copy()
 
     def of(self, *, kind: str | None = None, contact: str | None = None) -> Events:
         """Events of one kind, of one contact, or both."""
         if kind is not None and kind not in EVENT_KINDS:
             raise unknown_name("kind of event", kind, EVENT_KINDS)
-        return Events(e for e in self._events if kind in (None, e.kind) and contact in (None, e.contact))
+        mine = np.ones(len(self), dtype=bool)
+        if kind is not None:
+            mine &= self._kind == EVENT_KINDS.index(kind)
+        if contact is not None:
+            mine &= self._contact == (self._names.index(contact) if contact in self._names else -1)
+        return self._part(mine)
 
     def until(self, t: float) -> Events:
         """Events not later than t."""
-        return Events(event for event in self._events if event.t <= t)
+        return self._part(self._t <= t)
 
     def __len__(self) -> int:
-        return len(self._events)
+        return len(self._t)
 
     @overload
     def __getitem__(self, index: int) -> Event: ...
     @overload
     def __getitem__(self, index: slice) -> Events: ...
     def __getitem__(self, index: int | slice) -> Event | Events:
-        return Events(self._events[index]) if isinstance(index, slice) else self._events[index]
+        if isinstance(index, slice):
+            return self._part(index)
+        return Event(float(self._t[index]), self._names[self._contact[index]], EVENT_KINDS[self._kind[index]])
+
+    def __iter__(self) -> Iterator[Event]:
+        columns = zip(self._t.tolist(), self._contact.tolist(), self._kind.tolist(), strict=True)
+        return (Event(t, self._names[contact], EVENT_KINDS[kind]) for t, contact, kind in columns)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Events) and self._events == other._events
+        return isinstance(other, Events) and len(self) == len(other) and all(map(operator.eq, self, other))
 
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        if not self._events:
+        if not len(self):
             return "<no events>"
-        counts = {kind: sum(e.kind == kind for e in self._events) for kind in EVENT_KINDS}
-        return f"<{len(self)} events: " + ", ".join(f"{n} {kind}" for kind, n in counts.items() if n) + ">"
+        counts = np.bincount(self._kind, minlength=len(EVENT_KINDS)).tolist()
+        shown = ", ".join(f"{n} {kind}" for kind, n in zip(EVENT_KINDS, counts, strict=True) if n)
+        return f"<{len(self)} events: {shown}>"

@@ -202,10 +202,19 @@ class Solution:
 
     def time_share(self, contact: str, mode: int) -> float:
         """Share of the run that a contact spends in a mode (0 stick, 1 slip, 2 open), from the accepted steps."""
+        return float(self.time_shares(mode)[self.names.contact(contact)])
+
+    def time_shares(self, mode: int) -> Floats:
+        """The same of every contact (n_contacts,)."""
+        modes, spans = self._rows_of_modes
+        if not spans.any():
+            return np.zeros(len(self.names.contacts))
+        return np.asarray((modes == mode) @ spans / spans.sum(), dtype=float)
+
+    @cached_property
+    def _rows_of_modes(self) -> tuple[Codes, Floats]:
         samples = (self.record if self.has_rows else self.run.rows()).samples
-        spans = np.diff(samples.t)
-        mine = samples.mode[self.names.contact(contact), :-1] == mode
-        return float(spans[mine].sum() / spans.sum()) if spans.any() else 0.0
+        return samples.mode[:, :-1], np.diff(samples.t)
 
     @property
     def run(self) -> Run:

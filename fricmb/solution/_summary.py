@@ -53,7 +53,8 @@ def _contacts(sol: Solution) -> list[str]:
     groups = [(name,) for name in names] if len(names) <= MANY else [names]
     lines = []
     for group in groups:
-        numbers = {kind: sum(len(sol.events.of(kind=kind, contact=name)) for name in group) for kind in _KINDS}
+        only = group[0] if len(group) == 1 else None
+        numbers = {kind: len(sol.events.of(kind=kind, contact=only)) for kind in _KINDS}
         counts = [f"{number} {kind}" for kind, number in numbers.items() if number]
         places = [names.index(name) for name in group]
         lost = f"{_lost(sol, places):.6g}" if sol.t.size else "nothing"
@@ -73,13 +74,9 @@ def _lost(sol: Solution, places: list[int]) -> float:
 
 
 def _share(sol: Solution, group: tuple[str, ...], mode: int) -> str:
-    shares = [f"{sol.time_share(name, mode):.1%}" for name in group]
-    low, high = min(shares, key=_percent), max(shares, key=_percent)
+    shares = sol.time_shares(mode)[[sol.names.contact(name) for name in group]]
+    low, high = f"{shares.min():.1%}", f"{shares.max():.1%}"
     return low if low == high else f"{low} to {high}"
-
-
-def _percent(text: str) -> float:
-    return float(text.rstrip("%"))
 
 
 #: More contacts than this are summed up in one line.

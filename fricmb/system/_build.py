@@ -45,7 +45,7 @@ def build(scene: Any, plan: Any = None) -> System:
 
 
 #: Above this no spectrum is computed.
-SPECTRUM = 2000
+SPECTRUM = 500
 
 
 def _spectrum(linear: Linear, n: int, dofs: Sequence[str]) -> tuple[Floats, Floats]:

@@ -20,7 +20,7 @@ from fricmb.values import value_of
 Entries = Sequence[tuple[int, int, float]]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Store:
     """Potential of one element: ``x K x/2 - f x + constant`` on its local rows, and that of its nonlinear remainder.
 
@@ -105,11 +105,11 @@ class Structure:
         driven = any(row.u for row in rows)
         template = element_template(element, driven=driven)
         p = numbers(element)
-        entries = template.matrices(p)
-        self._affine(rows, [*entries["K"], *entries["work_K"]], [*entries["f"], *entries["work_f"]])
-        self._damping(rows, [*entries["C"], *entries["work_C"]])
+        terms = template.terms(p)
+        self._affine(rows, terms.K, terms.f)
+        self._damping(rows, terms.C)
         nonlinear = None
-        if template.rest(p):
+        if terms.rest:
             self.nonlinear.append((element, rows))
             nonlinear = len(self.table)
             arguments = [_argument(kind, i, rows) for kind, i in template.facts["arguments"]]
@@ -119,9 +119,9 @@ class Structure:
             Store(
                 name=element.name,
                 rows=rows,
-                K=[*entries["K"], *entries["work_K"]],
-                f=[*entries["f"], *entries["work_f"]],
-                constant=float(template.constant(p)),
+                K=terms.K,
+                f=terms.f,
+                constant=terms.constant,
                 nonlinear=nonlinear,
             )
         )

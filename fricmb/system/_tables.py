@@ -15,7 +15,7 @@ TIME, Q, V, U, DU = range(5)
 NO_TEMPLATE = 0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Argument:
     """A linear form in X: entries (kind, index, coefficient) and a constant."""
 
@@ -26,7 +26,7 @@ class Argument:
 TIME_ARGUMENT = Argument(((TIME, 0, 1.0),))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Row:
     """A linear form in degrees of freedom and signals: (index, coefficient) each, and a constant."""
 

@@ -23,6 +23,26 @@ from fricmb.values._numbers import (
 from fricmb.values._parameter import Parameter
 
 
+_fields: dict[type, tuple[str, ...]] = {}
+_slot_fields: dict[type, tuple[str, ...]] = {}
+
+
+def field_names(kind: type) -> tuple[str, ...]:
+    """Names of the fields of a dataclass."""
+    found = _fields.get(kind)
+    if found is None:
+        found = _fields[kind] = tuple(f.name for f in dataclasses.fields(kind))
+    return found
+
+
+def slot_fields(kind: type[Declaration]) -> tuple[str, ...]:
+    """Names of the fields that may hold slots."""
+    found = _slot_fields.get(kind)
+    if found is None:
+        found = _slot_fields[kind] = tuple(name for name in field_names(kind) if name not in kind._fixed)
+    return found
+
+
 class Declaration:
     """Base of the frozen dataclasses that a scene is made of.
 
@@ -53,6 +73,10 @@ class Declaration:
 
     def _number(self, argument: str, value: Any, *, above: float | None = None, minimum: float | None = None) -> Number:
         """A checked number: float, Parameter, or expression of parameters."""
+        if type(value) is float and finite(value):
+            good = (above is None or value > above) and (minimum is None or value >= minimum)
+            if good:
+                return value
         accepted = "a finite number"
         if above is not None:
             accepted += f" > {above:g}"
@@ -96,10 +120,18 @@ class Declaration:
     def slots(self) -> dict[str, Any]:
         """Every slot that holds a value: path -> value, in the order of the fields."""
         found: dict[str, Any] = {}
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            if field.name not in self._fixed:
-                _collect(field.name, getattr(self, field.name), found)
+        for name in slot_fields(type(self)):
+            value = getattr(self, name)
+            if type(value) is float:
+                found[name] = value
+            else:
+                _collect(name, value, found)
         return found
+
+    def plain_numbers(self) -> tuple[float, ...] | None:
+        """The slots' values where every field that may hold slots is a float, else None."""
+        values = tuple([getattr(self, name) for name in slot_fields(type(self))])
+        return values if all(type(value) is float for value in values) else None
 
     def numeric_slots(self) -> dict[str, Any]:
         """:meth:`slots` with numbers in place of parameters; expressions of time or coordinates are left out."""
@@ -114,11 +146,10 @@ class Declaration:
     def options(self) -> dict[str, Any]:
         """Fields that are neither fixed nor slots (None, flags, words): they select formulas, not numbers."""
         taken = {path.split(".")[0] for path in self.slots()}
-        names = [f.name for f in dataclasses.fields(self)]  # type: ignore[arg-type]
-        return {n: getattr(self, n) for n in names if n not in taken and n not in self._fixed}
+        return {n: getattr(self, n) for n in slot_fields(type(self)) if n not in taken}
 
     def _settable(self) -> list[str]:
-        return [f.name for f in dataclasses.fields(self) if f.name not in self._fixed]  # type: ignore[arg-type]
+        return list(slot_fields(type(self)))
 
     def settable(self) -> list[str]:
         """Paths that :meth:`with_slots` takes: all slots, and fields that hold none yet."""
@@ -170,13 +201,13 @@ class Declaration:
     def numeric(self) -> Self:
         """A copy whose named parameters are plain numbers; not checked again."""
         copy = object.__new__(type(self))
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            object.__setattr__(copy, field.name, _numeric(getattr(self, field.name)))
+        for name in field_names(type(self)):
+            object.__setattr__(copy, name, _numeric(getattr(self, name)))
         return copy
 
     # -- equality -----------------------------------------------------------------------------------------------
     def _key(self) -> tuple[Any, ...]:
-        return (type(self), *(_frozen(getattr(self, f.name)) for f in dataclasses.fields(self)))  # type: ignore[arg-type]
+        return (type(self), *(_frozen(getattr(self, name)) for name in field_names(type(self))))
 
     def __eq__(self, other: object) -> bool:
         if self is other:
@@ -227,6 +258,8 @@ def _substitute(value: Any, changes: dict[str, float]) -> Any:
 
 
 def _numeric(value: Any) -> Any:
+    if type(value) is float:
+        return value
     if isinstance(value, Declaration):
         return value if value._referred else value.numeric()
     if isinstance(value, Mapping):
