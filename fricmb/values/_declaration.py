@@ -22,7 +22,6 @@ from fricmb.values._numbers import (
 )
 from fricmb.values._parameter import Parameter
 
-
 _fields: dict[type, tuple[str, ...]] = {}
 _slot_fields: dict[type, tuple[str, ...]] = {}
 
