@@ -11,8 +11,11 @@ from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.friction_oscillator import friction_oscillator
+from fricmb.models.minimal_flutter import minimal_flutter
+from fricmb.models.pad_rotor import pad_rotor
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
+from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.stick_slip_chain import stick_slip_chain
 
 __all__ = [
@@ -22,7 +25,10 @@ __all__ = [
     "brake4dof",
     "catalogue",
     "friction_oscillator",
+    "minimal_flutter",
+    "pad_rotor",
     "planar_oscillator",
     "puck_on_belt",
+    "rotor_doublet",
     "stick_slip_chain",
 ]

@@ -12,8 +12,11 @@ from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.friction_oscillator import friction_oscillator
+from fricmb.models.minimal_flutter import minimal_flutter
+from fricmb.models.pad_rotor import pad_rotor
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
+from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.plot import Units
 
@@ -58,6 +61,9 @@ _MODELS = (
     Model(build=puck_on_belt, t_end=1.0, units=SI),
     Model(build=block_stack, t_end=1.0, units=SI),
     Model(build=stick_slip_chain, t_end=60.0),
+    Model(build=minimal_flutter, t_end=60.0),
+    Model(build=rotor_doublet, t_end=100.0),
+    Model(build=pad_rotor, t_end=0.02, units=SI),
 )
 
 #: The built-in models by name.

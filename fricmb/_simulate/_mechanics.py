@@ -15,10 +15,10 @@ from fricmb._simulate._members import Idle, Member, contact_names, idle_of, memb
 from fricmb.errors import SceneError
 from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
-from fricmb.plan import Plan, make_plan, truncated
+from fricmb.plan import Plan, Selection, make_plan, truncated
 from fricmb.scene import Scene
 from fricmb.solution import Flags, Motion, Names, Origin
-from fricmb.system import System
+from fricmb.system import System, build
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +55,11 @@ class SceneMechanics:
         """The one member that is the whole; None where islands are run."""
         (first, *others) = self.members
         return None if others or first.island is not None else first
+
+    @cached_property
+    def system(self) -> System:
+        """The arrays of all that is planned, islands together; built when it is asked for."""
+        return build(self.placed, Selection(dofs=self.plan.dofs, parts=self.plan.parts))
 
     @cached_property
     def idle(self) -> Idle | None:
