@@ -25,7 +25,7 @@ def rotor_doublet(
     mu_k: float = 0.4,
     speed: float = 0.5,
 ) -> fm.Scene:
-    """Disc with a cosine and sine pair of circumferential modes, and pads on springs that its turning surface drags.
+    """Disc with a cosine and sine pair of modes, and pads on springs that its surface drags.
 
     Dimensionless.  Each pad moves along the circumference; the disc turns at a constant surface speed below them.  Pads
     that stick to the disc split the pair: one pad loads the mode with its antinode there and leaves the other alone.
