@@ -7,28 +7,44 @@ if __name__ != "fricmb.models":
     raise ImportError(f"the folder 'models' is the package fricmb.models; it was imported as {__name__!r}")
 
 from fricmb.models._catalogue import Model, catalogue
+from fricmb.models.andrews import andrews
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
+from fricmb.models.car_axis import car_axis
+from fricmb.models.drive_train import drive_train
+from fricmb.models.dry_pendulum import dry_pendulum
+from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
 from fricmb.models.minimal_flutter import minimal_flutter
 from fricmb.models.pad_rotor import pad_rotor
+from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
 from fricmb.models.rotor_doublet import rotor_doublet
+from fricmb.models.slider_crank import slider_crank
+from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 
 __all__ = [
     "Model",
+    "andrews",
     "belt_oscillator",
     "block_stack",
     "brake4dof",
+    "car_axis",
     "catalogue",
+    "drive_train",
+    "dry_pendulum",
+    "four_bar",
     "friction_oscillator",
     "minimal_flutter",
     "pad_rotor",
+    "painleve_rod",
     "planar_oscillator",
     "puck_on_belt",
     "rotor_doublet",
+    "slider_crank",
+    "sprag_slip",
     "stick_slip_chain",
 ]

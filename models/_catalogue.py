@@ -8,15 +8,23 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import fricmb as fm
+from fricmb.models.andrews import andrews
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
+from fricmb.models.car_axis import car_axis
+from fricmb.models.drive_train import drive_train
+from fricmb.models.dry_pendulum import dry_pendulum
+from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
 from fricmb.models.minimal_flutter import minimal_flutter
 from fricmb.models.pad_rotor import pad_rotor
+from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
 from fricmb.models.rotor_doublet import rotor_doublet
+from fricmb.models.slider_crank import slider_crank
+from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.plot import Units
 
@@ -64,6 +72,14 @@ _MODELS = (
     Model(build=minimal_flutter, t_end=60.0),
     Model(build=rotor_doublet, t_end=100.0),
     Model(build=pad_rotor, t_end=0.02, units=SI),
+    Model(build=dry_pendulum, t_end=12.0, units=SI),
+    Model(build=andrews, t_end=0.03, units=SI),
+    Model(build=car_axis, t_end=3.0),
+    Model(build=sprag_slip, t_end=1.0, units=SI),
+    Model(build=slider_crank, t_end=1.0, units=SI),
+    Model(build=painleve_rod, t_end=0.2, units=SI),
+    Model(build=four_bar, t_end=2.0, units=SI),
+    Model(build=drive_train, t_end=20.0, units=SI),
 )
 
 #: The built-in models by name.

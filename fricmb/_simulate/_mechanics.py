@@ -12,7 +12,7 @@ import numpy as np
 from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of, row_scale
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
@@ -89,7 +89,7 @@ class SceneMechanics:
 
     def smooth(self) -> Flags:
         """Whether each contact has a force law that never sticks (n_c,)."""
-        kinds = {contact.name: contact.law.kind for contact in self.placed.contacts}
+        kinds = {c.name: "" if c.law is None else c.law.kind for c in self.placed.frictional}
         return np.array([kinds[name] == "smooth" for name in self.names.contacts], dtype=np.bool_)
 
     def fastest(self) -> float:
@@ -99,11 +99,11 @@ class SceneMechanics:
 
     def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Kinetic energy (n_t,)."""
-        return self._sum(samples, moving, System.kinetic)
+        return self._sum(samples, moving, lambda system, part: system.kinetic(part))
 
     def potential(self, samples: Samples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
-        return self._sum(samples, moving, System.potential)
+        return self._sum(samples, moving, lambda system, part: system.potential(part))
 
     def _sum(self, samples: Samples, moving: Ints | None, energy: Callable[[System, Samples], Floats]) -> Floats:
         if self.whole is not None:
@@ -116,6 +116,12 @@ class SceneMechanics:
             if (known is None or first in known) and not member.keeps_still(samples):
                 total += energy(member.system, member.place.part(samples))
         return total
+
+    def reaction(self, joint: str, samples: Samples) -> Floats:
+        """Reactions of a joint (rows, n_t); UnknownNameError for a name that is none."""
+        if self.whole is None:
+            raise unknown_name("joint", joint, ())
+        return self.whole.system.reaction(joint, samples)
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_driven, n_t), in the order of ``names.signals``."""
@@ -136,7 +142,7 @@ class SceneMechanics:
     def names(self) -> Names:
         """Names of what the arrays hold."""
         held = set(self.plan.parts)
-        contacts = [contact for contact in self.placed.contacts if contact.name in held]
+        contacts = [contact for contact in self.placed.frictional if contact.name in held]
         labels = [contact_names(contact) for contact in contacts]
         return Names(
             dofs=self.plan.dofs,
@@ -175,6 +181,7 @@ def mechanics_of(
 ) -> SceneMechanics:
     """Plan a scene, or take what is kept on it."""
     by = dict(shift or {})
+    together = together or scene.is_mechanism  # run as one
     key = ("mechanics", observe, tuple(sorted(by.items())), together)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):
@@ -195,4 +202,29 @@ def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:
             if all(dof in index for dof, _ in terms):
                 places = np.array([index[dof] for dof, _ in terms], dtype=np.int64)
                 found[name] = Motion(index=places, coefficient=np.array([c for _, c in terms], dtype=float))
+    return found | _turning_points(scene, index) | _joint_motions(scene, index)
+
+
+def _turning_points(scene: Scene, index: Mapping[str, int]) -> dict[str, Motion]:
+    """Points of rigid bodies."""
+    found = {}
+    for name, point in scene.rigid_points.items():
+        if not all(dof in index for dof in point.body.dof_names):
+            continue
+        x, y, angle = (index[dof] for dof in point.body.dof_names)
+        (u, v), one = point.offset, np.ones(1)
+        found[f"{name}.x"] = Motion(index=np.array([x]), coefficient=one, angle=angle, arm=(u, -v))
+        found[f"{name}.y"] = Motion(index=np.array([y]), coefficient=one, angle=angle, arm=(v, u))
+    return found
+
+
+def _joint_motions(scene: Scene, index: Mapping[str, int]) -> dict[str, Motion]:
+    """Relative motions of joints."""
+    found = {}
+    for joint in scene.joints:
+        for label, form in joint.observed().items():
+            if all(dof in index for dof in form.motions):
+                places = np.array([index[dof] for dof in form.motions], dtype=np.int64)
+                coefficient = np.array([c for _, c in form.terms], dtype=float)
+                found[f"{joint.name}.{label}"] = Motion(index=places, coefficient=coefficient, offset=form.constant)
     return found

@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.integrate import Samples, Start
 from fricmb.integrate._problem import Codes, Floats, Ints
 from fricmb.plan import Island, Plan, Selection
-from fricmb.scene import Contact, Scene
+from fricmb.scene import Contact, Joint, Scene
 from fricmb.solution import Flags, Names
 from fricmb.system import System, build
 
@@ -108,14 +108,18 @@ def _ranges(contacts: list[int], start: Ints) -> Ints:
     return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
 
-def contact_names(contact: Contact) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Labels of a contact's directions and of its law's states, as its arrays have them."""
+def contact_names(contact: Contact | Joint) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Labels of the directions and of the law's states of a contact or joint, as its arrays have them."""
+    if isinstance(contact, Joint):
+        return ("t",), () if contact.friction is None else contact.friction.state_labels(("t",))
     letters = tuple(direction.label for direction in contact.directions())
     return letters, contact.law.state_labels(letters)
 
 
-def row_scale(contact: Contact) -> tuple[float, ...]:
+def row_scale(contact: Contact | Joint) -> tuple[float, ...]:
     """Factors of a contact's rows: those of a law that is not isotropic are stored scaled (see ``Names.scale``)."""
+    if isinstance(contact, Joint):
+        return (1.0,)
     scale = contact.law.numeric().axis_scale() or (1.0,) * len(contact.directions())
     return tuple(float(s) for s in scale)
 

@@ -24,8 +24,10 @@ from fricmb.equations._templates import (
     derivations,
     element_template,
     formula,
+    joint_template,
     law_template,
     normal_template,
+    place_template,
 )
 from fricmb.equations._values import numbers
 from fricmb.scene import Scene
@@ -55,9 +57,11 @@ __all__ = [
     "force_terms",
     "formula",
     "function",
+    "joint_template",
     "law_template",
     "normal_template",
     "numbers",
+    "place_template",
     "scene_equations",
     "signal_expression",
     "uniform_signal",

@@ -231,3 +231,45 @@ def _normal_text(law: Any) -> str:
     from fricmb.equations._normal import normal_text
 
     return normal_text(law)
+
+
+def joint_template(joint: Any) -> Template:
+    """Template of a joint's type; the layout of its output is that of ``integrate._mechanism.Joints``."""
+    n = len(joint.local_coordinates()) + len(joint.drives())
+    shape = ("joint", structure(joint), n)
+    found = _found.get(shape)
+    if found is None:
+
+        def derive() -> tuple[dict[str, Any], str | None]:
+            from fricmb.equations._joint import derive_joint, joint_math
+
+            return derive_joint(joint_math(joint, n), type(joint).__name__)
+
+        content = _content(joint, structure(joint), lambda: _joint_text(joint, n))
+        key = [*content, n, joint.friction is not None]
+        found = _found[shape] = get("joint", key, derive)
+    return found
+
+
+def _joint_text(joint: Any, n: int) -> str:
+    from fricmb.equations._joint import joint_math
+
+    return joint_math(joint, n).text()
+
+
+def place_template(body: Any) -> Template:
+    """Template of a point fixed in a body of this type: x = coordinates, p = offset."""
+    kind: type = type(body)
+    shape = ("place", kind)
+    found = _found.get(shape)
+    if found is None:
+        n = len(body.dof_names)
+
+        def derive() -> tuple[dict[str, Any], str | None]:
+            from fricmb.equations._joint import derive_place
+
+            return derive_place(body, n, kind.__name__)
+
+        content = [kind.__module__, kind.__qualname__, source_fingerprint(kind)]
+        found = _found[shape] = get("place", content, derive)
+    return found

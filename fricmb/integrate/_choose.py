@@ -17,6 +17,8 @@ integrators: dict[str, type[Integrator]] = {kind.name: kind for kind in (Bdf, Bd
 
 def choose(problem: Problem) -> tuple[Integrator, str]:
     """The integrator for a problem, and why: the fastest that takes it, else the general one and what stood against."""
+    if problem.mechanism is not None:
+        return Radau(), "bodies that turn or joints: one-step on the index-reduced system"
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"

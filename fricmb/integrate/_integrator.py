@@ -49,6 +49,8 @@ class Integrator(ABC):
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
+        if "constraints" not in self.takes and problem.mechanism is not None:
+            return f"{self.name} does not take bodies that turn and joints; 'radau' does"
         if "nonlinear" not in self.takes and len(problem.elements.table.address):
             return f"{self.name} takes linear structures with contacts; this scene has nonlinear elements"
         return None

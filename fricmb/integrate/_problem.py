@@ -15,12 +15,15 @@ from.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate._sparse import Csr, LazyMatrices
+
+if TYPE_CHECKING:
+    from fricmb.integrate._mechanism import Mechanism
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,8 +42,9 @@ EVENT_STICK, EVENT_SLIP, EVENT_OPEN, EVENT_CLOSE, EVENT_REVERSAL = range(5)
 EVENT_KINDS = ("stick", "slip", "open", "close", "reversal")
 #: Kinds of law: constant mu_s and mu_k; coefficient mu(r, N); smooth force F(v, N, z), which never sticks.
 LAW_CONSTANT, LAW_COEFFICIENT, LAW_SMOOTH = 0, 1, 2
-#: Kinds of normal force: constant; an expression that acts on nobody; a law whose force both bodies feel.
-NORMAL_CONSTANT, NORMAL_EXPRESSION, NORMAL_LAW = 0, 1, 2
+#: Kinds of normal force: constant; an expression that acts on nobody; a law whose force both bodies feel; the reaction
+#: of a joint.
+NORMAL_CONSTANT, NORMAL_EXPRESSION, NORMAL_LAW, NORMAL_REACTION = 0, 1, 2, 3
 
 
 def _f(*shape: int) -> Floats:
@@ -229,7 +233,8 @@ class Problem:
     """A scene as arrays: linear structure, signals, contacts, nonlinear elements; each but the first may be empty.
 
     ``omega``, ``zeta``: angular frequencies and damping ratios of the linear structure without friction.
-    ``contact_names``, ``dof_names`` serve messages alone.
+    ``contact_names``, ``dof_names`` serve messages alone.  ``mechanism``: bodies that turn and joints; then ``linear``
+    is empty but for the number of dofs, and everything else sees extended coordinates (see ``_mechanism``).
     """
 
     linear: Linear
@@ -240,6 +245,7 @@ class Problem:
     zeta: Floats = field(default_factory=lambda: _f(0))
     dof_names: tuple[str, ...] = ()
     contact_names: tuple[str, ...] = ()
+    mechanism: Mechanism | None = None
 
     @property
     def n(self) -> int:

@@ -27,10 +27,16 @@ class Radau(Integrator):
 
     name: ClassVar[str] = "radau"
     order: ClassVar[str] = "2s - 1"
-    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
     pauses: ClassVar[bool] = True
 
     stages: int | None = None
+
+    def refuses(self, problem: Problem) -> str | None:
+        """Why this integrator cannot run the problem, or None."""
+        if problem.mechanism is not None and self.stages is not None and self.stages % 2 == 0:
+            return f"radau takes bodies that turn and joints with an odd number of stages, got stages={self.stages}"
+        return super().refuses(problem)
 
     def integrate(
         self,
@@ -45,6 +51,11 @@ class Radau(Integrator):
         memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
+        if problem.mechanism is not None:
+            from fricmb.integrate.constrained import run_mechanism, stages_for
+
+            count = self.stages or stages_for(tolerance.rtol)
+            return run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
         s = self.stages or (3 if tolerance.rtol > 1e-4 else 5 if tolerance.rtol > 1e-9 else 7)
         run = Collector(problem, start, t_end)
         acc = accuracy(run, tolerance)

@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from fricmb.plan._rest import can_start
-from fricmb.scene import Contact, Element, Force, MatrixElement, ModalBody, Part, Scene
+from fricmb.scene import Body, Contact, Element, Force, Gravity, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
 from fricmb.values import value_of
 
 
@@ -102,7 +102,10 @@ def links_of(scene: Scene) -> Links:
         scene._shared["links"] = scene.dof_names, shared
     links = []
     for part in scene.parts:
-        if not isinstance(part, Element | Contact | MatrixElement) and not couples_modes(part):
+        if isinstance(part, Gravity):
+            links.extend(_weights(scene, part, place))
+            continue
+        if not isinstance(part, Element | Contact | MatrixElement | Joint) and not couples_modes(part):
             continue
         found = shared.get(part.name)
         if found is None or found.part is not part:
@@ -123,12 +126,25 @@ def _link(scene: Scene, part: Part, place: dict[str, int]) -> Link:
     from fricmb.equations import element_facts
 
     own, read = _motions(scene, part)
-    acts = tuple(sorted({place[name] for name in own if name in place}))
-    reads = tuple(sorted({place[name] for name in read if name in place} - set(acts)))
+    acts = tuple(sorted({place[dof] for name in own for dof in scene.dofs_behind(name) if dof in place}))
+    read_dofs = {place[dof] for name in read for dof in scene.dofs_behind(name) if dof in place}
+    reads = tuple(sorted(read_dofs - set(acts)))
     facts = element_facts(part) if isinstance(part, Element) else None
     idle = facts.empty if facts is not None else isinstance(part, Contact) and is_idle(part)
     starts = not idle and can_start(scene, part, facts, (own | read).difference(place), bool(reads))
     return Link(part=part, acts=acts, reads=reads, facts=facts, idle=idle, starts=starts)
+
+
+def _weights(scene: Scene, gravity: Gravity, place: dict[str, int]) -> list[Link]:
+    """Gravity acts on every body alone, and ties none to another."""
+    links = []
+    for body in scene.bodies:
+        if isinstance(body, Body | RigidBody):
+            held = [f"{body.name}.{c}" for c, value in gravity.acceleration.items() if value_of(value) != 0.0]
+            acts = tuple(place[name] for name in held if name in place)
+            if acts:
+                links.append(Link(part=gravity, acts=acts, reads=()))
+    return links
 
 
 def is_idle(contact: Contact) -> bool:
@@ -147,7 +163,7 @@ def _motions(scene: Scene, part: Part) -> tuple[set[str], set[str]]:
         normal = part.normal_direction()
         directions = (*part.directions(), *(() if normal is None else (normal,)))
         forms = [direction.form for direction in directions]
-    elif isinstance(part, Element):
+    elif isinstance(part, Element | Joint):
         forms = list(part.local_coordinates())
         if isinstance(part, Force):
             forms = forms[:1]  # it acts on the first; the others are what its value looks at

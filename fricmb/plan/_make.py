@@ -12,7 +12,7 @@ from fricmb.plan._plan import Island, Plan
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
 from fricmb.plan._truncate import truncated
-from fricmb.scene import Body, Contact, Driven, Element, MatrixElement, ModalBody, Part, Scene
+from fricmb.scene import Body, Contact, Driven, Element, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
 
 #: Up to this many degrees of freedom dense matrices are as fast as anything.
 DENSE = 64
@@ -91,14 +91,17 @@ def _targets(scene: Scene, names: tuple[str, ...]) -> Wanted:
     place = {name: i for i, name in enumerate(scene.dof_names)}
     wanted = Wanted()
     for name in names:
-        if name in scene and isinstance(scene[name], Element | Contact | MatrixElement):
+        if name in scene and isinstance(scene[name], Element | Contact | MatrixElement | Joint):
             wanted.parts.add(name)
         elif scene.has_motion(name):
-            wanted.dofs |= {place[dof] for dof in scene.motion(name).motions if dof in place}
+            behind = (dof for motion in scene.motion(name).motions for dof in scene.dofs_behind(motion))
+            wanted.dofs |= {place[dof] for dof in behind if dof in place}
         elif name in scene.points:
             point = scene.points[name]
             forms = [scene.motion(f"{name}.{letter}") for letter in point.letters]
             wanted.dofs |= {place[dof] for form in forms for dof in form.motions}
+        elif name in scene.rigid_points:
+            wanted.dofs |= {place[dof] for dof in scene.rigid_points[name].body.dof_names}
         elif name in scene:
             wanted.dofs |= {place[dof] for dof in getattr(scene[name], "dof_names", ())}
         else:
@@ -128,7 +131,7 @@ def _inside(scene: Scene, links: Links, kept: set[int], wanted: Wanted | None) -
         for part in scene.parts
         if isinstance(part, Driven)
         or part.name in acting
-        or (isinstance(part, Body | ModalBody) and not held.isdisjoint(part.dof_names))
+        or (isinstance(part, Body | ModalBody | RigidBody) and not held.isdisjoint(part.dof_names))
     ]
     return inside, parts
 

@@ -9,17 +9,19 @@ import numpy as np
 
 from fricmb.plan._links import Link, Links
 from fricmb.plan._plan import Island, Omission, short_list
-from fricmb.scene import Body, Contact, Driven, MatrixElement, ModalBody, Part, Scene
+from fricmb.scene import Body, Contact, Driven, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
 
 
 def counts(parts: Iterable[Part], links: Sequence[Link], n: int, islands: int, still: int) -> dict[str, int]:
     """Numbers of what is built."""
     contacts = [link.part for link in links if isinstance(link.part, Contact)]
     rows = [len(contact.directions()) for contact in contacts]
+    dry = [part for part in parts if isinstance(part, Joint) and part.friction is not None]
     facts = [link.facts for link in links if link.facts is not None]
     kinds: Counter[str] = Counter()
     for part in parts:
-        kinds["bodies"] += isinstance(part, Body | ModalBody)
+        kinds["bodies"] += isinstance(part, Body | ModalBody | RigidBody)
+        kinds["joints"] += isinstance(part, Joint)
         kinds["driven bodies"] += isinstance(part, Driven)
         kinds["matrix elements"] += isinstance(part, MatrixElement)
     return {
@@ -30,11 +32,13 @@ def counts(parts: Iterable[Part], links: Sequence[Link], n: int, islands: int, s
         "nonlinear elements": sum(f.nonlinear for f in facts),
         "matrix elements": kinds["matrix elements"],
         "forces of time": sum(f.signal for f in facts),
-        "contacts": len(contacts),
-        "contact rows": sum(rows),
-        "law states": sum(contact.law.n_states(d) for d, contact in zip(rows, contacts, strict=True)),
+        "contacts": len(contacts) + len(dry),
+        "contact rows": sum(rows) + len(dry),
+        "law states": sum(contact.law.n_states(d) for d, contact in zip(rows, contacts, strict=True))
+        + sum(joint.friction.n_states(1) for joint in dry if joint.friction is not None),
         "islands": islands,
         "islands at rest": still,
+        **({"joints": kinds["joints"]} if kinds["joints"] else {}),
     }
 
 

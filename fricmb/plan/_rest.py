@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Set
 from typing import Any
 
-from fricmb.scene import Contact, Element, ModalBody, Part, Scene, expression_uses
+from fricmb.scene import Contact, Element, Joint, ModalBody, Part, Scene, expression_uses
 from fricmb.values import value_of
 
 
@@ -25,6 +25,8 @@ def can_start(scene: Scene, part: Part, facts: Any, prescribed: Set[str], reads:
     """
     if isinstance(part, Contact):
         return _contact_can_start(scene, part, prescribed)
+    if isinstance(part, Joint):
+        return True
     if not isinstance(part, Element):
         return False  # matrices give forces in proportion to position and velocity
     shifted = any(scene.expand(form).constant != 0.0 for form in part.local_coordinates())

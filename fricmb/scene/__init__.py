@@ -10,14 +10,28 @@ from fricmb.scene._element import Element
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._force import Force
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._joint import Joint
+from fricmb.scene._joints import (
+    DrivenAngle,
+    DrivenSlide,
+    Fixed,
+    Gear,
+    Prismatic,
+    Revolute,
+    Rod,
+    RollerOnCircle,
+    RollerOnLine,
+)
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._modal_from import modal_matrices
 from fricmb.scene._part import GROUND, End, Ground, Part
 from fricmb.scene._point import PointDamper, PointSpring
+from fricmb.scene._rigid import GroundPoint, RigidBody, RigidPoint, ground_point
 from fricmb.scene._scene import Scene
 from fricmb.scene._spring import Spring
 from fricmb.scene._symbols import coordinate, speed
+from fricmb.scene._turning import Gravity, Torque, TorsionDamper, TorsionSpring
 from fricmb.values import Parameter, parameter
 
 __all__ = [
@@ -27,10 +41,17 @@ __all__ = [
     "Damper",
     "Direction",
     "Driven",
+    "DrivenAngle",
+    "DrivenSlide",
     "Element",
     "End",
+    "Fixed",
     "Force",
+    "Gear",
+    "Gravity",
     "Ground",
+    "GroundPoint",
+    "Joint",
     "LinearForm",
     "MatrixElement",
     "ModalBody",
@@ -39,14 +60,25 @@ __all__ = [
     "Point",
     "PointDamper",
     "PointSpring",
+    "Prismatic",
+    "Revolute",
+    "RigidBody",
+    "RigidPoint",
+    "Rod",
+    "RollerOnCircle",
+    "RollerOnLine",
     "Scene",
     "Spring",
+    "Torque",
+    "TorsionDamper",
+    "TorsionSpring",
     "Uses",
     "check_axis",
     "check_ends",
     "coordinate",
     "direction",
     "expression_uses",
+    "ground_point",
     "modal_matrices",
     "parameter",
     "speed",

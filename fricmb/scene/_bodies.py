@@ -75,6 +75,11 @@ class Body(Part, End):
         """``"name.x"``, ... in the order of ``axes``."""
         return tuple(f"{self.name}.{c}" for c in self.axes)
 
+    def start_values(self, argument: str) -> Mapping[str, Any]:
+        """Declared start of the degrees of freedom; ``argument``: "position" or "velocity"."""
+        values: Mapping[str, Any] = getattr(self, argument)
+        return values
+
     @property
     def end_name(self) -> str:
         """The body's name."""

@@ -255,6 +255,11 @@ class ModalBody(Part):
 
         return complex_modes(self)
 
+    def start_values(self, argument: str) -> Mapping[str, Any]:
+        """Declared start of the modal coordinates; ``argument``: "position" or "velocity"."""
+        values: Mapping[str, Any] = getattr(self, argument)
+        return values
+
     def point(self, name: str) -> Point:
         """A named point: an end for elements and contacts.
 

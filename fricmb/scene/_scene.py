@@ -16,9 +16,11 @@ from fricmb.scene._check import check_scene
 from fricmb.scene._contact import Contact
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._joint import Joint
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._part import LETTERS, Part
+from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.values import value_of
 
 
@@ -67,7 +69,7 @@ class Scene:
         put(self, "name", name)
         put(self, "parts", tuple(parts))
         put(self, "_by_name", {part.name: part for part in self.parts if isinstance(part, Part)})
-        bodies = (part for part in self.parts if isinstance(part, Body | ModalBody))
+        bodies = (part for part in self.parts if isinstance(part, Body | ModalBody | RigidBody))
         put(self, "dof_names", tuple(name for body in bodies for name in body.dof_names))
         put(self, "_motions", None)
         put(self, "_cache", {})
@@ -88,9 +90,9 @@ class Scene:
         return name in self._by_name
 
     @property
-    def bodies(self) -> tuple[Body | ModalBody, ...]:
+    def bodies(self) -> tuple[Body | ModalBody | RigidBody, ...]:
         """Parts with degrees of freedom."""
-        return tuple(part for part in self.parts if isinstance(part, Body | ModalBody))
+        return tuple(part for part in self.parts if isinstance(part, Body | ModalBody | RigidBody))
 
     @property
     def driven(self) -> tuple[Driven, ...]:
@@ -116,10 +118,44 @@ class Scene:
         return tuple(part for part in self.parts if isinstance(part, Contact))
 
     @property
+    def joints(self) -> tuple[Joint, ...]:
+        """Constraints between bodies."""
+        return tuple(part for part in self.parts if isinstance(part, Joint))
+
+    @property
+    def frictional(self) -> tuple[Contact | Joint, ...]:
+        """Contacts, and joints with friction, in the order of the parts."""
+        found = (part for part in self.parts if isinstance(part, Contact | Joint))
+        return tuple(part for part in found if isinstance(part, Contact) or part.friction is not None)
+
+    @property
+    def is_mechanism(self) -> bool:
+        """Whether bodies turn or joints tie them, so that kinematics is not linear."""
+        return any(isinstance(part, RigidBody | Joint) for part in self.parts)
+
+    @property
     def points(self) -> dict[str, Point]:
         """Points of modal bodies by name ("plate.tip")."""
         modal = (part for part in self.parts if isinstance(part, ModalBody))
         return {f"{body.name}.{point}": body.point(point) for body in modal for point in body.shapes}
+
+    @property
+    def rigid_points(self) -> dict[str, RigidPoint]:
+        """Points of rigid bodies by name ("crank.tip"): those declared, and those that parts refer to.
+
+        Raises
+        ------
+        SceneError
+            If one name stands for two places.
+        """
+        bodies = [part for part in self.parts if isinstance(part, RigidBody)]
+        found = {f"{body.name}.{point}": body.point(point) for body in bodies for point in body.points}
+        for part in self.parts if bodies else ():
+            for end in part.ends():
+                if isinstance(end, RigidPoint) and found.setdefault(end.end_name, end).offset != end.offset:
+                    held = found[end.end_name].offset
+                    raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
+        return found
 
     # -- motions ------------------------------------------------------------------------------------------------
     @property
@@ -134,6 +170,8 @@ class Scene:
             for point in self.points.values():
                 for c in point.letters:
                     motions[f"{point.end_name}.{c}"] = point.body.modal_form(point.point, c)
+            for name in self.rigid_points:
+                motions |= {f"{name}.{c}": LinearForm(((f"{name}.{c}", 1.0),)) for c in PLANE}
             for body in self.driven:
                 for c in body.letters or LETTERS:
                     motions[f"{body.name}.{c}"] = body.motion(c)
@@ -157,6 +195,14 @@ class Scene:
             raise unknown_name(f"motion in scene {self.name!r}", name, motions)
         return motions[name]
 
+    def dofs_behind(self, name: str) -> tuple[str, ...]:
+        """What an expanded motion depends on: of a point of a rigid body all degrees of freedom of the body."""
+        owner, _, _ = name.partition(".")
+        body = self._by_name.get(owner)
+        if isinstance(body, RigidBody) and name not in body.dof_names:
+            return body.dof_names
+        return (name,)
+
     def expand(self, form: LinearForm) -> LinearForm:
         """``form`` in dofs and prescribed motions alone: points of modal bodies become sums of modes."""
         motions = self._named_motions()
@@ -174,8 +220,10 @@ class Scene:
         values = np.zeros((2, len(names)))
         for name in dict.fromkeys(name.partition(".")[0] for name in names):
             body = self._by_name[name]
+            if not isinstance(body, Body | ModalBody | RigidBody):
+                continue
             for row, argument in zip(values, ("position", "velocity"), strict=True):
-                for key, value in getattr(body, argument).items():
+                for key, value in body.start_values(argument).items():
                     if (dof := f"{name}.{key}") in place:
                         row[place[dof]] = value_of(value)
         return values[0], values[1]

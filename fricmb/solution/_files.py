@@ -90,7 +90,7 @@ def _arrays(sol: Solution) -> dict[str, Any]:
         "states": names.states,
         "scale": names.scale,
         "motions": {
-            name: {"index": motion.index.tolist(), "coefficient": motion.coefficient.tolist()}
+            name: {**asdict(motion), "index": motion.index.tolist(), "coefficient": motion.coefficient.tolist()}
             for name, motion in names.motions.items()
         },
         "signals": dict(names.signals),
@@ -132,6 +132,9 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
             name: Motion(
                 index=np.array(motion["index"], dtype=np.int64),
                 coefficient=np.array(motion["coefficient"], dtype=float),
+                offset=motion.get("offset", 0.0),
+                angle=motion.get("angle", -1),
+                arm=tuple(motion.get("arm", (0.0, 0.0))),
             )
             for name, motion in about["motions"].items()
         },

@@ -14,17 +14,31 @@ from fricmb.integrate._problem import Floats, Ints
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """A motion that is a linear map of the degrees of freedom: a point of a modal body.
+    """A motion that is a function of the degrees of freedom: a point of a modal or of a rigid body, a joint's angle.
 
-    ``x = sum(coefficient * q[index])``; the velocity is the same map of v.
+    ``x = sum(coefficient * q[index]) + offset``, and for a point fixed in a body that turns by q[angle] also
+    ``+ arm[0] cos(q[angle]) + arm[1] sin(q[angle])``; ``angle`` -1: none.
     """
 
     index: Ints
     coefficient: Floats
+    offset: float = 0.0
+    angle: int = -1
+    arm: tuple[float, float] = (0.0, 0.0)
 
-    def of(self, q: Floats) -> Floats:
-        """Value for q or v (n, n_t); shape (n_t,)."""
-        value: Floats = self.coefficient @ q[self.index]
+    def position(self, q: Floats) -> Floats:
+        """Value for q (n, n_t); shape (n_t,)."""
+        value: Floats = self.coefficient @ q[self.index] + self.offset
+        if self.angle >= 0:
+            value = value + self.arm[0] * np.cos(q[self.angle]) + self.arm[1] * np.sin(q[self.angle])
+        return value
+
+    def velocity(self, q: Floats, v: Floats) -> Floats:
+        """Rate for q and v (n, n_t); shape (n_t,)."""
+        value: Floats = self.coefficient @ v[self.index]
+        if self.angle >= 0:
+            turn = self.arm[1] * np.cos(q[self.angle]) - self.arm[0] * np.sin(q[self.angle])
+            value = value + v[self.angle] * turn
         return value
 
 
@@ -41,7 +55,7 @@ class Names:
     states : tuple of tuple of str
         By contact: labels of the internal states of its law.
     motions : mapping of str to Motion
-        Further motions: points of modal bodies.
+        Further motions: points of modal and rigid bodies, relative motions of joints.
     signals : mapping of str to int
         Motions of driven bodies by the index of their signal.
     scale : tuple of tuple of float

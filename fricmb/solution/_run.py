@@ -41,6 +41,9 @@ class Mechanics(Protocol):
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_u, n_t)."""
 
+    def reaction(self, joint: str, samples: Samples) -> Floats:
+        """Reactions of a joint (rows, n_t)."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Origin:
@@ -183,6 +186,17 @@ class Run:
             part, mechanics = take(samples, mine), self.pieces[k].mechanics
             kinetic[mine], potential[mine] = mechanics.kinetic(part), mechanics.potential(part)
         return kinetic, potential
+
+    def reaction(self, joint: str, record: Record) -> Floats:
+        """Reactions of a joint (rows, n_t)."""
+        samples, piece = record.samples, record.piece
+        if piece is None:
+            return self.pieces[0].mechanics.reaction(joint, samples)
+        parts = {k: self.pieces[k].mechanics.reaction(joint, take(samples, piece == k)) for k in np.unique(piece)}
+        found = np.empty((next(iter(parts.values())).shape[0], samples.t.size))
+        for k, values in parts.items():
+            found[:, piece == k] = values
+        return found
 
     def signal(self, index: int, t: Floats) -> tuple[Floats, Floats]:
         """Position and velocity (n_t,) of one driven motion."""

@@ -104,7 +104,8 @@ class Solution:
             if name in names.dof_index:
                 return _row(values, names.dof_index[name])
             if name in names.motions:
-                return names.motions[name].of(values)
+                motion = names.motions[name]
+                return motion.velocity(self.q, self.v) if derivative else motion.position(self.q)
             if name in names.signals:
                 return self.run.signal(names.signals[name], self.t)[derivative]
         except TypeError:  # an unhashable name
@@ -156,6 +157,13 @@ class Solution:
         """Internal states of the contact's law (n_states, n_t); no rows for a law without."""
         k, start = self.names.contact(contact), self.names.z_start
         return self.record.samples.z[start[k] : start[k + 1]]
+
+    def reaction(self, joint: str) -> Floats:
+        """Reaction of a joint on its first end (rows, n_t): forces and torques in the order the joint's type says.
+
+        Where constraints depend on one another, the reactions of least norm.
+        """
+        return self.run.reaction(joint, self.record)
 
     def _rows(self, values: Floats, contact: str, power: int) -> Floats:
         k, row = self.names.contact(contact), self.names.row

@@ -12,6 +12,7 @@ from fricmb.scene import Body, Contact, Element, MatrixElement, ModalBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
+from fricmb.system._mechanism import build_mechanism
 from fricmb.system._spectrum import check_mass, check_masses, spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
@@ -59,6 +60,8 @@ def _spectrum(linear: Linear, n: int, dofs: Sequence[str]) -> tuple[Floats, Floa
 
 
 def _build(scene: Any, plan: Any) -> System:
+    if scene.is_mechanism:
+        return build_mechanism(scene, plan)
     dofs = scene.dof_names if plan is None else plan.dofs
     index = {name: i for i, name in enumerate(dofs)}
     signals = _motions.Signals()

@@ -17,11 +17,13 @@ from fricmb.integrate._problem import (
     NORMAL_CONSTANT,
     NORMAL_EXPRESSION,
     NORMAL_LAW,
+    NORMAL_REACTION,
     Contacts,
     SparseContacts,
+    Templates,
 )
 from fricmb.integrate._sparse import Csr
-from fricmb.scene import Contact
+from fricmb.scene import Contact, Joint
 from fricmb.system._motions import Motions
 from fricmb.system._structure import is_sparse
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
@@ -50,9 +52,11 @@ class ContactArrays:
     states: list[tuple[str, ...]] = field(default_factory=list)
     scale: list[tuple[float, ...]] = field(default_factory=list)
     timed: list[tuple[Template, tuple[float, ...]]] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
 
     def add(self, contact: Contact) -> None:
         """Append a contact."""
+        self.names.append(contact.name)
         directions = contact.directions()
         scale = contact.law.numeric().axis_scale() or (1.0,) * len(directions)
         for direction, slide, s in zip(directions, contact.slides(), scale, strict=True):
@@ -61,7 +65,20 @@ class ContactArrays:
         self.row_start.append(len(self.rows))
         self.labels.append(tuple(direction.label for direction in directions))
         self._add_normal(contact)
-        self._add_law(contact, len(directions))
+        self._add_law(contact, contact.law, len(directions))
+
+    def add_joint(self, joint: Joint) -> None:
+        """Append the friction of a joint: one direction, the reaction for normal force."""
+        self.names.append(joint.name)
+        self.rows.append(Row())
+        self.w.append(0.0)
+        self.scale.append((1.0,))
+        self.row_start.append(len(self.rows))
+        self.labels.append(("t",))
+        self.normal.append(NORMAL_REACTION)
+        self.normal_table.add(NO_TEMPLATE)
+        self._normal(0.0, Row(), 0.0)
+        self._add_law(joint, joint.friction, 1)
 
     def _add_row(self, contact: Contact, label: str, form: Any, slide: Any, scale: float) -> None:
         """A row of relative velocity; that of a law that is not isotropic in its scaled direction."""
@@ -78,8 +95,7 @@ class ContactArrays:
         self.rows.append(Row(tuple((i, scale * c) for i, c in row.q), tuple((j, scale * c) for j, c in u)))
         self.w.append(scale * w)
 
-    def _add_law(self, contact: Contact, d: int) -> None:
-        law = contact.law
+    def _add_law(self, contact: Contact | Joint, law: Any, d: int) -> None:
         template = law_template(law, d)
         compiled = template.function is not None
         p: Sequence[float] = law.parameter_block().tolist() if compiled else numbers(law)
@@ -129,12 +145,22 @@ class ContactArrays:
         self.normal_rows.append(row)
         self.N0.append(preload)
 
-    def build(self, n: int, n_u: int) -> Contacts:
-        """The arrays."""
+    def slip_table(self, n: int, n_u: int) -> Templates:
+        """Of every contact (of joints nothing) its slip coordinate and slip velocity as linear forms."""
+        table = TableBuilder()
+        for kind, start in zip(self.normal, self.row_start, strict=False):
+            row = self.rows[start]
+            table.add(NO_TEMPLATE, (), () if kind == NORMAL_REACTION else (row.value(), row.rate()))
+        return table.build(n, n_u)
+
+    def build(self, n: int, n_u: int, *, dense: bool = True) -> Contacts:
+        """The arrays; not ``dense``: without the matrices, which a mechanism holds as forms."""
         m, n_c = len(self.rows), len(self.law)
-        W = _matrix([(i, a, c) for a, row in enumerate(self.rows) for i, c in row.q], (n, m))
-        Wu = _matrix([(a, j, -c) for a, row in enumerate(self.rows) for j, c in row.u], (m, n_u))
-        Wn = _matrix([(i, k, c) for k, row in enumerate(self.normal_rows) for i, c in row.q], (n, n_c))
+        rows, normal_rows = (self.rows, self.normal_rows) if dense else ([], [])
+        size = n if dense else 0
+        W = _matrix([(i, a, c) for a, row in enumerate(rows) for i, c in row.q], (size, m))
+        Wu = _matrix([(a, j, -c) for a, row in enumerate(rows) for j, c in row.u], (m, n_u))
+        Wn = _matrix([(i, k, c) for k, row in enumerate(normal_rows) for i, c in row.q], (size, n_c))
         others: dict[str, Any] = {
             "row": np.array(self.row_start, dtype=np.int64),
             "w": np.array(self.w, dtype=float) + 0.0,
@@ -158,9 +184,9 @@ def _matrix(entries: Sequence[tuple[int, int, float]], shape: tuple[int, int]) -
     return Csr.of_entries(i, j, values, shape)
 
 
-def _check_cone(contact: Contact, mu_s: float, limit: float) -> None:
+def _check_cone(contact: Contact | Joint, mu_s: float, limit: float) -> None:
     if not (np.isfinite(limit) and limit >= 0.0 and mu_s >= limit * (1.0 - 1e-12)):
         raise LawError(
-            f"Contact {contact.name!r}: the break-away coefficient of its law ({mu_s:g}) must be at least its"
-            f" coefficient of slip for r -> 0 ({limit:g}), and both >= 0"
+            f"{type(contact).__name__} {contact.name!r}: the break-away coefficient of its law ({mu_s:g}) must be at"
+            f" least its coefficient of slip for r -> 0 ({limit:g}), and both >= 0"
         )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fricmb.errors import unknown_name
 from fricmb.integrate._problem import NORMAL_LAW, Floats, Problem, Start, Templates
 from fricmb.integrate._trajectory import Samples
 from fricmb.system._breakpoints import Switch
@@ -63,6 +64,10 @@ class System:
         signals = self.problem.signals
         found = [signals.breakpoints, *(s.instants(t_start, t_end) for s in self.switches)]
         return replace(self.problem, signals=replace(signals, breakpoints=np.unique(np.concatenate(found))))
+
+    def reaction(self, joint: str, samples: Samples) -> Floats:
+        """Reactions of a joint (rows, n_t); there is none without joints."""
+        raise unknown_name("joint", joint, ())
 
     # -- energies -----------------------------------------------------------------------------------------------
     def kinetic(self, samples: Samples) -> Floats:

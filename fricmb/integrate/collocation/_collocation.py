@@ -57,6 +57,8 @@ class Collocation(Integrator):
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
+        if problem.mechanism is not None:
+            return super().refuses(problem)
         if not is_single(problem):
             return "collocation takes one contact under constant friction and loads linear in time"
         try:

@@ -1,0 +1,79 @@
+"""Deriving a joint type and the points of a body type: values, gradients and second derivatives.  Imports SymPy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy
+
+from fricmb.equations import _code
+from fricmb.errors import SceneError
+from fricmb.values import symbolic
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointMath:
+    """What a joint type states, in symbols: constraints phi(x); with friction also slip factors s and load N."""
+
+    x: tuple[Any, ...]
+    v: tuple[Any, ...]
+    lam: tuple[Any, ...]
+    parameters: tuple[Any, ...]
+    phi: tuple[Any, ...]
+    slip: tuple[Any, ...] | None
+    load: Any
+
+    def text(self) -> str:
+        """Everything in one string, for a key."""
+        return str(sympy.srepr((self.parameters, self.phi, self.slip, self.load)))
+
+
+def joint_math(joint: Any, n: int) -> JointMath:
+    """Ask a joint type for its statements; ``n`` local coordinates, drives included."""
+    stand = symbolic(joint)
+    x, v = (tuple(sympy.Symbol(f"{letter}_{i}", real=True) for i in range(n)) for letter in "xv")
+    label = f"{type(joint).__name__} {joint.name!r}"
+    phi = _vector(stand.standin.define_constraint(x), label, "define_constraint")
+    lam = tuple(sympy.Symbol(f"l_{i}", real=True) for i in range(len(phi)))
+    slip = load = None
+    if joint.friction is not None:
+        slip = _vector(stand.standin.define_slip(x), label, "define_slip")
+        slip = (*slip, *(sympy.S.Zero for _ in range(n - len(slip))))
+        load = sympy.sympify(stand.standin.define_load(x, lam))
+    return JointMath(x=x, v=v, lam=lam, parameters=stand.flat, phi=phi, slip=slip, load=load)
+
+
+def _vector(value: Any, label: str, method: str) -> tuple[Any, ...]:
+    if not isinstance(value, list | tuple | sympy.MatrixBase) or not len(value):
+        raise SceneError(f"{label}: {method} must return a tuple of expressions, got {value!r}")
+    return tuple(sympy.sympify(entry) for entry in value)
+
+
+def derive_joint(math: JointMath, title: str) -> tuple[dict[str, Any], str]:
+    """Facts and kernel of a joint type; the layout of the output is that of ``integrate._mechanism.Joints``."""
+    x, v, lam = math.x, math.v, math.lam
+    G = [[sympy.diff(phi, a) for a in x] for phi in math.phi]
+    second = [[[sympy.diff(g, b) for b in x] for g in row] for row in G]
+    n, m = len(x), len(math.phi)
+    outputs = [*math.phi, *(g for row in G for g in row)]
+    outputs += [sum(lam[r] * second[r][a][b] for r in range(m)) for a in range(n) for b in range(n)]
+    outputs += [sum(v[b] * second[r][b][a] for b in range(n)) for r in range(m) for a in range(n)]
+    if math.slip is not None:
+        outputs += [*math.slip, *(sympy.diff(s, b) for s in math.slip for b in x)]
+        outputs += [math.load, *(sympy.diff(math.load, a) for a in (*lam, *x))]
+    outputs = [sympy.sympify(e) for e in outputs]
+    for expression in outputs:
+        _code.check(expression, title)
+    return {"n_x": n, "rows": m}, _code.kernel([*x, *v, *lam], math.parameters, outputs, title)
+
+
+def derive_place(body: Any, n: int, title: str) -> tuple[dict[str, Any], str]:
+    """Kernel of a point of a body type with n coordinates: position, gradient, second derivatives."""
+    q = tuple(sympy.Symbol(f"q_{i}", real=True) for i in range(n))
+    offset = sympy.symbols("u v", real=True)
+    position: Sequence[Any] = [sympy.sympify(e) for e in body.define_point(q, offset)]
+    outputs = [*position, *(sympy.diff(e, a) for e in position for a in q)]
+    outputs += [sympy.diff(e, a, b) for e in position for a in q for b in q]
+    return {"count": len(position)}, _code.kernel(q, offset, outputs, title)

@@ -1,0 +1,231 @@
+"""Forces and constraints of a mechanism at an instant."""
+
+from __future__ import annotations
+
+from fricmb.integrate._call import call
+from fricmb.integrate._field import gather, set_time
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._pack import Table
+from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Floats, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._pack import Mech, Moving
+
+
+@block
+def move(mech: Mech, k: Moving, t: float, q: Floats, v: Floats, address: Ints) -> None:
+    """Put time, signals, degrees of freedom and places into X; derivatives of the places; ``ddy``."""
+    s, place = k.s, mech.place
+    n, n_y = q.shape[0], k.ddy.shape[0]
+    X, x, out = s.X, k.x, k.out
+    set_time(mech.signals, s, t, n_y)
+    for i in range(n):
+        X[1 + i] = q[i]
+        X[1 + n_y + i] = v[i]
+        k.ddy[i] = 0.0
+    for c in range(place.address.shape[0]):
+        d0 = place.dof_start[c]
+        b = place.dof_start[c + 1] - d0
+        e0 = n + place.first[c]
+        count = place.first[c + 1] - place.first[c]
+        for i in range(b):
+            x[i] = q[place.dof[d0 + i]]
+        call(place.address[c], x, 0, place.p, place.p_start[c], out, 0)
+        g0, h0 = place.grad_start[c], place.hess_start[c]
+        for r in range(count):
+            rate = 0.0
+            curve = 0.0
+            for i in range(b):
+                g = out[count + r * b + i]
+                k.grad[g0 + r * b + i] = g
+                vi = v[place.dof[d0 + i]]
+                rate += g * vi
+                turn = 0.0
+                for j in range(b):
+                    h = out[count * (1 + b) + (r * b + i) * b + j]
+                    k.hess[h0 + (r * b + i) * b + j] = h
+                    turn += h * v[place.dof[d0 + j]]
+                k.grad_rate[g0 + r * b + i] = turn
+                curve += turn * vi
+            X[1 + e0 + r] = out[r]
+            X[1 + n_y + e0 + r] = rate
+            k.ddy[e0 + r] = curve
+
+
+@kernel
+def scatter(k: Moving, table: Table, a: int, force: float) -> None:
+    """Add a force on the form a to the extended coordinates and signals it consists of."""
+    n_y = k.ddy.shape[0]
+    u0 = 1 + 2 * n_y
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        i = table.form_index[j]
+        if 1 <= i <= n_y:
+            k.fy[i - 1] += force * table.form_coefficient[j]
+        elif i >= u0:
+            k.fu[i - u0] += force * table.form_coefficient[j]
+
+
+@kernel
+def value_of_form(k: Moving, table: Table, a: int) -> float:
+    """Form a at X."""
+    value = table.form_constant[a]
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        value += table.form_coefficient[j] * k.s.X[table.form_index[j]]
+    return float(value)
+
+
+@kernel
+def bend(k: Moving, table: Table, a: int) -> float:
+    """Second derivative of form a that velocities and signals bring."""
+    n_y = k.ddy.shape[0]
+    u0 = 1 + 2 * n_y
+    value = 0.0
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        i = table.form_index[j]
+        if 1 <= i <= n_y:
+            value += table.form_coefficient[j] * k.ddy[i - 1]
+        elif i >= u0:
+            value += table.form_coefficient[j] * k.s.ddu[i - u0]
+    return value
+
+
+@block
+def call_joint(mech: Mech, k: Moving, j: int, lam: Floats, l0: int, address: Ints) -> int:
+    """Evaluate joint j into ``k.out``; returns its number of local coordinates."""
+    joint = mech.joint
+    table = joint.table
+    n_x = joint.n_x[j]
+    gather(table, j, k.s.X, k.x)
+    for r in range(joint.row[j + 1] - joint.row[j]):
+        k.x[2 * n_x + r] = lam[l0 + joint.row[j] + r]
+    call(table.address[j], k.x, 0, table.p, table.p_start[j], k.out, 0)
+    return int(n_x)
+
+
+@kernel
+def friction_at(n_x: int, m: int) -> int:
+    """Where the friction part of a joint's output begins."""
+    return m + 2 * m * n_x + n_x * n_x
+
+
+@kernel
+def slip_and_load(mech: Mech, k: Moving, c: int, lam: Floats, l0: int) -> tuple[float, float]:
+    """Slip velocity and normal force (before max with 0) of port c at X."""
+    port = mech.port
+    j = port.joint[c]
+    if j >= 0:
+        n_x = call_joint(mech, k, j, lam, l0, mech.address)
+        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+        g = 0.0
+        for a in range(n_x):
+            g += k.out[at + a] * k.x[n_x + a]
+        return g, k.out[at + n_x + n_x * n_x]
+    g = value_of_form(k, port.slip, port.slip.x_start[c] + 1) - port.w[c]
+    if port.normal[c] == NORMAL_CONSTANT:
+        return g, port.N[c]
+    normals = port.normals
+    gather(normals, c, k.s.X, k.s.x)
+    call(normals.address[c], k.s.x, 0, normals.p, normals.p_start[c], k.s.out, 0)
+    return g, k.s.out[0]
+
+
+@block
+def forces(
+    mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, N: Floats, g: Floats, address: Ints
+) -> None:
+    """All forces on extended coordinates (``k.fy``) and signals (``k.fu``); slip velocities and loads of the ports.
+
+    ``lam[l0:]``, ``F[f0:]``: multipliers and friction forces; N (n_c,) before max with 0.
+    """
+    linear, s = mech.linear, k.s
+    n_y, n_u = k.ddy.shape[0], s.ddu.shape[0]
+    X, fy, fu = s.X, k.fy, k.fu
+    for i in range(n_y):
+        fy[i] = linear.f[i]
+    for i in range(n_u):
+        fu[i] = linear.f[n_y + i]
+    for e in range(linear.K.shape[0]):
+        i, j = linear.Ki[e], linear.Kj[e]
+        value = linear.K[e] * X[1 + j + (n_y if j >= n_y else 0)]
+        if i < n_y:
+            fy[i] -= value
+        else:
+            fu[i - n_y] -= value
+    for e in range(linear.C.shape[0]):
+        i, j = linear.Ci[e], linear.Cj[e]
+        value = linear.C[e] * X[1 + n_y + j + (n_u if j >= n_y else 0)]
+        if i < n_y:
+            fy[i] -= value
+        else:
+            fu[i - n_y] -= value
+    for e in range(linear.B.shape[0]):
+        fy[linear.Bi[e]] += linear.B[e] * X[1 + 2 * n_y + linear.Bj[e]]
+    elements, spread = mech.elements, mech.spread
+    for e in range(elements.address.shape[0]):
+        gather(elements, e, X, s.x)
+        call(elements.address[e], s.x, 0, elements.p, elements.p_start[e], s.out, 0)
+        for b in range(spread.f_start[e], spread.f_start[e + 1]):
+            for i in range(spread.start[b], spread.start[b + 1]):
+                fy[spread.dof[i]] += spread.coefficient[i] * s.out[b - spread.f_start[e]]
+    joint_forces(mech, k, lam, F, l0, f0, N, g)
+    contact_forces(mech, k, lam, F, l0, f0, N, g)
+
+
+@kernel
+def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, N: Floats, g: Floats) -> None:
+    """Reactions and friction of joints; also the constraints and their rates, ``k.phi`` and ``k.phi_rate``."""
+    joint = mech.joint
+    table = joint.table
+    for j in range(joint.n_x.shape[0]):
+        n_x = call_joint(mech, k, j, lam, l0, mech.address)
+        m = joint.row[j + 1] - joint.row[j]
+        a0 = table.x_start[j]
+        c = joint.port[j]
+        at = friction_at(n_x, m)
+        for r in range(m):
+            rate = 0.0
+            for a in range(n_x):
+                rate += k.out[m + r * n_x + a] * k.x[n_x + a]
+            dropped = joint.dropped[joint.row[j] + r] != 0
+            k.phi[joint.row[j] + r] = 0.0 if dropped else k.out[r]
+            k.phi_rate[joint.row[j] + r] = 0.0 if dropped else rate
+        if c >= 0:
+            rate = 0.0
+            for a in range(n_x):
+                rate += k.out[at + a] * k.x[n_x + a]
+            g[c] = rate
+            N[c] = k.out[at + n_x + n_x * n_x]
+        for a in range(n_x):
+            force = 0.0
+            for r in range(m):
+                force += k.out[m + r * n_x + a] * lam[l0 + joint.row[j] + r]
+            if c >= 0:
+                force += k.out[at + a] * F[f0 + c]
+            if force != 0.0:
+                scatter(k, table, a0 + a, force)
+
+
+@kernel
+def contact_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, N: Floats, g: Floats) -> None:
+    """Friction of contacts that are no joints, and what normal-force laws press with."""
+    port = mech.port
+    for c in range(port.joint.shape[0]):
+        if port.joint[c] >= 0:
+            continue
+        g[c], N[c] = slip_and_load(mech, k, c, lam, l0)
+        scatter(k, port.slip, port.slip.x_start[c], F[f0 + c])
+        if port.normal[c] == NORMAL_LAW:
+            scatter(k, port.normals, port.normals.x_start[c], max(N[c], 0.0) - port.N0[c])
+
+
+@kernel
+def pull_back(mech: Mech, k: Moving, f: Floats, f0: int) -> None:
+    """Forces on the degrees of freedom, f[f0:f0+n], from those on extended coordinates."""
+    place = mech.place
+    for e in range(k.ddy.shape[0]):
+        force = k.fy[e]
+        for i in range(place.y_start[e], place.y_start[e + 1]):
+            at = place.y_at[i]
+            if at < 0:
+                f[f0 + place.y_dof[i]] = force
+            elif force != 0.0:
+                f[f0 + place.y_dof[i]] += force * k.grad[at]

@@ -1,0 +1,233 @@
+"""Jacobians of a mechanism in three banded layers: what goes with the derivative, the velocity and the position.
+
+With unknowns [v, lam, F, z] and a shift gamma = 1/(h lambda) the matrix of a stage is  gamma A0 + A1 + A2/gamma.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from fricmb.integrate._call import call
+from fricmb.integrate._field import gather
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._pack import Table
+from fricmb.integrate._problem import NORMAL_LAW, Floats, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._pack import Mech, Moving, Order
+
+
+class Layers(NamedTuple):
+    """Banded matrices (size * ldab,) by columns."""
+
+    A0: Floats
+    A1: Floats
+    A2: Floats
+
+
+@kernel
+def add(order: Order, A: Floats, i: int, j: int, value: float) -> None:
+    """Add to entry (i, j)."""
+    column = order.place[j]
+    A[column * order.sizes[3] + 2 * order.sizes[1] + order.place[i] - column] += value
+
+
+@block
+def add_extended(mech: Mech, k: Moving, L: Layers, row: int, e: int, rate: bool, value: float, address: Ints) -> None:
+    """Add ``value dy_e`` (or ``value dy'_e``) to a row."""
+    place = mech.place
+    for i in range(place.y_start[e], place.y_start[e + 1]):
+        at, dof = place.y_at[i], place.y_dof[i]
+        grad = 1.0 if at < 0 else k.grad[at]
+        if not rate:
+            add(mech.order, L.A2, row, dof, value * grad)
+        else:
+            add(mech.order, L.A1, row, dof, value * grad)
+            if at >= 0:
+                add(mech.order, L.A2, row, dof, value * k.grad_rate[at])
+
+
+@block
+def add_form(mech: Mech, k: Moving, L: Layers, row: int, table: Table, a: int, value: float, address: Ints) -> None:
+    """Add ``value d(form a)`` to a row."""
+    if value == 0.0:
+        return
+    n_y = k.ddy.shape[0]
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        i = table.form_index[j] - 1
+        if 0 <= i < 2 * n_y:
+            e = i if i < n_y else i - n_y
+            add_extended(mech, k, L, row, e, i >= n_y, value * table.form_coefficient[j], mech.address)
+
+
+@block
+def add_column(
+    mech: Mech, k: Moving, A: Floats, column: int, table: Table, a: int, value: float, address: Ints
+) -> None:
+    """Add ``value d(form a)/dq`` as a column: minus the force of a multiplier on the degrees of freedom."""
+    if value == 0.0:
+        return
+    place = mech.place
+    n_y = k.ddy.shape[0]
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        e = table.form_index[j] - 1
+        if 0 <= e < n_y:
+            for i in range(place.y_start[e], place.y_start[e + 1]):
+                at = place.y_at[i]
+                grad = 1.0 if at < 0 else k.grad[at]
+                add(mech.order, A, place.y_dof[i], column, value * table.form_coefficient[j] * grad)
+
+
+@block
+def add_stiffness(
+    mech: Mech, k: Moving, L: Layers, left: Table, a: int, right: Table, b: int, value: float, address: Ints
+) -> None:
+    """Add ``value d(form b)`` to the rows of the degrees of freedom on which a force on form a acts."""
+    if value == 0.0:
+        return
+    place = mech.place
+    n_y = k.ddy.shape[0]
+    for j in range(left.form_start[a], left.form_start[a + 1]):
+        e = left.form_index[j] - 1
+        if 0 <= e < n_y:
+            for i in range(place.y_start[e], place.y_start[e + 1]):
+                at = place.y_at[i]
+                grad = 1.0 if at < 0 else k.grad[at]
+                add_form(mech, k, L, place.y_dof[i], right, b, value * left.form_coefficient[j] * grad, mech.address)
+
+
+@block
+def add_pairs(mech: Mech, k: Moving, L: Layers, i: int, j: int, rate: bool, value: float, address: Ints) -> None:
+    """Add the entry (i, j) of a stiffness or damping matrix over extended coordinates."""
+    place = mech.place
+    n_y = k.ddy.shape[0]
+    if i >= n_y or j >= n_y:
+        return
+    for a in range(place.y_start[i], place.y_start[i + 1]):
+        at = place.y_at[a]
+        grad = 1.0 if at < 0 else k.grad[at]
+        add_extended(mech, k, L, place.y_dof[a], j, rate, value * grad, mech.address)
+
+
+@kernel
+def add_mass(mech: Mech, L: Layers) -> None:
+    """The mass matrix."""
+    linear = mech.linear
+    for e in range(linear.M.shape[0]):
+        add(mech.order, L.A0, linear.Mi[e], linear.Mj[e], linear.M[e])
+
+
+@block
+def add_structure(mech: Mech, k: Moving, L: Layers, address: Ints) -> None:
+    """Stiffness and damping of linear and nonlinear elements, and of forces that turn with bodies (``k.fy``)."""
+    linear, place = mech.linear, mech.place
+    n_y = k.ddy.shape[0]
+    for e in range(linear.K.shape[0]):
+        add_pairs(mech, k, L, linear.Ki[e], linear.Kj[e], False, linear.K[e], mech.address)
+    for e in range(linear.C.shape[0]):
+        add_pairs(mech, k, L, linear.Ci[e], linear.Cj[e], True, linear.C[e], mech.address)
+    for c in range(place.address.shape[0]):
+        d0 = place.dof_start[c]
+        b = place.dof_start[c + 1] - d0
+        e0 = n_y - place.first[place.address.shape[0]] + place.first[c]
+        for r in range(place.first[c + 1] - place.first[c]):
+            h = place.hess_start[c] + r * b * b
+            for i in range(b):
+                for j in range(b):
+                    value = k.fy[e0 + r] * k.hess[h + i * b + j]
+                    if value != 0.0:
+                        add(mech.order, L.A2, place.dof[d0 + i], place.dof[d0 + j], -value)
+    elements, spread, s = mech.elements, mech.spread, k.s
+    for e in range(elements.address.shape[0]):
+        n_x = gather(elements, e, s.X, s.x)
+        call(elements.address[e], s.x, 0, elements.p, elements.p_start[e], s.out, 0)
+        n_f = spread.f_start[e + 1] - spread.f_start[e]
+        x0 = elements.x_start[e]
+        for f in range(n_f):
+            first = spread.f_start[e] + f
+            for i in range(spread.start[first], spread.start[first + 1]):
+                y = spread.dof[i]
+                for a in range(place.y_start[y], place.y_start[y + 1]):
+                    at = place.y_at[a]
+                    grad = spread.coefficient[i] * (1.0 if at < 0 else k.grad[at])
+                    for x in range(n_x):
+                        slope = s.out[n_f + f * n_x + x]
+                        add_form(mech, k, L, place.y_dof[a], elements, x0 + x, -grad * slope, mech.address)
+
+
+@block
+def add_joints(
+    mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, L: Layers, full: bool, address: Ints
+) -> None:
+    """Constraints and reactions; ``full``: with what changes with position (else the rows and columns of G alone)."""
+    joint = mech.joint
+    table = joint.table
+    n = mech.order.place.shape[0] - mech.port.joint.shape[0] - mech.port.z_start[-1] - joint.row[-1]
+    for j in range(joint.n_x.shape[0]):
+        n_x = call_joint(mech, k, j, lam, l0, mech.address)
+        m = joint.row[j + 1] - joint.row[j]
+        a0 = table.x_start[j]
+        H = m + m * n_x
+        B = H + n_x * n_x
+        at = friction_at(n_x, m)
+        c = joint.port[j]
+        for r in range(m):
+            row = n + joint.row[j] + r
+            if joint.dropped[joint.row[j] + r] != 0:
+                add(mech.order, L.A1, row, row, 1.0)
+                continue
+            for a in range(n_x):
+                G = k.out[m + r * n_x + a]
+                add_column(mech, k, L.A1, row, table, a0 + a, -G, mech.address)
+                if full:
+                    add_form(mech, k, L, row, table, a0 + n_x + a, G, mech.address)
+                    add_form(mech, k, L, row, table, a0 + a, k.out[B + r * n_x + a], mech.address)
+                else:
+                    add_row(mech, k, L.A1, row, table, a0 + a, G, mech.address)
+        if c >= 0:
+            column = n + joint.row[-1] + c
+            for a in range(n_x):
+                add_column(mech, k, L.A1, column, table, a0 + a, -k.out[at + a], mech.address)
+        if full:
+            for a in range(n_x):
+                for b in range(n_x):
+                    value = k.out[H + a * n_x + b]
+                    if c >= 0:
+                        value += F[f0 + c] * k.out[at + n_x + a * n_x + b]
+                    add_stiffness(mech, k, L, table, a0 + a, table, a0 + b, -value, mech.address)
+
+
+@block
+def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, value: float, address: Ints) -> None:
+    """Add ``value d(form a)/dq`` to a row of one layer."""
+    if value == 0.0:
+        return
+    place = mech.place
+    n_y = k.ddy.shape[0]
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        e = table.form_index[j] - 1
+        if 0 <= e < n_y:
+            for i in range(place.y_start[e], place.y_start[e + 1]):
+                at = place.y_at[i]
+                grad = 1.0 if at < 0 else k.grad[at]
+                add(mech.order, A, row, place.y_dof[i], value * table.form_coefficient[j] * grad)
+
+
+@block
+def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool, address: Ints) -> None:
+    """Columns of the friction of contacts that are no joints; ``full``: stiffness of what normal-force laws press."""
+    port = mech.port
+    n_c = port.joint.shape[0]
+    first = mech.order.place.shape[0] - port.z_start[-1] - n_c
+    for c in range(n_c):
+        if port.joint[c] >= 0:
+            continue
+        a0 = port.slip.x_start[c]
+        add_column(mech, k, L.A1, first + c, port.slip, a0, -1.0, mech.address)
+        if full and port.normal[c] == NORMAL_LAW and N[c] > 0.0:
+            normals, s = port.normals, k.s
+            gather(normals, c, s.X, s.x)
+            call(normals.address[c], s.x, 0, normals.p, normals.p_start[c], s.out, 0)
+            x0 = normals.x_start[c]
+            for i in range(2):
+                add_stiffness(mech, k, L, normals, x0, normals, x0 + i, -s.out[1 + i], mech.address)

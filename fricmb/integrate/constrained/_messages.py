@@ -1,0 +1,51 @@
+"""Why a run of a mechanism stopped, in words: which part, which condition."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate._problem import Problem
+from fricmb.integrate.constrained._assemble import singular_joints
+from fricmb.integrate.constrained._drive import (
+    FAIL_LOST,
+    FAIL_MARGIN,
+    FAIL_NONE,
+    FAIL_PROJECT,
+    FAIL_SEVERAL,
+    FAIL_SINGULAR,
+    FAIL_STEP,
+)
+from fricmb.integrate.constrained._pack import mechanism_of
+
+
+def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
+    """The reason for a code of failure."""
+    names, joints = problem.contact_names, mechanism_of(problem).joints
+    port = int(np.argmin(out.margin)) if problem.n_c else -1
+    least = float(out.margin.min(initial=1.0))
+    if code == FAIL_MARGIN or (code in (FAIL_STEP, FAIL_NONE) and least < 0.02):
+        return (
+            f"the friction of {names[port]!r} has no single solution: 1 + mu dN/dF has fallen to {least:.3g} and has"
+            " to be positive (the reaction grows with the friction that it causes faster than friction sheds it:"
+            " Painleve, jamming)"
+        )
+    if code == FAIL_NONE:
+        return "no combination of stick and slip satisfies friction and reactions together"
+    if code == FAIL_SEVERAL:
+        return "several combinations of stick and slip satisfy friction and reactions together"
+    if code == FAIL_LOST:
+        forces = [float(y.lam[joints.row[j]]) if joints.one_sided[j] else np.inf for j in range(len(joints.port))]
+        name = joints.names[int(np.argmin(forces))]
+        return f"contact of {name!r} is lost: its reaction has fallen to 0 and it can only push"
+    if code == FAIL_SINGULAR:
+        names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t[0]), y.q, y.v))
+        risen = float(out.pivot[1]) / max(float(out.pivot[0]), 1e-300)
+        return (
+            f"singular position: the constraints of {names_now} depend on one another (the condition of G M^-1 G^T has"
+            f" risen by {risen:.1e} since the start)"
+        )
+    if code == FAIL_PROJECT:
+        return "velocities could not be brought onto the constraints of what sticks"
+    return "the step size fell to round-off: the solution is not smooth here, or grows without bound"

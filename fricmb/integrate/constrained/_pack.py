@@ -1,0 +1,237 @@
+"""A problem with a mechanism as rooms for kernels."""
+
+from __future__ import annotations
+
+import weakref
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate._field import Scratch
+from fricmb.integrate._lapack import addresses
+from fricmb.integrate._mechanism import Mechanism
+from fricmb.integrate._pack import Spread, Table, _table
+from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
+from fricmb.integrate._room import room
+from fricmb.integrate.constrained._band import band_addresses, band_sizes
+from fricmb.integrate.constrained._pattern import ordering
+
+
+class Linear(NamedTuple):
+    """Entries of mass, stiffness, damping and input; constant force over [y, u]."""
+
+    Mi: Ints
+    Mj: Ints
+    M: Floats
+    Ki: Ints
+    Kj: Ints
+    K: Floats
+    Ci: Ints
+    Cj: Ints
+    C: Floats
+    Bi: Ints
+    Bj: Ints
+    B: Floats
+    f: Floats
+
+
+class Place(NamedTuple):
+    """Points fixed in bodies (see Places) and where their derivatives stand in ``Moving``.
+
+    Extended coordinate e depends on the dofs ``dof[start[e]:start[e+1]]`` with the derivatives ``grad[at[...]]`` (-1:
+    the coordinate is the dof itself).
+    """
+
+    address: Ints
+    p_start: Ints
+    p: Floats
+    dof_start: Ints
+    dof: Ints
+    first: Ints
+    grad_start: Ints
+    hess_start: Ints
+    y_start: Ints
+    y_dof: Ints
+    y_at: Ints
+
+
+class Joint(NamedTuple):
+    """Joints (see Joints); ``n_x`` (k,) local coordinates."""
+
+    table: Table
+    row: Ints
+    n_x: Ints
+    port: Ints
+    one_sided: Codes
+    dropped: Codes
+
+
+class Port(NamedTuple):
+    """Friction: ``joint`` (n_c,) the joint it belongs to or -1, ``slip`` the forms of the others."""
+
+    joint: Ints
+    slip: Table
+    w: Floats
+    law: Codes
+    mu_s: Floats
+    mu_0: Floats
+    z_start: Ints
+    normal: Codes
+    N: Floats
+    N0: Floats
+    laws: Table
+    normals: Table
+
+
+class Order(NamedTuple):
+    """Place of every unknown [v, lam, F, z] in the banded matrices; sizes and addresses for LAPACK."""
+
+    place: Ints
+    sizes: Pivots
+    address: Ints
+
+
+class Mech(NamedTuple):
+    """All of a problem."""
+
+    linear: Linear
+    place: Place
+    joint: Joint
+    port: Port
+    signals: Table
+    elements: Table
+    spread: Spread
+    order: Order
+    breakpoints: Floats
+    address: Ints
+
+
+_kept: dict[int, Mech] = {}
+
+
+def mech_of(problem: Problem) -> Mech:
+    """The problem as the kernels take it, made once per problem object."""
+    kept = _kept.get(id(problem))
+    if kept is None:
+        kept = _kept[id(problem)] = _pack(problem)
+        weakref.finalize(problem, _kept.pop, id(problem), None)
+    return kept
+
+
+def mechanism_of(problem: Problem) -> Mechanism:
+    """The mechanism of a problem that has one."""
+    if problem.mechanism is None:
+        raise TypeError("the problem has no mechanism")
+    return problem.mechanism
+
+
+def _pack(problem: Problem) -> Mech:
+    m, contacts = mechanism_of(problem), problem.contacts
+    M, K, C, B = m.M, m.K, m.C, m.B
+    linear = Linear(
+        M.row, M.column, M.value, K.row, K.column, K.value, C.row, C.column, C.value, B.row, B.column, B.value, m.f
+    )
+    table = _table(m.joints.table)
+    rows = np.diff(m.joints.row)
+    n_x = np.diff(table.x_start) // 2
+    joint = Joint(table, m.joints.row, n_x, m.joints.port, m.joints.one_sided, m.joints.dropped)
+    port_joint = np.full(problem.n_c, -1, np.int64)
+    for j in np.flatnonzero(m.joints.port >= 0):
+        port_joint[m.joints.port[j]] = j
+    solid = np.ascontiguousarray
+    port = Port(
+        port_joint, _table(m.slip), solid(contacts.w), solid(contacts.law, np.int8), solid(contacts.mu_s),
+        solid(contacts.mu_0), solid(contacts.z_start, np.int64), solid(contacts.normal, np.int8),
+        np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
+        _table(contacts.law_table), _table(contacts.normal_table),
+    )  # fmt: skip
+    spread = Spread(
+        problem.elements.f_start, problem.elements.spread_start, problem.elements.spread_dof,
+        np.append(problem.elements.spread_coefficient, 0.0),
+    )  # fmt: skip
+    places = _places(m)
+    order, half = ordering(problem, m, places.y_start, places.y_dof)
+    size = m.n + int(rows.sum()) + problem.n_c + problem.n_z
+    return room(Mech(
+        linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread,
+        Order(order, band_sizes(size, half), band_addresses()),
+        np.sort(np.asarray(problem.signals.breakpoints, float)), addresses(*_blocks()),
+    ))  # fmt: skip
+
+
+def _places(m: Mechanism) -> Place:
+    p = m.places
+    count, across = np.diff(p.first), np.diff(p.dof_start)
+    grad = np.concatenate(([0], np.cumsum(count * across))).astype(np.int64)
+    hess = np.concatenate(([0], np.cumsum(count * across * across))).astype(np.int64)
+    start, dof, at = [0], [], []
+    for i in range(m.n):
+        dof.append(i)
+        at.append(-1)
+        start.append(len(dof))
+    for k in range(len(p.address)):
+        mine = p.dof[p.dof_start[k] : p.dof_start[k + 1]].tolist()
+        for c in range(int(count[k])):
+            dof.extend(mine)
+            at.extend(int(grad[k]) + c * len(mine) + b for b in range(len(mine)))
+            start.append(len(dof))
+    ints = [np.array(x, dtype=np.int64) for x in (start, dof, at)]
+    return Place(p.address, p.p_start, np.append(p.p, 0.0), p.dof_start, p.dof, p.first, grad, hess, *ints)
+
+
+def _blocks() -> tuple[str, ...]:
+    """Names of this package's blocks, their modules imported."""
+    from fricmb.integrate.constrained import _drive
+
+    return _drive.BLOCKS
+
+
+class Moving(NamedTuple):
+    """What the present positions and velocities of places are, and rooms for calls.
+
+    ``s`` the scratch with X; ``grad``, ``hess`` derivatives of the places, ``grad_rate`` the rates of ``grad``; ``ddy``
+    (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
+    ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
+    their rates.
+    """
+
+    s: Scratch
+    grad: Floats
+    grad_rate: Floats
+    hess: Floats
+    ddy: Floats
+    x: Floats
+    out: Floats
+    fy: Floats
+    fu: Floats
+    phi: Floats
+    phi_rate: Floats
+
+
+def moving_of(problem: Problem) -> Moving:
+    """Rooms for evaluating the problem."""
+    m = mechanism_of(problem)
+    packed = mech_of(problem)
+    n_y, n_u = m.n_y, problem.n_u
+    widths = [int(x) for x in packed.joint.n_x]
+    rows = [int(x) for x in np.diff(m.joints.row)]
+    n_x = max([8, *(2 * x + r for x, r in zip(widths, rows, strict=True))])
+    n_out = max([8, *(2 * r + 3 * x * r + 3 * x * x + 3 * x + 8 for x, r in zip(widths, rows, strict=True))])
+    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 2
+    s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
+    for templates in (problem.elements.table, problem.contacts.normal_table):
+        s_x = max(s_x, int(np.max(np.diff(templates.x_start), initial=0)))
+    s_out = max(8 + s_f * (s_x + 4), 2 + s_x, states * (states + 3) + 4)
+    scratch = Scratch(
+        np.zeros(1 + 2 * n_y + 2 * n_u), np.zeros(n_u), np.zeros(s_x), np.zeros(s_out), np.array([-np.inf, np.inf])
+    )
+    grad, hess = int(packed.place.grad_start[-1]), int(packed.place.hess_start[-1])
+    b = int(np.max(np.diff(m.places.dof_start), initial=1))
+    return room(Moving(
+        scratch, np.zeros(grad + 1), np.zeros(grad + 1), np.zeros(hess + 1), np.zeros(n_y), np.zeros(n_x),
+        np.zeros(max(n_out, 2 + 2 * b + 2 * b * b)), np.zeros(n_y), np.zeros(n_u + 1),
+        np.zeros(m.n_rows), np.zeros(m.n_rows),
+    ))  # fmt: skip
+
+
+__all__ = ["NORMAL_LAW", "Joint", "Mech", "Moving", "Port", "mech_of", "mechanism_of", "moving_of"]

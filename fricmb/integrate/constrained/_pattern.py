@@ -1,0 +1,66 @@
+"""Which unknowns of a step meet in an equation, and an order of them that keeps the matrices narrow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from fricmb.integrate._mechanism import Mechanism
+from fricmb.integrate._problem import Ints, Problem, Templates
+
+
+def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int]:
+    """Place of each unknown [v, lam, F, z] and the half-bandwidth: reverse Cuthill-McKee on the pattern."""
+    size = m.n + m.n_rows + problem.n_c + problem.n_z
+    pairs = {(i, i) for i in range(size)}
+    for group in _groups(problem, m, y_start, y_dof):
+        held = sorted(group)
+        pairs.update((i, j) for i in held for j in held)
+    rows, columns = np.array(sorted(pairs), dtype=np.int64).T
+    matrix = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(size, size)).tocsr()
+    found = reverse_cuthill_mckee(matrix, symmetric_mode=True)
+    place = np.empty(size, np.int64)
+    place[found] = np.arange(size)
+    half = int(np.abs(place[rows] - place[columns]).max(initial=0))
+    return place, half
+
+
+def _groups(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> Iterator[set[int]]:
+    def dofs(extended: Iterable[int]) -> set[int]:
+        return {int(d) for e in extended if 0 <= e < m.n_y for d in y_dof[y_start[e] : y_start[e + 1]]}
+
+    def places(table: Templates, k: int) -> set[int]:
+        first, last = table.x_start[k], table.x_start[k + 1]
+        index = table.form_index[table.form_start[first] : table.form_start[last]] - 1
+        return {int(i) for i in index if 0 <= i < m.n_y} | {int(i) - m.n_y for i in index if m.n_y <= i < 2 * m.n_y}
+
+    for entries in (m.M, m.K, m.C):
+        for i, j in zip(entries.row.tolist(), entries.column.tolist(), strict=True):
+            yield dofs((i, j))
+    for k in range(len(m.places.address)):
+        yield {int(d) for d in m.places.dof[m.places.dof_start[k] : m.places.dof_start[k + 1]]}
+    elements = problem.elements
+    for k in range(len(elements.table.address)):
+        spread = elements.spread_dof[
+            elements.spread_start[elements.f_start[k]] : elements.spread_start[elements.f_start[k + 1]]
+        ]
+        yield dofs([*places(elements.table, k), *spread.tolist()])
+    force0 = m.n + m.n_rows
+    state0 = force0 + problem.n_c
+
+    def port(k: int) -> set[int]:
+        z = problem.contacts.z_start
+        return {force0 + k, *range(state0 + int(z[k]), state0 + int(z[k + 1]))}
+
+    joint_ports = set()
+    for j in range(len(m.joints.row) - 1):
+        mine = dofs(places(m.joints.table, j)) | set(range(m.n + int(m.joints.row[j]), m.n + int(m.joints.row[j + 1])))
+        if m.joints.port[j] >= 0:
+            joint_ports.add(int(m.joints.port[j]))
+            mine |= port(int(m.joints.port[j]))
+        yield mine
+    for k in set(range(problem.n_c)) - joint_ports:
+        yield dofs(places(m.slip, k) | places(problem.contacts.normal_table, k)) | port(k)

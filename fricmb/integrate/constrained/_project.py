@@ -1,0 +1,64 @@
+"""Back onto the constraints: positions, then velocities, along the inverse mass matrix."""
+
+from __future__ import annotations
+
+from fricmb.integrate._problem import STICK, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._field import forces, move
+from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._state import NONE, STUCK, Instant, State, instant_matrix, solve_instant
+
+#: Corrections of positions at most: after a step one or two are needed.
+CORRECTIONS = 6
+EPS = 2.220446049250313e-16
+
+
+@block
+def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints) -> bool:
+    """Move q the least, in the norm of the mass matrix, so that phi(q) = 0 to round-off; leaves the factored matrix."""
+    n, m = y.q.shape[0], y.lam.shape[0]
+    last = 1e300
+    for i in range(CORRECTIONS):
+        move(mech, k, y.t[0], y.q, y.v, mech.address)
+        forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+        if i == 0 and instant_matrix(mech, k, w, y, NONE, mech.address) != 0:
+            return False
+        for j in range(w.r.shape[0]):
+            w.r[j] = 0.0
+        for j in range(m):
+            w.r[n + j] = k.phi[j]
+        solve_instant(mech, w)
+        largest = size = 0.0
+        for j in range(n):
+            y.q[j] -= w.r[j]
+            largest, size = max(largest, abs(w.r[j])), max(size, abs(y.q[j]))
+        if not largest < 1e300:
+            return False
+        if largest <= 4.0 * EPS * size or (i > 1 and largest > 0.5 * last):
+            return True
+        last = largest
+    return True
+
+
+@block
+def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, stuck: bool, address: Ints) -> bool:
+    """Move v the least so that the constraints' rates, and the slip of ports that stick (``stuck``), are 0."""
+    n, m, n_c = y.q.shape[0], y.lam.shape[0], y.F.shape[0]
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    if not (factored and not stuck) and instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address) != 0:
+        return False
+    for _ in range(2):
+        for j in range(w.r.shape[0]):
+            w.r[j] = 0.0
+        for j in range(m):
+            w.r[n + j] = k.phi_rate[j]
+        for c in range(n_c):
+            if stuck and y.mode[c] == STICK:
+                w.r[n + m + c] = y.g[c]
+        solve_instant(mech, w)
+        for j in range(n):
+            y.v[j] -= w.r[j]
+        move(mech, k, y.t[0], y.q, y.v, mech.address)
+        forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    return True

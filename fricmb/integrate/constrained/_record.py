@@ -1,0 +1,106 @@
+"""Rows of a run: the values of every step at its start and its stages."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import Codes2, Floats2, Floats3, Ints, Problem
+from fricmb.integrate._room import room
+from fricmb.integrate.constrained._pack import mechanism_of
+from fricmb.integrate.constrained._stages import Stages
+from fricmb.integrate.constrained._state import State
+from fricmb.integrate.constrained._step import Control
+
+
+class Record(NamedTuple):
+    """Room for steps.
+
+    ``span`` (k, 2): start and length; ``values`` (k, s+1, 2n + n_z + n_c + 2): [q, v, z, work] at 0, c; ``force``
+    (k, m + 2 n_c): [lam, F, n] at the start; ``mode`` (k, n_c); ``after`` (k,) 1 where a transition follows the step;
+    ``event`` (n_e, 3): time, contact, kind; ``used`` (2,) steps and events.
+    """
+
+    span: Floats2
+    values: Floats3
+    force: Floats2
+    mode: Codes2
+    after: Ints
+    event: Floats2
+    used: Ints
+
+
+def record_of(problem: Problem, stages: int, capacity: int) -> Record:
+    """Empty room for ``capacity`` steps."""
+    m, nc = mechanism_of(problem), problem.n_c
+    return room(Record(
+        np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, 2 * m.n + problem.n_z + nc + 2)),
+        np.zeros((capacity, m.n_rows + 2 * nc)), np.zeros((capacity, nc), np.int8), np.zeros(capacity, np.int64),
+        np.zeros((capacity + 8 * nc + 8, 3)), np.zeros(2, np.int64),
+    ))  # fmt: skip
+
+
+@kernel
+def record_step(out: Record, y: State, end: State, st: Stages, c: Control, h: float) -> None:
+    """Add the step from y to end."""
+    i = out.used[0]
+    n, nz, nw, m, n_c = y.q.shape[0], y.z.shape[0], y.work.shape[0], y.lam.shape[0], y.F.shape[0]
+    s = st.tab.c.shape[0]
+    out.span[i, 0] = y.t[0]
+    out.span[i, 1] = h
+    out.after[i] = 0
+    for j in range(s + 1):
+        row = out.values[i, j]
+        for a in range(n):
+            row[a] = y.q[a] if j == 0 else (end.q[a] if j == s else st.Q[j - 1, a])
+            row[n + a] = y.v[a] if j == 0 else (end.v[a] if j == s else st.V[j - 1, a])
+        for a in range(nz):
+            row[2 * n + a] = y.z[a] if j == 0 else st.Z[j - 1, a]
+        for a in range(nw):
+            value = y.work[a]
+            if j > 0:
+                for b in range(s):
+                    value += h * st.tab.A[j - 1, b] * c.power[b, a]
+            row[2 * n + nz + a] = value
+    for a in range(m):
+        out.force[i, a] = y.lam[a]
+    for a in range(n_c):
+        out.force[i, m + a] = y.F[a]
+        out.force[i, m + n_c + a] = y.n[a]
+        out.mode[i, a] = y.mode[a]
+    out.used[0] = i + 1
+
+
+@kernel
+def record_event(out: Record, t: float, contact: int, kind: int) -> None:
+    """Add a transition."""
+    i = out.used[1]
+    out.event[i, 0] = t
+    out.event[i, 1] = contact
+    out.event[i, 2] = kind
+    out.used[1] = i + 1
+
+
+@kernel
+def crowded(out: Record, n_c: int) -> bool:
+    """Whether another step and its transitions might not find room."""
+    return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + n_c + 2 > out.event.shape[0])
+
+
+@kernel
+def copy_state(a: State, b: State) -> None:
+    """Put state a into b."""
+    b.t[0] = a.t[0]
+    for source, target in ((a.q, b.q), (a.v, b.v), (a.a, b.a), (a.z, b.z), (a.lam, b.lam)):
+        for i in range(source.shape[0]):
+            target[i] = source[i]
+    for source, target in ((a.F, b.F), (a.N, b.N), (a.g, b.g), (a.ga, b.ga), (a.n, b.n), (a.zd, b.zd)):
+        for i in range(source.shape[0]):
+            target[i] = source[i]
+    for i in range(a.mode.shape[0]):
+        b.mode[i] = a.mode[i]
+    for i in range(a.work.shape[0]):
+        b.work[i] = a.work[i]
+        b.rate[i] = a.rate[i]

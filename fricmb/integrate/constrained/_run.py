@@ -1,0 +1,102 @@
+"""A run of a mechanism from its start to a trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate._integrator import Tolerance
+from fricmb.integrate._problem import Floats, Problem, Start
+from fricmb.integrate._tableau import radau
+from fricmb.integrate._trajectory import Counters, Transitions
+from fricmb.integrate.constrained._accept import watch_of
+from fricmb.integrate.constrained._assemble import consistent_start, mass_of, names_of_rows
+from fricmb.integrate.constrained._drive import DONE, FULL, begin, drive
+from fricmb.integrate.constrained._messages import failure_text
+from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained._record import Record, record_of
+from fricmb.integrate.constrained._stages import stages_of
+from fricmb.integrate.constrained._state import instant_of, state_of
+from fricmb.integrate.constrained._step import control_of
+from fricmb.integrate.constrained._trajectory import StepTrajectory, nodes_of
+
+CHUNK = 1024
+
+
+def stages_for(rtol: float) -> int:
+    """Stages of the formula for a tolerance."""
+    return 3 if rtol > 1e-5 else 5 if rtol > 1e-11 else 7
+
+
+def run_mechanism(
+    problem: Problem,
+    start: Start,
+    t_end: float,
+    tolerance: Tolerance,
+    stages: int,
+    progress: Callable[[float], None] | None,
+    memory: float | None = None,
+) -> StepTrajectory:
+    """Radau IIA of ``stages`` (an odd number) on the index-reduced system; see ``Integrator.integrate``."""
+    m = mechanism_of(problem)
+    start, notes = consistent_start(problem, start)
+    mech, k, w = mech_of(problem), moving_of(problem), instant_of(problem)
+    y, end, before = (state_of(problem, start) for _ in range(3))
+    st, out = stages_of(problem, radau(stages)), watch_of(problem)
+    mass = mass_of(m)
+    if m.joints.dropped.any():
+        rows = np.flatnonzero(m.joints.dropped).astype(np.int64)
+        listed = ", ".join(repr(name) for name in names_of_rows(m, rows))
+        text = f"redundant constraints: {len(rows)} of {listed} follow(s) from the others; reactions are of least norm"
+        notes = (*notes, text)
+    v, z = np.abs(np.asarray(start.v, float)), np.abs(np.asarray(start.z, float))
+    floor = np.zeros(m.n) if tolerance.atol_v is None else tolerance.atol_v / tolerance.rtol
+    span = np.array([start.t, t_end])
+    control = control_of(problem, st, tolerance.rtol, v, z, floor, span, 1.0, mass)
+    record = record_of(problem, stages, CHUNK)
+    part = np.zeros(problem.n_c, np.int8)
+    small = 1e-12 * float(np.abs(v).max(initial=0.0))
+    chunks: list[tuple[Any, ...]] = []
+    code = begin(mech, k, w, y, control, out, record, part, start.mode is not None, small)
+    if code == DONE:
+        control.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
+        code = FULL
+    while code == FULL:
+        code = drive(mech, k, w, y, end, before, st, control, out, record, part)
+        chunks.append(_taken(record))
+        if progress is not None:
+            progress(float(y.t[0]))
+        if code == FULL and memory is not None and sum(x.nbytes for chunk in chunks for x in chunk) > memory:
+            code = DONE
+    chunks.append(_taken(record))
+    steps = [np.concatenate(x) for x in zip(*chunks, strict=True)]
+    span, values, force, mode, after, event = steps
+    failure = None if code == DONE else failure_text(code, problem, y, out)
+    done, rejected, rhs, jac, lu = (int(x) for x in control.counts[:5])
+    final = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
+    return StepTrajectory(
+        problem, span, values, force, mode, after,
+        Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int)),
+        Counters(n_steps=done, n_rejected=rejected, n_rhs=rhs, n_jac=jac, n_lu=lu, notes=notes),
+        final, failure, nodes_of(stages),
+    )  # fmt: skip
+
+
+def _taken(record: Record) -> tuple[Any, ...]:
+    """Empty the room for steps."""
+    i, e = (int(x) for x in record.used)
+    parts = (record.span, record.values, record.force, record.mode, record.after)
+    taken = (*(np.array(x[:i]) for x in parts), record.event[:e].copy())
+    record.used[:] = 0
+    return taken
+
+
+def _first_step(v: Floats, a: Floats, span: float) -> float:
+    """A small part of the time in which velocities change."""
+    h = 0.01 * span
+    top, push = np.abs(v).max(initial=0.0), np.abs(a).max(initial=0.0)
+    if push > 0.0 and top > 0.0:
+        h = min(h, 0.05 * top / push)
+    return float(max(h, 1e-10 * span))

@@ -1,0 +1,74 @@
+"""Forces and reactions at given states, and the constraints as a matrix: what is asked for outside of a run."""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import entry
+from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2
+from fricmb.integrate.constrained._field import call_joint, forces, move
+from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._state import Instant, State, react
+
+
+@entry
+def instants(
+    mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
+    force: Floats2, windows: Floats2, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
+) -> int:  # fmt: skip
+    """Complete every state (row by row); ``force`` (n_t, m + 2 n_c) start values [lam, F, n].  Number of failures."""
+    m, n_c = y.lam.shape[0], y.F.shape[0]
+    failed = 0
+    for i in range(times.shape[0]):
+        y.t[0] = times[i]
+        k.s.window[0] = windows[i, 0]
+        k.s.window[1] = windows[i, 1]
+        for j in range(y.q.shape[0]):
+            y.q[j] = q[i, j]
+            y.v[j] = v[i, j]
+        for j in range(y.z.shape[0]):
+            y.z[j] = z[i, j]
+        for j in range(m):
+            y.lam[j] = force[i, j]
+        for j in range(n_c):
+            y.F[j] = force[i, m + j]
+            y.n[j] = force[i, m + n_c + j]
+            y.mode[j] = mode[i, j]
+        if not react(mech, k, w, y, False, mech.address):
+            failed += 1
+        for j in range(m):
+            lam[i, j] = y.lam[j]
+        for j in range(y.a.shape[0]):
+            a[i, j] = y.a[j]
+        for j in range(n_c):
+            F[i, j] = y.F[j]
+            N[i, j] = max(y.N[j], 0.0)
+            g[i, j] = 0.0 if y.mode[j] == STICK else y.g[j]
+    return failed
+
+
+@entry
+def constraints(
+    mech: Mech, k: Moving, t: float, q: Floats, v: Floats, lam: Floats, F: Floats, N: Floats, g: Floats, phi: Floats,
+    rate: Floats, G: Floats2,
+) -> None:  # fmt: skip
+    """Constraints (m,), their rates (m,) and their Jacobian G (m, n) at an instant."""
+    move(mech, k, t, q, v, mech.address)
+    forces(mech, k, lam, F, 0, 0, N, g, mech.address)
+    joint, table, place = mech.joint, mech.joint.table, mech.place
+    n_y = k.ddy.shape[0]
+    for j in range(joint.n_x.shape[0]):
+        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        m = joint.row[j + 1] - joint.row[j]
+        for r in range(m):
+            row = joint.row[j] + r
+            phi[row] = k.phi[row]
+            rate[row] = k.phi_rate[row]
+            for a in range(n_x):
+                slope = k.out[m + r * n_x + a]
+                first = table.x_start[j] + a
+                for i in range(table.form_start[first], table.form_start[first + 1]):
+                    e = table.form_index[i] - 1
+                    if 0 <= e < n_y:
+                        for b in range(place.y_start[e], place.y_start[e + 1]):
+                            at = place.y_at[b]
+                            grad = 1.0 if at < 0 else k.grad[at]
+                            G[row, place.y_dof[b]] += slope * table.form_coefficient[i] * grad

@@ -1,0 +1,239 @@
+"""The stages of a Radau IIA step on the velocity level (index 2): simplified Newton on the transformed system.
+
+With velocities V_i, multipliers L_i and friction forces F_i at the stages, Q_i = q + h sum_j A_ij V_j:
+
+    M V'_i = f(t_i, Q_i, V_i, L_i, F_i),   d phi/dt (t_i, Q_i, V_i) = 0,   friction(Q_i, V_i, L_i, F_i) = 0.
+
+The position constraint drifts by the error of a step and is restored after it (Hairer and Wanner, Solving ODEs II,
+VII.2).  A = T diag(lam) T^-1 splits the Newton system into one real and some complex systems of one stage's size.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import Codes, Floats, Floats2, Ints, Pivots, Problem
+from fricmb.integrate._room import block, room
+from fricmb.integrate._tableau import Complexes2, Tableau
+from fricmb.integrate.constrained._band import (
+    factor_complex,
+    factor_real,
+    solve_complex_band,
+    solve_real_band,
+)
+from fricmb.integrate.constrained._field import forces, move, pull_back
+from fricmb.integrate.constrained._friction import add_friction, friction_residual
+from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass, add_structure
+from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
+from fricmb.integrate.constrained._state import State
+
+
+class Stages(NamedTuple):
+    """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, size * ldab) and pivots.
+
+    ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` (1,) the rate of
+    convergence.
+    """
+
+    tab: Tableau
+    Ainv: Floats2
+    Q: Floats2
+    V: Floats2
+    lam: Floats2
+    F: Floats2
+    Z: Floats2
+    N: Floats2
+    g: Floats2
+    R: Floats2
+    L: Layers
+    real: Floats
+    pairs: Complexes2
+    pivots: Pivots
+    x: Floats
+    w: Complexes2
+    zd: Floats
+    acc: Floats
+    scale: Floats
+    found: Floats
+
+
+def stages_of(problem: Problem, tab: Tableau) -> Stages:
+    """Rooms for the stages of a tableau with an odd number of them."""
+    m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
+    size, ldab = len(order.place), int(order.sizes[3])
+    band = size * ldab
+    nc, nz, count = problem.n_c, problem.n_z, len(tab.lam)
+    return room(Stages(
+        tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
+        np.zeros((s, m.n_rows)), np.zeros((s, nc)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, nc)),
+        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
+        np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
+        np.zeros((count, size), complex), np.zeros(nz), np.zeros(size), np.ones(m.n), np.zeros(1),
+    ))  # fmt: skip
+
+
+@block
+def linearise(mech: Mech, k: Moving, y: State, st: Stages, address: Ints) -> None:
+    """The three layers of the Jacobian at the state."""
+    L = st.L
+    L.A0[:] = 0.0
+    L.A1[:] = 0.0
+    L.A2[:] = 0.0
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    add_mass(mech, L)
+    add_structure(mech, k, L, mech.address)
+    add_joints(mech, k, y.lam, y.F, 0, 0, L, True, mech.address)
+    add_contacts(mech, k, y.N, L, True, mech.address)
+    add_friction(mech, k, y.mode, y.n, y.lam, 0, y.z, 0, y.N, y.g, L, True, mech.address)
+    size = mech.order.place.shape[0]
+    for i in range(size - y.z.shape[0], size):
+        add(mech.order, L.A0, i, i, 1.0)
+
+
+@block
+def factor_stages(mech: Mech, st: Stages, h: float, address: Ints) -> bool:
+    """Factor the real and the complex systems for a step h."""
+    order, L, tab = mech.order, st.L, st.tab
+    size = order.place.shape[0]
+    for i in range(tab.lam.shape[0]):
+        pivots = st.pivots[i * size : (i + 1) * size]
+        if tab.lam[i].imag == 0.0:
+            up, down = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real
+            for j in range(st.real.shape[0]):
+                st.real[j] = up * L.A0[j] + L.A1[j] + down * L.A2[j]
+            if factor_real(order.address, order.sizes, pivots, st.real) != 0:
+                return False
+        else:
+            shift = h * tab.lam[i]
+            inverse = 1.0 / shift
+            pair = st.pairs[i]
+            for j in range(st.real.shape[0]):
+                pair[j] = inverse * L.A0[j] + L.A1[j] + shift * L.A2[j]
+            if factor_complex(order.address, order.sizes, pivots, pair) != 0:
+                return False
+    return True
+
+
+@block
+def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int, address: Ints) -> None:
+    """Residual of stage i into ``st.R[i]``."""
+    n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
+    r = st.R[i]
+    s = st.tab.c.shape[0]
+    for a in range(n):
+        st.acc[a] = 0.0
+        st.Q[i, a] = y.q[a]
+        for j in range(s):
+            st.acc[a] += st.Ainv[i, j] * (st.V[j, a] - y.v[a])
+            st.Q[i, a] += h * st.tab.A[i, j] * st.V[j, a]
+        st.acc[a] /= h
+    move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+    forces(mech, k, st.lam[i], st.F[i], 0, 0, st.N[i], st.g[i], mech.address)
+    pull_back(mech, k, st.x, 0)
+    for a in range(n):
+        r[a] = -st.x[a]
+    linear = mech.linear
+    for e in range(linear.M.shape[0]):
+        r[linear.Mi[e]] += linear.M[e] * st.acc[linear.Mj[e]]
+    for a in range(m):
+        r[n + a] = k.phi_rate[a]
+    friction_residual(
+        mech, k, y.mode, y.n, st.F[i], 0, st.Z[i], 0, st.N[i], st.g[i], st.g[i], st.zd, r, n + m, mech.address,
+    )  # fmt: skip
+    for a in range(nz):
+        rate = 0.0
+        for j in range(s):
+            rate += st.Ainv[i, j] * (st.Z[j, a] - y.z[a])
+        r[n + m + n_c + a] = rate / h - st.zd[a]
+
+
+@block
+def newton_change(mech: Mech, st: Stages, address: Ints) -> None:
+    """Solve for the changes of all unknowns: R is overwritten."""
+    order, tab = mech.order, st.tab
+    size, s = order.place.shape[0], tab.c.shape[0]
+    for i in range(tab.lam.shape[0]):
+        pivots = st.pivots[i * size : (i + 1) * size]
+        if tab.lam[i].imag == 0.0:
+            for a in range(size):
+                value = 0.0
+                for j in range(s):
+                    value += tab.Tinv[i, j].real * st.R[j, a]
+                st.x[order.place[a]] = value
+            solve_real_band(order.address, order.sizes, pivots, st.real, st.x)
+            for a in range(size):
+                st.w[i, a] = st.x[order.place[a]]
+            continue
+        w = st.w[i]
+        pair = st.pairs[i]
+        # the right-hand side in LAPACK's order, behind it the same in ours
+        for a in range(size):
+            value_c = 0.0j
+            for j in range(s):
+                value_c += tab.Tinv[i, j] * st.R[j, a]
+            w[order.place[a]] = value_c
+        solve_complex_band(order.address, order.sizes, pivots, pair, w)
+    for j in range(s):
+        for a in range(size):
+            value = 0.0
+            for i in range(tab.lam.shape[0]):
+                at = a if tab.lam[i].imag == 0.0 else order.place[a]
+                value += tab.T[j, i].real * st.w[i, at].real - tab.T[j, i].imag * st.w[i, at].imag
+            st.R[j, a] = value
+
+
+#: Newton's iterations in a step before it is given up.
+ITERATIONS = 12
+
+
+@block
+def iterate_stages(
+    mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float, mode: Codes, address: Ints
+) -> int:
+    """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
+    n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
+    s = st.tab.c.shape[0]
+    last = np.inf
+    st.found[0] = 1.0
+    for iteration in range(ITERATIONS):
+        for i in range(s):
+            stage_residual(mech, k, y, st, h, i, mech.address)
+        newton_change(mech, st, mech.address)
+        change = 0.0
+        for i in range(s):
+            for a in range(n):
+                st.V[i, a] -= st.R[i, a]
+                change = max(change, abs(st.R[i, a]) / st.scale[a])
+            for a in range(m):
+                st.lam[i, a] -= st.R[i, n + a]
+            for a in range(n_c):
+                st.F[i, a] -= st.R[i, n + m + a]
+            for a in range(nz):
+                st.Z[i, a] -= st.R[i, n + m + n_c + a]
+        if not change < 1e30:
+            return 0
+        rate = change / last if iteration > 0 else 1.0
+        if iteration > 0:
+            st.found[0] = rate
+        if change <= 1e-15 or (iteration > 0 and rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
+            for i in range(s):
+                stage_positions(y, st, h, i)
+            return iteration + 1
+        if iteration > 0 and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
+            return 0
+        last = change
+    return 0
+
+
+@kernel
+def stage_positions(y: State, st: Stages, h: float, i: int) -> None:
+    """Q of stage i from the velocities."""
+    for a in range(y.q.shape[0]):
+        value = 0.0
+        for j in range(st.tab.c.shape[0]):
+            value += st.tab.A[i, j] * st.V[j, a]
+        st.Q[i, a] = y.q[a] + h * value

@@ -1,0 +1,292 @@
+"""The state of a run, and everything at one instant: reactions, friction forces and accelerations together."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate._call import call
+from fricmb.integrate._field import gather
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
+from fricmb.integrate._room import block, room
+from fricmb.integrate.constrained._band import factor_real, solve_real_band
+from fricmb.integrate.constrained._field import bend, call_joint, forces, friction_at, move, pull_back
+from fricmb.integrate.constrained._friction import add_friction, add_slip, friction_residual
+from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass
+from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
+
+
+class State(NamedTuple):
+    """``t`` (1,), q, v, z; what follows: a (n,), lam (m,), F, N, g (n_c,) per port, zd; mode and direction n (n_c,).
+
+    ``ga`` (n_c,) derivatives of slip velocities; ``work``, ``rate`` (n_c+2,) energies and powers: friction of every
+    port, damping, input.
+    """
+
+    t: Floats
+    q: Floats
+    v: Floats
+    z: Floats
+    a: Floats
+    lam: Floats
+    F: Floats
+    N: Floats
+    g: Floats
+    ga: Floats
+    zd: Floats
+    mode: Codes
+    n: Floats
+    work: Floats
+    rate: Floats
+
+
+def state_of(problem: Problem, start: Start) -> State:
+    """The state at a start, forces still to be found."""
+    m, nc = mechanism_of(problem), problem.n_c
+    mode = np.ones(nc, np.int8) if start.mode is None else np.array(start.mode, np.int8)
+    n = np.zeros(nc) if start.direction is None else np.array(start.direction, float)
+    q, v, z = (np.array(x, dtype=float) for x in (start.q, start.v, start.z))
+    return room(State(
+        np.array([float(start.t)]), q, v, z, np.zeros(m.n), np.zeros(m.n_rows), np.zeros(nc), np.zeros(nc),
+        np.zeros(nc), np.zeros(nc), np.zeros_like(z), mode, n, np.zeros(nc + 2), np.zeros(nc + 2),
+    ))  # fmt: skip
+
+
+class Instant(NamedTuple):
+    """Rooms for solving at one instant: the matrix and its factors, right-hand side (size,), rates of X."""
+
+    L: Layers
+    ab: Floats
+    pivots: Pivots
+    r: Floats
+    x: Floats
+    ddy: Floats
+
+
+def instant_of(problem: Problem) -> Instant:
+    """Rooms for the problem."""
+    order = mech_of(problem).order
+    size, ldab = len(order.place), int(order.sizes[3])
+    layers = Layers(np.zeros(size * ldab), np.zeros(size * ldab), np.zeros(size * ldab))
+    n_y = mechanism_of(problem).n_y
+    return room(Instant(
+        layers, np.zeros(size * ldab), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(n_y)
+    ))  # fmt: skip
+
+
+#: What of friction the matrix of an instant holds.
+NONE, STUCK, ALL = 0, 1, 2
+
+
+@kernel
+def accelerations_of_places(mech: Mech, k: Moving, a: Floats) -> None:
+    """Put second derivatives of the extended coordinates into ``ddy``, that of velocities being there already."""
+    place = mech.place
+    for e in range(k.ddy.shape[0]):
+        for i in range(place.y_start[e], place.y_start[e + 1]):
+            at = place.y_at[i]
+            k.ddy[e] += a[place.y_dof[i]] * (1.0 if at < 0 else k.grad[at])
+
+
+@kernel
+def mass_times(mech: Mech, a: Floats, r: Floats, n: int) -> None:
+    """Put ``M a`` into r[:n]."""
+    linear = mech.linear
+    for i in range(n):
+        r[i] = 0.0
+    for e in range(linear.M.shape[0]):
+        r[linear.Mi[e]] += linear.M[e] * a[linear.Mj[e]]
+
+
+@kernel
+def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats) -> float:
+    """Derivative of the slip velocity of port c, the second derivatives in ``ddy`` being complete."""
+    j = mech.port.joint[c]
+    if j < 0:
+        return bend(k, mech.port.slip, mech.port.slip.x_start[c])
+    n_x = call_joint(mech, k, j, lam, 0, mech.address)
+    at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+    value = 0.0
+    for a in range(n_x):
+        value += k.out[at + a] * bend(k, mech.joint.table, mech.joint.table.x_start[j] + a)
+        for b in range(n_x):
+            value += k.out[at + n_x + a * n_x + b] * k.x[n_x + a] * k.x[n_x + b]
+    return value
+
+
+@kernel
+def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: int) -> None:
+    """Second derivatives of the constraints into r[r0:], those of the extended coordinates being in ``ddy``."""
+    joint = mech.joint
+    for j in range(joint.n_x.shape[0]):
+        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        m = joint.row[j + 1] - joint.row[j]
+        B = m + m * n_x + n_x * n_x
+        for i in range(m):
+            value = 0.0
+            for a in range(n_x if joint.dropped[joint.row[j] + i] == 0 else 0):
+                value += k.out[m + i * n_x + a] * bend(k, joint.table, joint.table.x_start[j] + a)
+                value += k.out[B + i * n_x + a] * k.x[n_x + a]
+            r[r0 + joint.row[j] + i] = value
+
+
+@block
+def instant_residual(mech: Mech, k: Moving, w: Instant, y: State, address: Ints) -> None:
+    """Residual of motion, constraints and friction at the instant for the present a, lam, F into ``w.r``."""
+    n, m = y.q.shape[0], y.lam.shape[0]
+    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    pull_back(mech, k, w.x, 0)
+    mass_times(mech, y.a, w.r, n)
+    for i in range(n):
+        w.r[i] -= w.x[i]
+    for e in range(k.ddy.shape[0]):
+        w.ddy[e] = k.ddy[e]
+    accelerations_of_places(mech, k, y.a)
+    constraint_acceleration(mech, k, y.lam, w.r, n)
+    for c in range(y.F.shape[0]):
+        y.ga[c] = slip_acceleration(mech, k, c, y.lam)
+    for e in range(k.ddy.shape[0]):
+        k.ddy[e] = w.ddy[e]
+    friction_residual(mech, k, y.mode, y.n, y.F, 0, y.z, 0, y.N, y.g, y.ga, y.zd, w.r, n + m, mech.address)
+
+
+@block
+def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, address: Ints) -> int:
+    """Factor the matrix of the instant.
+
+    ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
+    """
+    order = mech.order
+    n_c, nz = y.F.shape[0], y.z.shape[0]
+    w.L.A0[:] = 0.0
+    w.L.A1[:] = 0.0
+    add_mass(mech, w.L)
+    add_joints(mech, k, y.lam, y.F, 0, 0, w.L, False, mech.address)
+    add_contacts(mech, k, y.N, w.L, False, mech.address)
+    size = order.place.shape[0]
+    if friction == ALL:
+        add_friction(mech, k, y.mode, y.n, y.lam, 0, y.z, 0, y.N, y.g, w.L, False, mech.address)
+    else:
+        for c in range(n_c):
+            row = size - nz - n_c + c
+            if friction == STUCK and y.mode[c] == STICK:
+                add_slip(mech, k, c, y.lam, 0, w.L, row, 1.0, False, mech.address)
+            else:
+                add(order, w.L.A1, row, row, 1.0)
+    for i in range(nz):
+        add(order, w.L.A1, size - nz + i, size - nz + i, 1.0)
+    for i in range(w.ab.shape[0]):
+        w.ab[i] = w.L.A0[i] + w.L.A1[i]
+    return factor_real(order.address, order.sizes, w.pivots, w.ab)
+
+
+@kernel
+def solve_instant(mech: Mech, w: Instant) -> None:
+    """Solve with the factored matrix: ``w.x`` from ``w.r``."""
+    place = mech.order.place
+    for i in range(place.shape[0]):
+        w.x[place[i]] = w.r[i]
+    solve_real_band(mech.order.address, mech.order.sizes, w.pivots, w.ab, w.x)
+    for i in range(place.shape[0]):
+        w.r[i] = w.x[place[i]]
+
+
+@kernel
+def largest_load(mech: Mech, y: State) -> float:
+    """Largest force of inertia, and largest constant force."""
+    linear = mech.linear
+    value = 0.0
+    for e in range(linear.M.shape[0]):
+        value = max(value, abs(linear.M[e] * y.a[linear.Mj[e]]))
+    for i in range(linear.f.shape[0]):
+        value = max(value, abs(linear.f[i]))
+    return value
+
+
+#: Newton's iterations at an instant: friction makes the problem piecewise linear, a law of the load nonlinear.
+ITERATIONS = 25
+
+
+@block
+def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: Ints) -> bool:
+    """Accelerations, reactions and friction forces of the given modes; False where there are none.
+
+    ``factored``: the matrix of practically this instant is there (it serves where there is no friction).
+    """
+    n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    last = np.inf
+    for iteration in range(ITERATIONS):
+        instant_residual(mech, k, w, y, mech.address)
+        for i in range(nz):
+            w.r[n + m + n_c + i] = 0.0
+        if not (factored and n_c == 0) and instant_matrix(mech, k, w, y, ALL, mech.address) != 0:
+            return False
+        solve_instant(mech, w)
+        change = size = 0.0
+        for i in range(n):
+            y.a[i] -= w.r[i]
+            change, size = max(change, abs(w.r[i])), max(size, abs(y.a[i]))
+        # reactions may pass through 0: what is round-off is seen from the forces of inertia and weight, too
+        force = 0.0
+        load = largest_load(mech, y)
+        for i in range(m):
+            y.lam[i] -= w.r[n + i]
+            force, load = max(force, abs(w.r[n + i])), max(load, abs(y.lam[i]))
+        for c in range(n_c):
+            y.F[c] -= w.r[n + m + c]
+            force, load = max(force, abs(w.r[n + m + c])), max(load, abs(y.F[c]))
+        if not (change < np.inf and force < np.inf):
+            return False
+        if (n_c == 0 and (iteration > 0 or not factored)) or (change <= 1e-12 * size and force <= 1e-12 * load):
+            break
+        error = max(change / max(size, 1e-300), force / max(load, 1e-300))
+        if error < 1e-9 and error >= 0.5 * last:
+            break
+        last = error
+    else:
+        return False
+    instant_residual(mech, k, w, y, mech.address)
+    powers(mech, k, y.F, y.g, y.N, y.rate, mech.address)
+    return True
+
+
+@block
+def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats, address: Ints) -> None:
+    """Powers at X with the forces of the last evaluation: friction of every port, damping, input."""
+    linear, s, port = mech.linear, k.s, mech.port
+    n_y, n_u, n_c = k.ddy.shape[0], s.ddu.shape[0], F.shape[0]
+    X = s.X
+    damping = supply = 0.0
+    for c in range(n_c):
+        out[c] = -F[c] * g[c]
+        if port.joint[c] < 0:
+            supply += F[c] * port.w[c]
+            if port.normal[c] == NORMAL_LAW:
+                gather(port.normals, c, X, s.x)
+                rate = s.x[1]
+                call(port.normals.address[c], s.x, 0, port.normals.p, port.normals.p_start[c], s.out, 0)
+                damping -= (max(N[c], 0.0) - port.N0[c] + s.out[4]) * rate
+    for j in range(n_u):
+        supply -= k.fu[j] * X[1 + 2 * n_y + n_u + j]
+    for e in range(linear.C.shape[0]):
+        i, j = linear.Ci[e], linear.Cj[e]
+        vi = X[1 + n_y + i + (n_u if i >= n_y else 0)]
+        damping += linear.C[e] * vi * X[1 + n_y + j + (n_u if j >= n_y else 0)]
+    for e in range(linear.K.shape[0]):
+        i, j = linear.Ki[e], linear.Kj[e]
+        if i < n_y and j < n_y:
+            supply -= 0.5 * linear.K[e] * (X[1 + n_y + i] * X[1 + j] - X[1 + n_y + j] * X[1 + i])
+    for e in range(linear.B.shape[0]):
+        supply += linear.B[e] * X[1 + 2 * n_y + linear.Bj[e]] * X[1 + n_y + linear.Bi[e]]
+    elements, spread = mech.elements, mech.spread
+    for e in range(elements.address.shape[0]):
+        n_x = gather(elements, e, X, s.x)
+        call(elements.address[e], s.x, 0, elements.p, elements.p_start[e], s.out, 0)
+        n_f = spread.f_start[e + 1] - spread.f_start[e]
+        damping += s.out[n_f * (1 + n_x) + 1]
+        supply += s.out[n_f * (1 + n_x) + 2]
+    out[n_c] = damping
+    out[n_c + 1] = supply

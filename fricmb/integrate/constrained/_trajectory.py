@@ -1,0 +1,135 @@
+"""A run of a mechanism: polynomials of steps, forces and reactions found again at any time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate._problem import Codes, Floats, Ints, Problem, Start
+from fricmb.integrate._tableau import radau
+from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained._sample import instants
+from fricmb.integrate.constrained._state import instant_of, state_of
+
+
+class StepTrajectory(Trajectory):
+    """A run kept step by step; arrays as in ``Record``."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        span: Floats,
+        values: Floats,
+        force: Floats,
+        mode: Codes,
+        after: Ints,
+        transitions: Transitions,
+        counters: Counters,
+        end: Start,
+        failure: str | None,
+        nodes: Floats,
+    ) -> None:
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._span, self._values, self._force, self._mode, self._after = span, values, force, mode, after
+        self._nodes = nodes
+        # every step's end, the start of the run, and right-hand values after transitions
+        steps = np.arange(len(span))
+        last = len(span) - 1
+        index = [np.array([0])] if len(span) else []
+        side = [np.array([0])] if len(span) else []
+        for k in steps:
+            index.append(np.array([k, k + 1] if after[k] and k < last else [k]))
+            side.append(np.array([1, 0] if after[k] and k < last else [1]))
+        self._row_step = np.concatenate(index) if index else np.zeros(0, int)
+        self._row_side = np.concatenate(side) if side else np.zeros(0, int)
+
+    @property
+    def t(self) -> Floats:
+        """Times of the accepted steps."""
+        if not len(self._span):
+            return np.array([self.end.t])
+        start = self._span[self._row_step, 0]
+        ends = np.append(self._span[1:, 0], self.end.t)[self._row_step]
+        times: Floats = np.where(self._row_side == 0, start, ends)
+        return times
+
+    def rows(self) -> Samples:
+        """Values at the accepted steps."""
+        if not len(self._span):
+            return self._only_start()
+        values = self._values[self._row_step, np.where(self._row_side == 0, 0, len(self._nodes) - 1)]
+        return self._complete(self.t, values, self._row_step)
+
+    def sample(self, t: Floats) -> Samples:
+        """Dense output."""
+        t = np.ascontiguousarray(t, dtype=float)
+        if not len(self._span):
+            return self._only_start(len(t))
+        step = np.clip(np.searchsorted(self._span[:, 0], t, side="right") - 1, 0, len(self._span) - 1)
+        x = np.clip((t - self._span[step, 0]) / self._span[step, 1], 0.0, 1.0)
+        weight = lagrange(self._nodes, x)
+        return self._complete(t, np.einsum("tj,tjw->tw", weight, self._values[step]), step)
+
+    def _only_start(self, count: int = 1) -> Samples:
+        values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self.problem.n_c + 2)])
+        m, nc = mechanism_of(self.problem).n_rows, self.problem.n_c
+        self._force = np.zeros((1, m + 2 * nc))
+        self._mode = np.ones((1, nc), np.int8) if self.end.mode is None else self.end.mode[None]
+        if self.end.direction is not None:
+            self._force[0, m + nc :] = self.end.direction
+        return self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))
+
+    def _complete(self, t: Floats, values: Floats, step: Ints) -> Samples:
+        problem = self.problem
+        n, nz, nc = problem.n, problem.n_z, problem.n_c
+        q, v, z, work = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
+        found = complete_at(problem, t, q, v, z, self._mode[step], self._force[step])
+        return Samples(
+            t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
+            mode=np.ascontiguousarray(self._mode[step].T), friction_loss=work[:, :nc].T.copy(),
+            damping_loss=work[:, nc].copy(), input=work[:, nc + 1].copy(),
+        )  # fmt: skip
+
+
+def complete_at(
+    problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """F, N, g (n_c, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .)."""
+    m, nc, count = mechanism_of(problem).n_rows, problem.n_c, len(t)
+    F, N, g = np.zeros((3, count, nc))
+    lam, a = np.zeros((count, m)), np.zeros((count, problem.n))
+    mech = mech_of(problem)
+    windows = _windows(mech.breakpoints, t)
+    start = Start(t=0.0, q=np.zeros(problem.n), v=np.zeros(problem.n), z=np.zeros(problem.n_z))
+    solid = np.ascontiguousarray
+    instants(
+        mech, moving_of(problem), instant_of(problem), state_of(problem, start), solid(t), q, v, z,
+        solid(mode, np.int8), solid(force, float), windows, F, N, g, lam, a,
+    )  # fmt: skip
+    return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
+
+
+def _windows(stops: Floats, t: Floats) -> Floats:
+    """Interval between two breakpoints that each time belongs to, a little inside."""
+    edges = np.concatenate([[-1e300], stops, [1e300]])
+    i = np.searchsorted(edges, t, side="right") - 1
+    low, high = edges[i], edges[np.minimum(i + 1, len(edges) - 1)]
+    return np.column_stack([low + 4e-16 * np.abs(low) * (low > -1e300), high - 4e-16 * np.abs(high) * (high < 1e300)])
+
+
+def lagrange(nodes: Floats, x: Floats) -> Floats:
+    """Weights (n_t, k) of values at the nodes for their polynomial at x."""
+    weight = np.ones((len(x), len(nodes)))
+    for j in range(len(nodes)):
+        for other in np.delete(nodes, j):
+            weight[:, j] *= (x - other) / (nodes[j] - other)
+    return weight
+
+
+def nodes_of(stages: int) -> Floats:
+    """0 and the nodes of the formula."""
+    return np.concatenate([[0.0], radau(stages).c])

@@ -1,0 +1,120 @@
+"""The protocol of joints: what ties ends together, and the friction of it."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass, fields
+from typing import Any, ClassVar
+
+from fricmb.errors import SceneError
+from fricmb.laws import FrictionLaw
+from fricmb.scene._axes import check_ends
+from fricmb.scene._forms import LinearForm
+from fricmb.scene._part import GROUND, End, Part
+from fricmb.values import Parameter, is_expression, is_plain
+
+
+@dataclass(frozen=True, eq=False)
+class Joint(Part):
+    """Base of joints.
+
+    An author writes a frozen dataclass with its ends and numbers, and states
+
+    - :meth:`local_coordinates`: the coordinates x it depends on, as linear forms in named motions;
+    - :meth:`define_constraint`: expressions in x that stay 0, in SymPy, where numeric fields are symbols.
+
+    Every constraint has a multiplier ``lam``, and ``lam dphi/dx`` is the force on x: that is ``sol.reaction(name)``.
+    All derivatives are derived, once for each type.  A joint that takes a friction law also states
+
+    - :meth:`define_slip`: factors s(x) of the slip velocity ``s . x'``;
+    - :meth:`define_load`: the normal force N(x, lam) >= 0.
+
+    Parameters
+    ----------
+    name : str
+    a, b : RigidBody, one of its points, Body, Driven, ground_point(x, y) or GROUND
+        b defaults to GROUND.
+    friction : FrictionLaw, optional
+        Its force opposes the slip of a relative to b.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> import fricmb as fm
+    >>> @dataclass(frozen=True, eq=False)
+    ... class Parabola(fm.Joint):
+    ...     '''Keeps a point on y = x^2.'''
+    ...     def local_coordinates(self):
+    ...         return (self.a.motion("x"), self.a.motion("y"))
+    ...     def define_constraint(self, x):
+    ...         return (x[1] - x[0] ** 2,)
+    >>> bead = fm.Body("bead", mass=1.0, axes="xy")
+    >>> len(fm.Scene("bowl", [bead, Parabola("wire", bead), fm.Gravity("g")]).joints)
+    1
+    """
+
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b")
+    #: Whether the joint has slip and load.
+    takes_friction: ClassVar[bool] = False
+
+    a: End
+    b: End = GROUND
+    _: KW_ONLY
+    friction: FrictionLaw | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        a, b = check_ends(self, self.a, self.b)
+        if a.owner is b.owner:
+            raise SceneError(f"{self._label()}: a and b must belong to different parts, both are of {a.owner.name!r}")
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in self._fixed or self._takes_expression(field.name):
+                continue
+            if is_plain(value) or isinstance(value, Parameter) or is_expression(value):
+                self._set(field.name, self._number(field.name, value))
+        self._check_positive()
+        if self.friction is not None:
+            if not self.takes_friction:
+                self._refuse("friction", self.friction, "left out: this joint has no slip")
+            if not isinstance(self.friction, FrictionLaw):
+                self._refuse("friction", self.friction, "a friction law, such as fm.laws.Coulomb(mu_s=0.5)")
+            if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:
+                self.friction.check()
+
+    @property
+    def law(self) -> FrictionLaw | None:
+        """The friction law."""
+        return self.friction
+
+    def _takes_expression(self, field: str) -> bool:
+        """Whether a field may hold an expression of time."""
+        return False
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether its single multiplier pushes only (lam >= 0)."""
+        return False
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """The coordinates x that the joint depends on; their velocities follow."""
+        raise NotImplementedError(f"{type(self).__name__} must define local_coordinates(self)")
+
+    def drives(self) -> tuple[Any, ...]:
+        """Prescribed functions of time that follow in x: ("value" or "rate", expression, start)."""
+        return ()
+
+    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Expressions that stay 0."""
+        raise NotImplementedError(f"{type(self).__name__} must define define_constraint(self, x)")
+
+    def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Factors of the rates x' in the slip velocity of a relative to b."""
+        raise NotImplementedError(f"{type(self).__name__} must define define_slip(self, x)")
+
+    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
+        """Normal force of the friction, >= 0."""
+        raise NotImplementedError(f"{type(self).__name__} must define define_load(self, x, lam)")
+
+    def observed(self) -> dict[str, LinearForm]:
+        """Relative motions of the joint by name (its joint coordinates): ``sol["hinge.angle"]``."""
+        return {}

@@ -1,0 +1,241 @@
+"""From a scene with bodies that turn or joints to arrays: points become extended coordinates, joints constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from fricmb.equations import joint_template, numbers, place_template, signal_expression, uniform_signal
+from fricmb.errors import SceneError
+from fricmb.integrate._mechanism import Entries, Joints, Mechanism, Places
+from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
+from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody
+from fricmb.system import _motions
+from fricmb.system._breakpoints import switches_of
+from fricmb.system._contacts import ContactArrays
+from fricmb.system._mechanism_system import MechanismSystem
+from fricmb.system._structure import Store, Structure
+from fricmb.system._tables import Row, TableBuilder
+from fricmb.values import is_expression, value_of
+
+
+@dataclass(kw_only=True)
+class JointArrays:
+    """Joints under construction."""
+
+    motions: _motions.Motions
+    contacts: ContactArrays
+    table: TableBuilder = field(default_factory=TableBuilder)
+    rows: list[int] = field(default_factory=lambda: [0])
+    port: list[int] = field(default_factory=list)
+    one_sided: list[int] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+    forms: list[tuple[Row, ...]] = field(default_factory=list)
+
+    def add(self, joint: Joint) -> None:
+        """Append a joint, and its friction to the contacts."""
+        template = joint_template(joint)
+        rows = [self.motions.row(form) for form in joint.local_coordinates()]
+        rows += [self._drive(joint, i, drive) for i, drive in enumerate(joint.drives())]
+        self.table.add(template.address, numbers(joint), [*(r.value() for r in rows), *(r.rate() for r in rows)])
+        self.rows.append(self.rows[-1] + int(template.facts["rows"]))
+        self.one_sided.append(int(joint.one_sided))
+        self.names.append(joint.name)
+        self.forms.append(tuple(rows))
+        self.port.append(-1)
+        if joint.friction is not None:
+            self.port[-1] = len(self.contacts.law)
+            self.contacts.add_joint(joint)
+
+    def _drive(self, joint: Joint, i: int, drive: tuple[str, Any, float]) -> Row:
+        given, value, start = drive
+        name = joint.name if i == 0 else f"{joint.name}.{i}"
+        if is_expression(value) and not _is_number(value):
+            what = f"{type(joint).__name__} {joint.name!r}"
+            j = self.motions.signals.add(name, lambda: signal_expression(value, given, start, what))
+        else:
+            number = float(value_of(value))
+            rate, offset = (0.0, number + start) if given == "value" else (number, start)
+            j = self.motions.signals.add(name, lambda: uniform_signal(rate, offset))
+        return Row((), ((j, 1.0),))
+
+    def build(self, n_y: int, n_u: int) -> Joints:
+        """The arrays."""
+        return Joints(
+            table=self.table.build(n_y, n_u),
+            row=np.array(self.rows, dtype=np.int64),
+            port=np.array(self.port, dtype=np.int64),
+            one_sided=np.array(self.one_sided, dtype=np.int8),
+            names=tuple(self.names),
+            dropped=np.zeros(self.rows[-1], dtype=np.int8),
+        )
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        value_of(value)
+    except TypeError:
+        return False
+    return True
+
+
+def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
+    """The arrays of a scene with bodies that turn or joints."""
+    dofs = scene.dof_names if plan is None else plan.dofs
+    kept = None if plan is None else set(plan.parts)
+    parts = [part for part in scene.parts if kept is None or part.name in kept]
+    n = len(dofs)
+    points = _used_points(scene, parts)
+    extended = (*dofs, *(f"{point}.{c}" for point in points for c in "xy"))
+    index = {name: i for i, name in enumerate(extended)}
+    signals = _motions.Signals()
+    motions = _motions.Motions(scene, index, signals)
+    structure = Structure(n=len(extended), motions=motions)
+    contacts = ContactArrays(motions=motions)
+    joints = JointArrays(motions=motions, contacts=contacts)
+    for part in parts:
+        _add(part, structure, contacts, joints, index)
+    for gravity in (part for part in parts if isinstance(part, Gravity)):
+        _add_gravity(gravity, parts, structure, index)
+    n_y, n_u = len(extended), len(signals.held)
+    elements = structure.elements(n_u)
+    mechanism = Mechanism(
+        n=n,
+        n_places=n_y - n,
+        M=Entries.of(structure.M),
+        K=Entries.of(structure.K),
+        C=Entries.of(structure.C),
+        B=Entries.of(structure.B),
+        f=_vector(structure.f, n_y + n_u),
+        places=_places(scene, points, index),
+        joints=joints.build(n_y, n_u),
+        slip=contacts.slip_table(n_y, n_u),
+    )
+    timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
+    known, searched = switches_of(timed)
+    table = signals.table.build(n_y, n_u)
+    problem = Problem(
+        linear=_no_structure(n, n_u),
+        signals=Signals(table=table, breakpoints=known),
+        contacts=contacts.build(n_y, n_u, dense=False),
+        elements=elements,
+        dof_names=tuple(dofs),
+        contact_names=tuple(contacts.names),
+        mechanism=mechanism,
+    )
+    q, v = scene.initial_values(dofs)
+    problem = without_redundant(problem, scene, Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)))
+    return MechanismSystem(
+        problem=problem,
+        start=Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)),
+        contact_axes=tuple(contacts.labels),
+        state_names=tuple(contacts.states),
+        stores=tuple(structure.stores),
+        switches=searched,
+        joint_forms=dict(zip(joints.names, joints.forms, strict=True)),
+    )
+
+
+def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
+    """The problem with constraints marked that follow from others; friction needs reactions that are determined."""
+    from fricmb.integrate.constrained._assemble import redundancy
+
+    found = redundancy(problem, start)
+    mechanism = problem.mechanism
+    if not found.rows.size or mechanism is None:
+        return problem
+    for name in found.joints:
+        if scene[name].friction is not None:
+            others = ", ".join(repr(other) for other in found.joints if other != name)
+            raise SceneError(
+                f"{type(scene[name]).__name__} {name!r}: its reaction, the normal force of its friction, is not"
+                f" determined, because constraints of {others} and {name!r} are redundant"
+            )
+    dropped = mechanism.joints.dropped.copy()
+    dropped[found.rows] = 1
+    return replace(problem, mechanism=replace(mechanism, joints=replace(mechanism.joints, dropped=dropped)))
+
+
+def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: JointArrays, index: dict[str, int]) -> None:
+    if isinstance(part, RigidBody):
+        m, inertia = float(value_of(part.mass)), float(value_of(part.inertia))
+        structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, (m, m, inertia), strict=True))
+    elif isinstance(part, Body | ModalBody):
+        structure.add_body(part, index)
+    elif isinstance(part, MatrixElement):
+        structure.add_matrix(part, index)
+    elif isinstance(part, Element):
+        structure.add_element(part)
+    elif isinstance(part, Contact):
+        contacts.add(part)
+    elif isinstance(part, Joint):
+        joints.add(part)
+
+
+def _add_gravity(gravity: Gravity, parts: Iterable[Any], structure: Structure, index: dict[str, int]) -> None:
+    rows: list[Row] = []
+    f: list[tuple[int, int, float]] = []
+    for body in parts:
+        if not isinstance(body, Body | RigidBody):
+            continue
+        mass = float(value_of(body.mass))
+        for letter, value in gravity.acceleration.items():
+            name = f"{body.name}.{letter}"
+            if name in index and float(value_of(value)) != 0.0:
+                weight = mass * float(value_of(value))
+                structure.f.append((index[name], weight))
+                f.append((len(rows), 0, weight))
+                rows.append(Row(((index[name], 1.0),)))
+    structure.stores.append(Store(name=gravity.name, rows=tuple(rows), K=(), f=f))
+
+
+def _used_points(scene: Any, parts: Iterable[Any]) -> list[str]:
+    """Points of rigid bodies on which something depends."""
+    known = scene.rigid_points
+    used: set[str] = set()
+    for part in parts:
+        forms = []
+        if isinstance(part, Element | Joint):
+            forms = list(part.local_coordinates())
+        elif isinstance(part, Contact):
+            forms = [direction.form for direction in part.directions()]
+            normal = part.normal_direction()
+            forms += [] if normal is None else [normal.form]
+        names = [name for form in forms for name in form.motions]
+        names += [name for uses in part.uses().values() for name in uses.motions]
+        used |= {name.rpartition(".")[0] for name in names}
+    return [name for name in known if name in used]
+
+
+def _places(scene: Any, points: list[str], index: dict[str, int]) -> Places:
+    known = scene.rigid_points
+    templates = [place_template(known[name].body) for name in points]
+    offsets = [known[name].offset for name in points]
+    dofs = [[index[d] for d in known[name].body.dof_names] for name in points]
+
+    def starts(lengths: list[int]) -> Any:
+        return np.concatenate(([0], np.cumsum(lengths))).astype(np.int64)
+
+    return Places(
+        address=np.array([t.address for t in templates], dtype=np.int64),
+        p_start=starts([2] * len(points)),
+        p=np.array([x for offset in offsets for x in offset], dtype=float),
+        dof_start=starts([len(d) for d in dofs]),
+        dof=np.array([i for d in dofs for i in d], dtype=np.int64),
+        first=starts([int(t.facts["count"]) for t in templates]),
+    )
+
+
+def _vector(entries: list[tuple[int, float]], length: int) -> Floats:
+    values = np.zeros(length)
+    for i, value in entries:
+        values[i] += value
+    return values
+
+
+def _no_structure(n: int, n_u: int) -> Linear:
+    """What the problem keeps of a linear structure where a mechanism holds it: the number of dofs."""
+    return Linear(M=np.zeros((n, 0)), Kx=np.zeros((0, 0)), Cx=np.zeros((0, 0)), fx=np.zeros(0), B=np.zeros((n, n_u)))

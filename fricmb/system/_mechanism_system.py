@@ -1,0 +1,97 @@
+"""A mechanism as arrays, with names, energies and reactions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fricmb.errors import unknown_name
+from fricmb.integrate._mechanism import Mechanism
+from fricmb.integrate._problem import Floats
+from fricmb.integrate._trajectory import Samples
+from fricmb.system._evaluate import _each
+from fricmb.system._system import System
+from fricmb.system._tables import Row
+
+
+@dataclass(frozen=True, kw_only=True)
+class MechanismSystem(System):
+    """See :class:`System`.
+
+    ``joint_forms``: local coordinates of every joint by its name.
+    """
+
+    joint_forms: dict[str, tuple[Row, ...]] = field(default_factory=dict)
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the problem."""
+        if self.problem.mechanism is None:
+            raise TypeError("this system has no mechanism")
+        return self.problem.mechanism
+
+    def kinetic(self, samples: Samples) -> Floats:
+        """Kinetic energy (n_t,)."""
+        M, v = self.mechanism.M, samples.v
+        energy: Floats = 0.5 * (M.value @ (v[M.row] * v[M.column]))
+        return energy
+
+    def potential(self, samples: Samples) -> Floats:
+        """Stored energy (n_t,), weight included."""
+        return super().potential(self._extended(samples))
+
+    def potentials(self, samples: Samples) -> dict[str, Floats]:
+        """Stored energy by part."""
+        return super().potentials(self._extended(samples))
+
+    def _extended(self, samples: Samples) -> Samples:
+        p, rate = place_motions(self.mechanism, samples.q, samples.v)
+        return replace(samples, q=np.concatenate([samples.q, p]), v=np.concatenate([samples.v, rate]))
+
+    def reaction(self, joint: str, samples: Samples) -> Floats:
+        """Multipliers of a joint (m, n_t) at states with their friction modes."""
+        if joint not in self.mechanism.joints.names:
+            raise unknown_name("joint", joint, self.mechanism.joints.names)
+        from fricmb.integrate.constrained._trajectory import complete_at
+
+        joints, nc = self.mechanism.joints, self.problem.n_c
+        count, m = samples.t.size, self.mechanism.n_rows
+        force = np.zeros((count, m + 2 * nc))
+        force[:, m : m + nc] = samples.F.T
+        force[:, m + nc :] = np.where(samples.F != 0.0, -np.sign(samples.F), np.sign(samples.g)).T
+        q, v, z = (np.ascontiguousarray(x.T) for x in (samples.q, samples.v, samples.z))
+        found = complete_at(self.problem, samples.t, q, v, z, samples.mode.T, force)
+        lam = self._least_norm(samples, found[3])
+        i = joints.names.index(joint)
+        return lam[joints.row[i] : joints.row[i + 1]]
+
+    def _least_norm(self, samples: Samples, lam: Floats) -> Floats:
+        """Without what redundant constraints may push against one another."""
+        if not self.mechanism.joints.dropped.any():
+            return lam
+        from fricmb.integrate.constrained._assemble import RANK, constraints_at
+
+        found = np.empty_like(lam)
+        for i, t in enumerate(samples.t.tolist()):
+            G = constraints_at(self.problem, t, samples.q[:, i], samples.v[:, i]).G
+            found[:, i] = np.linalg.lstsq(G.T, G.T @ lam[:, i], rcond=RANK)[0]
+        return found
+
+
+def place_motions(mechanism: Mechanism, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Positions and velocities (n_places, n_t) of the points fixed in bodies."""
+    places, count = mechanism.places, q.shape[1]
+    p, rate = np.zeros((2, mechanism.n_places, count))
+    for k in range(len(places.address)):
+        dofs = places.dof[places.dof_start[k] : places.dof_start[k + 1]]
+        rows = slice(int(places.first[k]), int(places.first[k + 1]))
+        c, b = rows.stop - rows.start, len(dofs)
+        n_out = c * (1 + b + b * b)
+        out = np.zeros(count * n_out + 1)
+        offset = np.append(places.p[places.p_start[k] : places.p_start[k + 1]], 0.0)
+        _each(int(places.address[k]), np.append(q[dofs].T.ravel(), 0.0), b, offset, out, n_out, count)
+        values = out[:-1].reshape(count, n_out)
+        p[rows] = values[:, :c].T
+        rate[rows] = np.einsum("tcb,bt->ct", values[:, c : c + c * b].reshape(count, c, b), v[dofs])
+    return p, rate
