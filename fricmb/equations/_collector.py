@@ -25,15 +25,40 @@ class Collector:
         """Value and rate of a linear form."""
         value, rate = sympy.sympify(exact(form.constant)), sympy.S.Zero
         for name, coefficient in self.scene.expand(form).terms:
-            position, velocity, _ = coordinate_symbols(name)
+            position, velocity = self._named(name)
             value += exact(coefficient) * position
             rate += exact(coefficient) * velocity
         return value, rate
 
+    def _named(self, name: str) -> tuple[Any, Any]:
+        """Value and rate of a named motion; of a point of a rigid body as a function of the body's coordinates."""
+        turned = self._turned(name)
+        if turned is None:
+            position, velocity, _ = coordinate_symbols(name)
+            return position, velocity
+        position, gradient = turned
+        return position, sum(slope * coordinate_symbols(dof)[1] for dof, slope in gradient.items())
+
+    def _turned(self, name: str) -> tuple[Any, dict[str, Any]] | None:
+        """Position and gradient of a coordinate of a point of a rigid body; None for another motion."""
+        owner, _, letter = name.rpartition(".")
+        point = self.scene.rigid_points.get(owner)
+        if point is None:
+            return None
+        dofs = point.body.dof_names
+        q = [coordinate_symbols(dof)[0] for dof in dofs]
+        position = point.body.define_point(q, [exact(x) for x in point.offset])["xy".index(letter)]
+        slopes = {dof: sympy.diff(position, symbol) for dof, symbol in zip(dofs, q, strict=True)}
+        return position, {dof: slope for dof, slope in slopes.items() if slope != 0}
+
     def row(self, form: Any) -> list[Any]:
         """Coefficients of a linear form on the degrees of freedom."""
-        terms = dict(self.scene.expand(form).terms)
-        return [exact(terms.get(name, 0.0)) for name in self.scene.dof_names]
+        terms: dict[str, Any] = {}
+        for name, coefficient in self.scene.expand(form).terms:
+            turned = self._turned(name)
+            for dof, slope in ({name: 1} if turned is None else turned[1]).items():
+                terms[dof] = terms.get(dof, sympy.S.Zero) + exact(coefficient) * slope
+        return [terms.get(name, sympy.S.Zero) for name in self.scene.dof_names]
 
     def number(self, part: Any, path: str, value: Any) -> Any:
         """Symbol of a slot, 0 where its number is 0."""

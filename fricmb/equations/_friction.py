@@ -86,7 +86,9 @@ def friction(collector: Any, contact: Any) -> Friction:
         velocity.append(rate + (collector.expression(slide) if is_expression(slide) else sympy.sympify(slide)))
     rows = [(s, collector.row(direction.form)) for s, direction in zip(force, directions, strict=True)]
     normal, pushes = _normal_force(collector, contact)
-    coefficient, break_away, slip, states = _law(collector, contact, tuple(velocity), normal)
+    letters = [direction.label for direction in directions]
+    found = law_terms(collector, contact, ("law", contact.law), tuple(velocity), normal, letters)
+    coefficient, break_away, slip, states = found
     return Friction(
         name=contact.name,
         force=force,
@@ -114,18 +116,20 @@ def _normal_force(collector: Any, contact: Any) -> tuple[Any, list[tuple[Any, li
     return pressed, [(pressed - preload, collector.row(direction.form))]
 
 
-def _law(collector: Any, contact: Any, velocity: tuple[Any, ...], normal: Any) -> tuple[Any, Any, Any, dict[Any, Any]]:
-    law = contact.law
+def law_terms(
+    collector: Any, contact: Any, held_law: tuple[str, Any], velocity: tuple[Any, ...], normal: Any, letters: list[str]
+) -> tuple[Any, Any, Any, dict[Any, Any]]:
+    """Coefficient, break-away coefficient, force in slip and rates of states of a law, held in the named field."""
+    field, law = held_law
     if law.compiled_coefficient() is not None:
         mu = sympy.Function(f"mu_{contact.name}")(_norm(velocity))
         limit = sympy.Function(f"mu_{contact.name}")(0)
         return mu, limit, _opposing(mu, normal, velocity), {}
     stand = symbolic(law)
-    replacement = collector.parameters(contact, law, "law.")
+    replacement = collector.parameters(contact, law, f"{field}.")
     if law.kind == "smooth":
         d = len(velocity)
         v, N, z, force, rate = force_expression(law, stand, d)
-        letters = [direction.label for direction in contact.directions()]
         names = [subscript(*_named(law, label, contact.name, letters)) for label in law.state_labels(letters)]
         replacement |= dict(zip((*v, *z), (*velocity, *names), strict=True)) | {N: normal}
         states = {name: e.xreplace(replacement) for name, e in zip(names, rate, strict=True)}
@@ -135,7 +139,7 @@ def _law(collector: Any, contact: Any, velocity: tuple[Any, ...], normal: Any) -
     if path is None:
         break_away = _at_rest(mu, r).xreplace(replacement | {N: normal})
     else:
-        break_away = collector.number(contact, f"law.{path}", law.slots()[path])
+        break_away = collector.number(contact, f"{field}.{path}", law.slots()[path])
     scale = [sympy.sympify(s).xreplace(replacement) for s in stand.standin.axis_scale() or (1,) * len(velocity)]
     scaled = tuple(s * g for s, g in zip(scale, velocity, strict=True))
     mu = mu.xreplace(replacement | {r: _norm(scaled), N: normal})

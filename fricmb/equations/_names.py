@@ -7,12 +7,13 @@ from typing import Any
 
 import sympy
 
-from fricmb.scene import Body, Contact, Damper, Force, ModalBody, PointDamper, PointSpring, Spring
+from fricmb.scene import Body, Contact, Damper, Force, ModalBody, PointDamper, PointSpring, RigidBody, Spring
 from fricmb.values import Parameter, is_expression
 
 #: Letters for slots by type; other slots keep their name.
 _LETTERS = {
     Body: {"mass": "m"},
+    RigidBody: {"mass": "m", "inertia": "J"},
     Spring: {"stiffness": "k", "cubic": "kappa", "length": "L"},
     PointSpring: {"stiffness": "k", "length": "L", "anchor": "a"},
     Damper: {"damping": "c"},
@@ -35,6 +36,8 @@ def coordinate_symbols(dof: str) -> tuple[Any, Any, Any]:
     parts = owner.split(".")
     if letter.startswith("mode"):
         parts, letter = [*parts, letter.removeprefix("mode")], "eta"
+    if letter == "angle":
+        letter = "theta"
     return tuple(subscript(letter + dots, *parts) for dots in ("", "dot", "ddot"))
 
 
@@ -46,7 +49,7 @@ def slot_symbol(part: Any, path: str, value: Any) -> Any:
         return value.xreplace({s: parameter_symbol(s.name) for s in value.free_symbols})
     head, _, rest = path.partition(".")
     letters = next((held for kind, held in _LETTERS.items() if isinstance(part, kind)), {})
-    if head in ("law", "normal_force") and rest:
+    if head in ("law", "normal_force", "friction") and rest:
         name, _, index = rest.partition(".")
         return subscript(_LAW_LETTERS.get(name, name), *([index] if index else []), part.name)
     letter = letters.get(head, head)

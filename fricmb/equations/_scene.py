@@ -12,8 +12,20 @@ import sympy
 from fricmb.equations._authors import element_math
 from fricmb.equations._collector import Collector, exact
 from fricmb.equations._friction import Friction, friction
+from fricmb.equations._mechanism import Constraint, add_gravity, add_joint, add_rigid_body
 from fricmb.equations._names import coordinate_symbols, subscript
-from fricmb.scene import Body, Contact, Driven, Element, Force, MatrixElement, ModalBody
+from fricmb.scene import (
+    Body,
+    Contact,
+    Driven,
+    Element,
+    Force,
+    Gravity,
+    Joint,
+    MatrixElement,
+    ModalBody,
+    RigidBody,
+)
 from fricmb.values import is_expression, value_of
 
 
@@ -36,6 +48,8 @@ class SceneEquations:
     values : dict of Symbol to float
         Numbers behind the symbols.
     t : Symbol
+    constraints : tuple of Constraint
+        Of each joint expressions that stay 0, and the symbols of their multipliers in ``rhs``.
 
     Notes
     -----
@@ -53,6 +67,7 @@ class SceneEquations:
     prescribed: dict[Any, Any]
     values: dict[Any, float]
     t: Any
+    constraints: tuple[Constraint, ...] = ()
 
     @property
     def equations(self) -> list[Any]:
@@ -78,6 +93,7 @@ class SceneEquations:
     def latex(self) -> str:
         r"""The equations of motion, the friction laws and the prescribed motions as an ``align*`` environment."""
         rows = [f"{sympy.latex(eq.lhs)} &= {sympy.latex(eq.rhs)}" for eq in self.equations]
+        rows += [row for constraint in self.constraints for row in constraint.latex_rows()]
         rows += [row for contact in self.contacts for row in contact.latex_rows()]
         rows += [f"{sympy.latex(symbol)} &= {sympy.latex(e)}" for symbol, e in self.prescribed.items()]
         return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
@@ -88,6 +104,7 @@ class SceneEquations:
     def __str__(self) -> str:
         rows = [f"equations of motion of {self.scene!r}"]
         rows += [f"  {eq.lhs} = {eq.rhs}" for eq in self.equations]
+        rows += [f"  {row}" for constraint in self.constraints for row in constraint.text_rows()]
         rows += [f"  {row}" for contact in self.contacts for row in contact.text_rows()]
         rows += [f"  {symbol} = {sympy.sstr(e, full_prec=False)}" for symbol, e in self.prescribed.items()]
         return "\n".join(rows)
@@ -108,8 +125,17 @@ def _derive(scene: Any) -> SceneEquations:
     M, rhs = sympy.zeros(n, n), sympy.zeros(n, 1)
     index = {name: i for i, name in enumerate(scene.dof_names)}
     contacts = []
+    constraints: list[Constraint] = []
     for part in scene.parts:
-        if isinstance(part, Body | ModalBody):
+        if isinstance(part, RigidBody):
+            add_rigid_body(collector, part, index, M)
+        elif isinstance(part, Gravity):
+            add_gravity(collector, part, index, rhs)
+        elif isinstance(part, Joint):
+            constraint, dry = add_joint(collector, part, rhs)
+            constraints.append(constraint)
+            contacts += [] if dry is None else [dry]
+        elif isinstance(part, Body | ModalBody):
             _add_body(collector, part, index, M, rhs)
         elif isinstance(part, MatrixElement):
             _add_matrix(collector, part, index, M, rhs)
@@ -130,6 +156,7 @@ def _derive(scene: Any) -> SceneEquations:
         M=sympy.ImmutableMatrix(M),
         rhs=sympy.ImmutableMatrix(rhs),
         contacts=tuple(contacts),
+        constraints=tuple(constraints),
         prescribed=collector.prescribed,
         values=collector.values,
         t=collector.t,
