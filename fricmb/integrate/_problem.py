@@ -234,7 +234,7 @@ class Problem:
 
     ``omega``, ``zeta``: angular frequencies and damping ratios of the linear structure without friction.
     ``contact_names``, ``dof_names`` serve messages alone.  ``mechanism``: bodies that turn and joints; then ``linear``
-    is empty but for the number of dofs, and everything else sees extended coordinates (see ``_mechanism``).
+    is empty, and everything else sees extended coordinates (see ``_mechanism``).
     """
 
     linear: Linear
@@ -250,6 +250,8 @@ class Problem:
     @property
     def n(self) -> int:
         """Number of degrees of freedom."""
+        if self.mechanism is not None:
+            return self.mechanism.n
         return len(self.linear.fx) - self.n_u
 
     @property

@@ -237,5 +237,5 @@ def _vector(entries: list[tuple[int, float]], length: int) -> Floats:
 
 
 def _no_structure(n: int, n_u: int) -> Linear:
-    """What the problem keeps of a linear structure where a mechanism holds it: the number of dofs."""
-    return Linear(M=np.zeros((n, 0)), Kx=np.zeros((0, 0)), Cx=np.zeros((0, 0)), fx=np.zeros(0), B=np.zeros((n, n_u)))
+    """What the problem keeps of a linear structure where a mechanism holds it: nothing."""
+    return Linear(M=np.zeros((0, 0)), Kx=np.zeros((0, 0)), Cx=np.zeros((0, 0)), fx=np.zeros(0), B=np.zeros((n, n_u)))
