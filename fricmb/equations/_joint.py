@@ -32,7 +32,7 @@ class JointMath:
 
 def joint_math(joint: Any, n: int) -> JointMath:
     """Ask a joint type for its statements; ``n`` local coordinates, drives included."""
-    stand = symbolic(joint)
+    stand = symbolic(joint.bare())
     x, v = (tuple(sympy.Symbol(f"{letter}_{i}", real=True) for i in range(n)) for letter in "xv")
     label = f"{type(joint).__name__} {joint.name!r}"
     phi = _vector(stand.standin.define_constraint(x), label, "define_constraint")

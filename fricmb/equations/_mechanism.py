@@ -57,7 +57,7 @@ def add_joint(collector: Collector, joint: Joint, rhs: Any) -> tuple[Constraint,
     """Reactions and friction of a joint."""
     forms, drives = joint.local_coordinates(), joint.drives()
     math = joint_math(joint, len(forms) + len(drives))
-    replacement = collector.parameters(joint, joint)
+    replacement = collector.parameters(joint, joint.bare())
     multipliers = tuple(
         subscript("lambda", joint.name, *([str(i + 1)] if len(math.phi) > 1 else [])) for i in range(len(math.phi))
     )

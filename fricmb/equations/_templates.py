@@ -9,7 +9,7 @@ from functools import cache, cached_property, lru_cache
 from typing import Any
 
 from fricmb.equations import _store
-from fricmb.equations._values import fingerprint, structure
+from fricmb.equations._values import fingerprint, source_fingerprint, structure
 
 _NAMES = {name: getattr(math, name) for name in dir(math) if not name.startswith("_")}
 
@@ -236,7 +236,8 @@ def _normal_text(law: Any) -> str:
 def joint_template(joint: Any) -> Template:
     """Template of a joint's type; the layout of its output is that of ``integrate._mechanism.Joints``."""
     n = len(joint.local_coordinates()) + len(joint.drives())
-    shape = ("joint", structure(joint), n)
+    bare, dry = joint.bare(), joint.friction is not None
+    shape = ("joint", structure(bare), n, dry)
     found = _found.get(shape)
     if found is None:
 
@@ -245,8 +246,8 @@ def joint_template(joint: Any) -> Template:
 
             return derive_joint(joint_math(joint, n), type(joint).__name__)
 
-        content = _content(joint, structure(joint), lambda: _joint_text(joint, n))
-        key = [*content, n, joint.friction is not None]
+        content = _content(bare, structure(bare), lambda: _joint_text(joint, n))
+        key = [*content, n, dry]
         found = _found[shape] = get("joint", key, derive)
     return found
 

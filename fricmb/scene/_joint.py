@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from fricmb.errors import SceneError
 from fricmb.laws import FrictionLaw
@@ -80,6 +80,13 @@ class Joint(Part):
                 self._refuse("friction", self.friction, "a friction law, such as fm.laws.Coulomb(mu_s=0.5)")
             if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:
                 self.friction.check()
+
+    def bare(self) -> Self:
+        """The same without its law, whose numbers are no part of the joint's formulas."""
+        copy = object.__new__(type(self))
+        for field in fields(self):
+            object.__setattr__(copy, field.name, None if field.name == "friction" else getattr(self, field.name))
+        return copy
 
     @property
     def law(self) -> FrictionLaw | None:

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
-from fricmb.scene import Body, Contact, Element, MatrixElement, ModalBody
+from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
+from fricmb.system._gravity import add_gravity
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._spectrum import check_mass, check_masses, spectrum
 from fricmb.system._structure import Structure, check_initial
@@ -78,6 +79,8 @@ def _build(scene: Any, plan: Any) -> System:
             structure.add_element(part)
         elif isinstance(part, Contact):
             contacts.add(part)
+        elif isinstance(part, Gravity):
+            add_gravity(part, parts, structure, index)
     n, n_u = len(dofs), len(signals.held)
     linear = structure.linear(n_u)
     omega, zeta = _spectrum(linear, n, dofs)

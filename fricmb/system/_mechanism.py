@@ -16,8 +16,9 @@ from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, 
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
+from fricmb.system._gravity import add_gravity
 from fricmb.system._mechanism_system import MechanismSystem
-from fricmb.system._structure import Store, Structure
+from fricmb.system._structure import Structure
 from fricmb.system._tables import Row, TableBuilder
 from fricmb.values import is_expression, value_of
 
@@ -40,7 +41,7 @@ class JointArrays:
         template = joint_template(joint)
         rows = [self.motions.row(form) for form in joint.local_coordinates()]
         rows += [self._drive(joint, i, drive) for i, drive in enumerate(joint.drives())]
-        self.table.add(template.address, numbers(joint), [*(r.value() for r in rows), *(r.rate() for r in rows)])
+        self.table.add(template.address, numbers(joint.bare()), [*(r.value() for r in rows), *(r.rate() for r in rows)])
         self.rows.append(self.rows[-1] + int(template.facts["rows"]))
         self.one_sided.append(int(joint.one_sided))
         self.names.append(joint.name)
@@ -99,7 +100,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     for part in parts:
         _add(part, structure, contacts, joints, index)
     for gravity in (part for part in parts if isinstance(part, Gravity)):
-        _add_gravity(gravity, parts, structure, index)
+        add_gravity(gravity, parts, structure, index)
     n_y, n_u = len(extended), len(signals.held)
     elements = structure.elements(n_u)
     mechanism = Mechanism(
@@ -132,6 +133,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         problem=problem,
         start=Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)),
         contact_axes=tuple(contacts.labels),
+        axis_scale=tuple(contacts.scale),
         state_names=tuple(contacts.states),
         stores=tuple(structure.stores),
         switches=searched,
@@ -170,26 +172,14 @@ def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: Joint
     elif isinstance(part, Element):
         structure.add_element(part)
     elif isinstance(part, Contact):
+        if len(part.directions()) > 1:
+            raise SceneError(
+                f"Contact {part.name!r}: axes must be one direction in a scene with bodies that turn or joints, got"
+                f" {''.join(direction.label for direction in part.directions())!r}"
+            )
         contacts.add(part)
     elif isinstance(part, Joint):
         joints.add(part)
-
-
-def _add_gravity(gravity: Gravity, parts: Iterable[Any], structure: Structure, index: dict[str, int]) -> None:
-    rows: list[Row] = []
-    f: list[tuple[int, int, float]] = []
-    for body in parts:
-        if not isinstance(body, Body | RigidBody):
-            continue
-        mass = float(value_of(body.mass))
-        for letter, value in gravity.acceleration.items():
-            name = f"{body.name}.{letter}"
-            if name in index and float(value_of(value)) != 0.0:
-                weight = mass * float(value_of(value))
-                structure.f.append((index[name], weight))
-                f.append((len(rows), 0, weight))
-                rows.append(Row(((index[name], 1.0),)))
-    structure.stores.append(Store(name=gravity.name, rows=tuple(rows), K=(), f=f))
 
 
 def _used_points(scene: Any, parts: Iterable[Any]) -> list[str]:

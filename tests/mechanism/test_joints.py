@@ -47,8 +47,7 @@ def test_slider_crank_is_a_quadrature():
     end = sol["crank.angle"][-1]
     knots = np.append(np.arange(0.3, end, 1.0), end)
     total = sum(
-        quad(lambda a: np.sqrt(inertia(a) / energy), low, high, epsabs=1e-13)[0]
-        for low, high in pairwise(knots)
+        quad(lambda a: np.sqrt(inertia(a) / energy), low, high, epsabs=1e-13)[0] for low, high in pairwise(knots)
     )
     assert total == pytest.approx(0.5, abs=1e-8)
 
@@ -220,6 +219,62 @@ def test_declarations_that_cannot_be():
         body.point("tip")
     with pytest.raises(fm.SceneError, match="one of angle and speed"):
         fm.DrivenAngle("d", body)
+
+
+def test_contacts_act_on_points_in_one_direction():
+    block = fm.RigidBody("block", mass=2.0, inertia=1.0, velocity=(3.0, 0.0))
+    rail = fm.RollerOnLine("rail", block)
+    law = fm.laws.Coulomb(mu_s=0.3)
+    level = fm.TorsionSpring("level", block, stiffness=1e4)
+    shoe = fm.Contact("shoe", block.point("foot", (0.0, -1.0)), law=law, normal_force=10.0, axes="x")
+    sol = fm.simulate(fm.Scene("sled", [block, rail, level, shoe]), t_end=3.0, rtol=1e-8)
+    assert [event.kind for event in sol.events][-1] == "stick"
+    # what friction takes is the kinetic energy, less what the leaning spring keeps
+    assert np.abs(sol.energy.residual).max() < 1e-8
+    assert sol.energy.friction_loss[-1] == pytest.approx(9.0, rel=1e-3)
+    both = fm.Contact("shoe", block, law=law, normal_force=10.0)
+    with pytest.raises(fm.SceneError, match="one direction"):
+        fm.simulate(fm.Scene("sled", [block, rail, both]), t_end=1.0)
+
+
+def test_gravity_without_anything_that_turns():
+    body = fm.Body("stone", mass=3.0, axes="xy", velocity={"x": 1.0})
+    scene = fm.Scene("throw", [body, fm.Gravity("g"), fm.Spring("k", body, axis="x", stiffness=12.0)])
+    sol = fm.simulate(scene, t_end=2.0, rtol=1e-9)
+    assert sol["stone.y"][-1] == pytest.approx(-G * 2.0, rel=1e-8)
+    assert np.abs(sol.energy.residual).max() < 1e-8
+
+
+def test_equations_of_a_mechanism():
+    equations = fm.models.dry_pendulum().equations()
+    assert [str(symbol) for symbol in equations.q] == ["x_arm", "y_arm", "theta_arm"]
+    (pin,) = equations.constraints
+    assert [str(e) for e in pin.expressions] == ["x_arm - 0.7*cos(theta_arm)", "y_arm - 0.7*sin(theta_arm)"]
+    # the pin's torque about the centre of mass
+    assert "0.7*lambda_pin_1*sin(theta_arm) - 0.7*lambda_pin_2*cos(theta_arm)" in str(equations.rhs[2])
+    assert equations.latex().count("lambda_{pin 1}") > 0
+
+
+def test_nothing_is_derived_for_more_links():
+    from fricmb.equations import derivations
+    from fricmb.system import build
+
+    def chain(n):
+        links = [
+            fm.RigidBody(
+                f"l{i}", mass=1.0, inertia=0.1, position=(i + 0.5, 0.0), points={"a": (-0.5, 0), "b": (0.5, 0)}
+            )
+            for i in range(n)
+        ]
+        pins = [
+            fm.Revolute(f"j{i}", links[i].point("a"), links[i - 1].point("b") if i else fm.GROUND) for i in range(n)
+        ]
+        return fm.Scene("chain", [*links, *pins, fm.Gravity("g")])
+
+    build(chain(2))
+    before = len(derivations)
+    build(chain(100))
+    assert len(derivations) == before
 
 
 def test_parameters_sweep_save_and_go_on(tmp_path):
