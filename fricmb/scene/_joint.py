@@ -78,6 +78,8 @@ class Joint(Part):
                 self._refuse("friction", self.friction, "left out: this joint has no slip")
             if not isinstance(self.friction, FrictionLaw):
                 self._refuse("friction", self.friction, "a friction law, such as fm.laws.Coulomb(mu_s=0.5)")
+            if 1 not in self.friction.dimensions:
+                self._refuse("friction", self.friction, "a law of one direction of slip")
             if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:
                 self.friction.check()
 
