@@ -31,7 +31,8 @@ def make_solution(
         to there.
     """
     counters = trajectory.counters
-    counts = {name: getattr(counters, name) for name in ("n_steps", "n_rejected", "n_rhs", "n_jac", "n_lu", "notes")}
+    counts = {name: getattr(counters, name) for name in ("n_steps", "n_rejected", "n_rhs", "n_jac", "n_lu")}
+    notes = tuple(dict.fromkeys((*mechanics.plan.cautions, *counters.notes)))
 
     islands = island_stats(trajectory, mechanics.members)
 
@@ -43,7 +44,9 @@ def make_solution(
             raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
         check_friction(mechanics, trajectory, sol.record.samples)
         wall_s = time.perf_counter() - begin
-        sol.stats = Stats(method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, **counts)
+        sol.stats = Stats(
+            method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, notes=notes, **counts
+        )
         return sol
 
     if trajectory.failure is None:

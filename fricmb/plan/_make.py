@@ -9,6 +9,7 @@ from fricmb.errors import unknown_name
 from fricmb.plan._graph import coupling, narrow_order
 from fricmb.plan._links import Link, Links, links_of
 from fricmb.plan._plan import Island, Plan
+from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
 from fricmb.plan._truncate import truncated
@@ -57,7 +58,8 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     found = scene._cache.get(key)
     if found is None:
         plan = _make(scene, wanted)
-        found = scene._cache[key] = replace(plan, notes=(*short.notes, *plan.notes))
+        cautions = (*short.notes, *plan.cautions)
+        found = scene._cache[key] = replace(plan, notes=(*cautions, *plan.notes), cautions=cautions)
     return found
 
 
@@ -80,6 +82,7 @@ def _make(scene: Scene, wanted: Wanted | None) -> Plan:
         left_out=(*outside(scene, links, set(kept), inside), *empty(inside)),
         resting=tuple(still),
         notes=(*unloaded(idle), *vanishing(inside)),
+        cautions=tuple(redundant(scene, islands)),
         order=tuple(dofs[i] for i in order),
         bandwidth=bandwidth,
         storage=_storage(len(dofs), bandwidth),

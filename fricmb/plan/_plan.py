@@ -86,7 +86,10 @@ class Plan:
     resting : tuple of Omission
         Islands that are not run, since from the declared start they provably stay at rest.
     notes : tuple of str
-        What is worth knowing beside: terms that vanish, what truncation brings.
+        What is worth knowing beside: terms that vanish, and the cautions.
+    cautions : tuple of str
+        What bears on results: the error that truncated modes bring, redundant contacts.  A solution's ``stats.notes``
+        hold them, too.
     order : tuple of str
         Order of the degrees of freedom with the smallest bandwidth found.
     bandwidth : int
@@ -104,6 +107,7 @@ class Plan:
     left_out: tuple[Omission, ...]
     resting: tuple[Omission, ...] = ()
     notes: tuple[str, ...]
+    cautions: tuple[str, ...] = ()
     order: tuple[str, ...]
     bandwidth: int
     storage: str
