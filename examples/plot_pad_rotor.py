@@ -28,8 +28,8 @@ for label, numbers in choices.items():
     runs[label] = fm.simulate(scene, t_end=t_end, rtol=1e-5, t_eval=t)
 
 # %%
-# One contact holds one point of the pad: it sticks and slips some ten times before the rotor stops, and every mode that
-# is added moves the transitions a little.  Two contacts do not stick before the rotor stops.
+# One contact holds one point of the pad: it sticks and slips some ten times before the rotor stops, and every mode
+# that is added moves the transitions a little.  Two contacts do not stick before the rotor stops.
 
 figure, axes = plt.subplots(2, 1, figsize=(7, 6.5), layout="constrained")
 for label, sol in runs.items():
@@ -44,13 +44,13 @@ axes[1].set(xlabel="frequency (kHz)", ylabel="friction force (N)", xlim=(0, 25),
 plt.show()
 
 # %%
-# Sticking and slipping gives the force of one contact a train of impulses that repeats some two thousand times a second,
-# near the second frequency of the pad (2.2 kHz), with peaks at its multiples; more modes raise the level between them.  A
-# force that only turns its direction, as that of two contacts, has none of that.
+# Sticking and slipping gives the force of one contact a train of impulses that repeats some two thousand times a
+# second, near the second frequency of the pad (2.2 kHz), with peaks at its multiples; more modes raise the level
+# between them.  A force that only turns its direction, as that of two contacts, has none of that.
 
 # %%
-# The time to stop hardly feels any of it.  A rigid pad that slides gives v J/(mu N r^2), with the generalised inertia of
-# the rotor's rotation.
+# The time to stop hardly feels any of it.  A rigid pad that slides gives v J/(mu N r^2), with the generalised inertia
+# of the rotor's rotation.
 
 for label, sol in runs.items():
     rotation = sol.velocity("rotor.mode1")
