@@ -32,7 +32,8 @@ def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
     title = type(law).__name__
     e, rate, N, parameters = normal_expression(law)
     still = N.xreplace({rate: sympy.S.Zero})
-    stored = sympy.integrate(still, e)
+    stored = symbolic(law).standin.define_stored(e)
+    stored = sympy.integrate(still, e) if stored is None else sympy.sympify(stored)
     if stored.has(sympy.Integral):
         raise LawError(f"{title}: the integral of define_normal(e, 0) over e has no closed form")
     outputs = [N, sympy.diff(N, e), sympy.diff(N, rate), still, stored]

@@ -45,6 +45,10 @@ class NormalLaw(Declaration):
         """The normal force before the cut at 0, in SymPy: ``e``, ``e_dot`` and the fields are symbols."""
         raise LawError(f"{type(self).__name__}: defines no define_normal(self, e, e_dot)")
 
+    def define_stored(self, e: Any) -> Any:
+        """An antiderivative of ``define_normal(e, 0)`` over e up to the opening; None: SymPy finds it."""
+        return None
+
 
 def _axis(law: NormalLaw) -> Any:
     axis = law.axis

@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.laws import FrictionLaw
-from fricmb.normal import NormalLaw
+from fricmb.normal import Constant, NormalLaw, Prescribed
 from fricmb.scene._axes import Direction, check_axis, check_ends, direction, from_vector, is_direction_tuple
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._part import GROUND, LETTERS, End, Part
@@ -69,6 +69,8 @@ class Contact(Part):
 
     # -- normal force -------------------------------------------------------------------------------------------
     def _check_normal(self) -> None:
+        if isinstance(self.normal_force, Constant | Prescribed):
+            self._set("normal_force", self.normal_force.force)
         if isinstance(self.normal_force, NormalLaw):
             self.normal_direction()
             return

@@ -1,0 +1,58 @@
+"""Hertz's contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from fricmb.normal._base import NormalLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hertz(NormalLaw):
+    """N = max(0, stiffness delta^(3/2) (1 - damping e')) with the approach delta = delta_0 - e, N = preload at e = 0.
+
+    Parameters
+    ----------
+    axis : str or tuple of float
+        Letter or direction, pointing from the contact's b to its a.
+    stiffness : float
+        Force per length^(3/2), > 0; for a sphere of radius R on a plane (4/3) E* sqrt(R).
+    damping : float
+        Of Hunt and Crossley, 1/speed, >= 0: it grows with the approach, so that N does not jump when contact is made.
+    preload : float
+        Force at e = 0, >= 0; both bodies feel N - preload.
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics (Cambridge 1985), equation 4.23; K. H. Hunt, F. R. E. Crossley, Coefficient of
+    restitution interpreted as damping in vibroimpact, Journal of Applied Mechanics 42 (1975) 440-445.
+    """
+
+    stiffness: Any
+    damping: Any = 0.0
+    preload: Any = 0.0
+
+    def __post_init__(self) -> None:
+        self._set("stiffness", self._number("stiffness", self.stiffness, above=0.0))
+        self._set("damping", self._number("damping", self.damping, minimum=0.0))
+        super().__post_init__()
+
+    def _approach(self, e: Any) -> Any:
+        import sympy
+
+        return sympy.cbrt(self.preload / self.stiffness) ** 2 - e
+
+    def define_normal(self, e: Any, e_dot: Any) -> Any:
+        """Negative beyond the opening, so that its instant is a change of sign."""
+        import sympy
+
+        delta = self._approach(e)
+        return self.stiffness * delta * sympy.sqrt(sympy.Abs(delta)) * (1 - self.damping * e_dot)
+
+    def define_stored(self, e: Any) -> Any:
+        """Antiderivative of N(e, 0) up to the opening."""
+        import sympy
+
+        delta = self._approach(e)
+        return -2 * self.stiffness * delta**2 * sympy.sqrt(sympy.Abs(delta)) / 5

@@ -1,0 +1,40 @@
+"""Every law of the catalogue in one common set of scenes."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from fricmb import laws
+
+CASES = [(name, d) for name in laws.names for d in getattr(laws, name).example().dimensions]
+#: Kernels of many branches take seconds to compile.
+HEAVY = {"ElastoPlastic", "GeneralisedMaxwellSlip", "Gonthier", "Iwan", "Karnopp", "Leuven", "RateAndState"}
+
+
+def scene_of(law, d):
+    """1: a block on a belt; 2: a swinging puck; 3: a disc that slides and spins."""
+    if d == 3:
+        body = fm.ModalBody(
+            "m", frequencies=(0.0, 0.0, 0.0), damping_ratios=0.0, masses=(1.0, 1.0, 0.5), axes="xyz",
+            shapes={"sole": np.eye(3)}, velocity={"mode1": 0.3, "mode2": 0.1, "mode3": 0.2},
+        )  # fmt: skip
+        contact = fm.Contact("sole", body.point("sole"), law=law, normal_force=1.0, axes="xyz")
+        return fm.Scene("disc", [body, contact])
+    if d == 2:
+        puck = fm.Body("m", mass=1.0, axes="xy", velocity={"x": 0.3, "y": 0.4})
+        springs = [fm.Spring(f"k{c}", puck, axis=c, stiffness=k) for c, k in (("x", 50.0), ("y", 80.0))]
+        return fm.Scene("puck", [puck, *springs, fm.Contact("sole", puck, law=law, normal_force=1.0)])
+    block, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.1})
+    spring = fm.Spring("k", block, axis="x", stiffness=100.0)
+    return fm.Scene("belt", [block, belt, spring, fm.Contact("sole", block, belt, law=law, normal_force=10.0)])
+
+
+@pytest.mark.parametrize(
+    ("name", "d"), [pytest.param(*case, marks=pytest.mark.slow if case[0] in HEAVY else ()) for case in CASES]
+)
+def test_law_runs_and_its_energy_balances(name, d):
+    sol = fm.simulate(scene_of(getattr(laws, name).example(), d), t_end=0.5, rtol=1e-6, method="bdf")
+    assert np.abs(sol.energy.residual).max() < 1e-4
+    assert np.isfinite(sol.force("sole")).all()
+    if not sol.state("sole").size:
+        assert (np.diff(sol.energy.friction_loss) >= -1e-9).all()

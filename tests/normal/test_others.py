@@ -1,0 +1,75 @@
+"""Constant, prescribed and Hertzian normal forces."""
+
+import numpy as np
+import pytest
+import sympy
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import fricmb as fm
+
+
+def slider(normal_force, height=0.0, **velocity):
+    block = fm.Body("block", mass=1.0, axes="xy", velocity=velocity, position={"y": height})
+    law = fm.laws.Coulomb(mu_s=0.5)
+    return fm.Scene("s", [block, fm.Contact("sole", block, law=law, normal_force=normal_force, axes="x")])
+
+
+def test_given_forces_are_numbers_and_expressions():
+    constant = slider(fm.normal.Constant(force=fm.parameter("N", 4.0)))
+    assert constant.parameters["N"] == 4.0
+    assert constant["sole"].normal_kind == "constant"
+    timed = slider(fm.normal.Prescribed(force=2 + sympy.sin(fm.t)), x=1.0)
+    sol = fm.simulate(timed, t_end=0.5, rtol=1e-10)
+    assert sol.velocity("block.x")[-1] == pytest.approx(1.0 - 0.5 * (2 * 0.5 + 1 - np.cos(0.5)), rel=1e-9)
+    with pytest.raises(fm.LawError, match="force must be a finite number >= 0, got -1"):
+        fm.normal.Constant(force=-1.0)
+    with pytest.raises(fm.LawError, match="force must be a SymPy expression"):
+        fm.normal.Prescribed(force=3.0)
+
+
+def test_hertz_swings_in_its_closed_form_time():
+    """About its preload, without opening: the period is the integral of dy/v at constant energy."""
+    k, N0, v = 1e4, 3.0, 0.02
+    d0 = (N0 / k) ** (2.0 / 3.0)
+
+    def energy(e):
+        return 0.4 * k * ((d0 - e) ** 2.5 - d0**2.5) + N0 * e
+
+    ends = [brentq(lambda e: energy(e) - 0.5 * v**2, *side) for side in ((-d0, 0.0), (0.0, d0))]
+    middle, half = 0.5 * sum(ends), 0.5 * (ends[1] - ends[0])
+
+    def slowness(a):
+        return half * np.cos(a) / np.sqrt(v**2 - 2.0 * energy(middle + half * np.sin(a)))
+
+    period = 2.0 * quad(slowness, -0.5 * np.pi, 0.5 * np.pi, epsrel=1e-11)[0]
+    law = fm.normal.Hertz(axis="y", stiffness=k, preload=N0)
+    sol = fm.simulate(slider(law, x=1.0, y=v), t_end=period, rtol=1e-10)
+    assert sol.velocity("block.y")[-1] == pytest.approx(v, rel=1e-8)
+    assert sol["block.y"][-1] == pytest.approx(0.0, abs=1e-8 * half)
+    assert np.abs(sol.energy.residual).max() < 1e-8
+
+
+def test_hertz_is_at_rest_under_its_preload():
+    sol = fm.simulate(slider(fm.normal.Hertz(axis="y", stiffness=1e4, preload=3.0), x=1.0), t_end=0.2, rtol=1e-9)
+    assert sol.normal_force("sole") == pytest.approx(3.0, rel=1e-12)
+    assert np.abs(sol["block.y"]).max() < 1e-14
+
+
+def test_friction_that_presses_itself_on_flutters():
+    """Mode coupling (Hoffmann): the structure leads friction into its own normal force; unstable above mu_c = 0.75."""
+    for mu, grows in ((0.7, False), (0.8, True)):
+        x, y = np.linalg.solve([[2.0, 1.0 - mu * 4.0 / 3.0], [1.0, 2.0]], [-mu, 0.0])  # steady sliding
+        block = fm.Body("block", mass=1.0, axes="xy", position={"x": x + 1e-4, "y": y})
+        belt = fm.Driven("belt", velocity={"x": -10.0})
+        parts = [
+            fm.MatrixElement("k", ["block.x", "block.y"], K=[[2.0, 1.0], [1.0, 2.0 - 4.0 / 3.0]]),
+            fm.Contact(
+                "sole", block, belt, law=fm.laws.Coulomb(mu_s=mu), axes="x",
+                normal_force=fm.normal.Spring(axis="y", stiffness=4.0 / 3.0, preload=1.0),
+            ),
+        ]  # fmt: skip
+        sol = fm.simulate(fm.Scene("hoffmann", [block, belt, *parts]), t_end=60.0, rtol=1e-8)
+        swing = np.abs(sol["block.y"] - y)
+        late, early = swing[sol.t > 40].max(), swing[sol.t < 20].max()
+        assert (late > 3.0 * early) == grows
