@@ -27,4 +27,4 @@ axes[0].set_ylabel("relative velocity")
 
 held, smooth, bristle = regimes
 assert held.crept < 1e-8
-assert smooth.creep_speed < 1e-3
+assert smooth.creep_speed < 2e-3  # of the order of v_reg
