@@ -156,6 +156,8 @@ def whole_system(sol: Solution, who: str) -> System:
     Raises AnalysisError for a run that left something out.
     """
     placed = sol.run.pieces[-1].mechanics.placed  # type: ignore[attr-defined]
+    if placed.is_mechanism:
+        raise AnalysisError(f"{who}: takes no bodies that turn and joints; sol.energy has the ledger of such a run")
     system = build(placed)
     missing = [name for name in system.dof_names if name not in sol.names.dof_index]
     if missing:

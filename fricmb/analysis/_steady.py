@@ -136,6 +136,8 @@ def steady_sliding(scene: Scene, *, speeds: Mapping[str, float] | None = None) -
     Newton's method with the analytic Jacobian of the scene, from its initial positions; a free rigid motion stays where
     it starts.
     """
+    if scene.is_mechanism:
+        raise AnalysisError("steady_sliding: takes no bodies that turn and joints")
     system = build(scene)
     held = dict(speeds or {})
     for name in held:

@@ -72,6 +72,8 @@ def test_constraints_hold_over_many_periods():
     assert np.abs(np.hypot(sol["bar.x"], sol["bar.y"]) - 1.0).max() < 1e-14
     radial = sol["bar.x"] * sol.velocity("bar.x") + sol["bar.y"] * sol.velocity("bar.y")
     assert np.abs(radial).max() < 1e-13
+    between = sol.at(np.linspace(0.0, sol.t_end, 777))
+    assert np.abs(np.hypot(between["bar.x"], between["bar.y"]) - 1.0).max() < 1e-14
 
 
 def test_gear_drive_rod_roller_circle_and_driven_joints():

@@ -6,15 +6,19 @@ from fricmb.integrate._kernel import entry
 from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2
 from fricmb.integrate.constrained._field import call_joint, forces, move
 from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._project import project_positions, project_velocities
 from fricmb.integrate.constrained._state import Instant, State, react
 
 
 @entry
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
-    force: Floats2, windows: Floats2, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
+    force: Floats2, windows: Floats2, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2, project: bool,
 ) -> int:  # fmt: skip
-    """Complete every state (row by row); ``force`` (n_t, m + 2 n_c) start values [lam, F, n].  Number of failures."""
+    """Complete every state (row by row); ``force`` (n_t, m + 2 n_c) start values [lam, F, n].  Number of failures.
+
+    ``project``: q and v, interpolated between steps, are first moved onto the constraints.
+    """
     m, n_c = y.lam.shape[0], y.F.shape[0]
     failed = 0
     for i in range(times.shape[0]):
@@ -32,6 +36,11 @@ def instants(
             y.F[j] = force[i, m + j]
             y.n[j] = force[i, m + n_c + j]
             y.mode[j] = mode[i, j]
+        if project and m > 0 and project_positions(mech, k, w, y, mech.address):
+            project_velocities(mech, k, w, y, True, False, mech.address)
+            for j in range(y.q.shape[0]):
+                q[i, j] = y.q[j]
+                v[i, j] = y.v[j]
         if not react(mech, k, w, y, False, mech.address):
             failed += 1
         for j in range(m):

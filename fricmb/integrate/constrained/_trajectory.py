@@ -72,7 +72,7 @@ class StepTrajectory(Trajectory):
         step = np.clip(np.searchsorted(self._span[:, 0], t, side="right") - 1, 0, len(self._span) - 1)
         x = np.clip((t - self._span[step, 0]) / self._span[step, 1], 0.0, 1.0)
         weight = lagrange(self._nodes, x)
-        return self._complete(t, np.einsum("tj,tjw->tw", weight, self._values[step]), step)
+        return self._complete(t, np.einsum("tj,tjw->tw", weight, self._values[step]), step, project=True)
 
     def _only_start(self, count: int = 1) -> Samples:
         values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self.problem.n_c + 2)])
@@ -83,11 +83,11 @@ class StepTrajectory(Trajectory):
             self._force[0, m + nc :] = self.end.direction
         return self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))
 
-    def _complete(self, t: Floats, values: Floats, step: Ints) -> Samples:
+    def _complete(self, t: Floats, values: Floats, step: Ints, *, project: bool = False) -> Samples:
         problem = self.problem
         n, nz, nc = problem.n, problem.n_z, problem.n_c
         q, v, z, work = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
-        found = complete_at(problem, t, q, v, z, self._mode[step], self._force[step])
+        found = complete_at(problem, t, q, v, z, self._mode[step], self._force[step], project=project)
         return Samples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
             mode=np.ascontiguousarray(self._mode[step].T), friction_loss=work[:, :nc].T.copy(),
@@ -96,9 +96,12 @@ class StepTrajectory(Trajectory):
 
 
 def complete_at(
-    problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats
+    problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """F, N, g (n_c, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .)."""
+    """F, N, g (n_c, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
+
+    ``project``: q and v are first moved onto the constraints, in place.
+    """
     m, nc, count = mechanism_of(problem).n_rows, problem.n_c, len(t)
     F, N, g = np.zeros((3, count, nc))
     lam, a = np.zeros((count, m)), np.zeros((count, problem.n))
@@ -108,7 +111,7 @@ def complete_at(
     solid = np.ascontiguousarray
     instants(
         mech, moving_of(problem), instant_of(problem), state_of(problem, start), solid(t), q, v, z,
-        solid(mode, np.int8), solid(force, float), windows, F, N, g, lam, a,
+        solid(mode, np.int8), solid(force, float), windows, F, N, g, lam, a, project,
     )  # fmt: skip
     return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
 
