@@ -173,3 +173,16 @@ def test_elliptic_cone_sticks_inside_its_ellipse():
         assert sol.mode("sole")[-1] == mode
         if mode == 0:
             np.testing.assert_allclose(sol.force("sole")[:, -1], -np.array(load), atol=1e-12)
+
+
+@pytest.mark.parametrize(("delta", "period"), [(3.0, 12.00103129483), (1.0, 9.23077045808)])
+def test_leine_belt_has_its_period(delta, period):
+    """Leine's block on a belt (m = k = Fs = 1, v = 0.2): two other solvers with events give these digits."""
+    block = fm.Body("block", mass=1.0, position={"x": 1.0}, velocity={"x": 0.2})
+    belt = fm.Driven("belt", velocity={"x": 0.2})
+    law = laws.HyperbolicStribeck(mu_s=1.0, delta=delta)
+    spring = fm.Spring("k", block, axis="x", stiffness=1.0)
+    scene = fm.Scene("leine", [block, belt, spring, fm.Contact("sole", block, belt, law=law, normal_force=1.0)])
+    sol = fm.simulate(scene, t_end=50.0, rtol=1e-10)
+    starts = [event.t for event in sol.events if event.kind == "slip"]
+    np.testing.assert_allclose(np.diff(starts), period, atol=1e-8)
