@@ -26,7 +26,8 @@ class Outcome:
     metrics : Metrics or None
         None for a run that failed.
     seconds : float or None
-        Least wall time of several runs in one process.
+        Least processor time of several runs in one process: on an idle machine the wall time, and unlike it hardly
+        changed by what else runs.
     first : float or None
         Seconds spent compiling kernels, or loading them, in the first run; not part of ``seconds``.
     memory : float or None
@@ -95,14 +96,14 @@ def rows_of(case: SceneCase) -> tuple[int, ...]:
 
 
 def _timed(case: SceneCase, method: Method, setting: Setting) -> tuple[float, float | None]:
-    """Least wall time of several runs, and the rise of resident memory in the first of them."""
+    """Least processor time of several runs, and the rise of resident memory in the first of them."""
     before = _resident(reset=True)
     times: list[float] = []
     memory = None
     while not times or (sum(times) < PATIENCE and len(times) < TRIES):
-        begin = time.perf_counter()
+        begin = time.process_time()
         method.run(case, setting, detail=False)
-        times.append(time.perf_counter() - begin)
+        times.append(time.process_time() - begin)
         highest = _resident(reset=False)
         if before is not None and highest is not None and len(times) == 1:
             memory = max(0.0, highest - before)

@@ -56,14 +56,14 @@ def _lines(axes: Any, rows: Rows, x: str, quantity: str) -> None:
 
 
 def work_precision(rows: Rows, title: str) -> Any:
-    """State error and transition-time error against wall time."""
+    """State error and transition-time error against processor time."""
     has_times = any(row["metrics"] and row["metrics"]["time"] is not None for row in rows)
     figure = _figure(9.6 if has_times else 6.4)
     panels = figure.subplots(1, 2 if has_times else 1, squeeze=False, sharex=True)[0]
     labels = (("state", "state error"), ("time", "error of transition times / duration"))
     for axes, (quantity, label) in zip(panels, labels, strict=False):
         _lines(axes, rows, "seconds", quantity)
-        axes.set_xlabel("wall time [s]")
+        axes.set_xlabel("processor time [s]")
         axes.set_ylabel(label)
         axes.grid(True, which="major", linewidth=0.3)
     handles, names = panels[0].get_legend_handles_labels()
@@ -89,7 +89,7 @@ def convergence(rows: Rows, family: str) -> Any:
 
 
 def cost_against_size(rows: Rows, fits: dict[str, float | None], case: str, title: str) -> Any:
-    """Wall time of a run against n."""
+    """Processor time of a run against n."""
     figure = _figure(7.0)
     axes = figure.subplots()
     for method in dict.fromkeys(row["method"] for row in rows):
@@ -101,7 +101,7 @@ def cost_against_size(rows: Rows, fits: dict[str, float | None], case: str, titl
         style = _style(method, method == "CVODE")
         axes.loglog([row["n"] for row in mine], [row["seconds"] for row in mine], label=label, **style)
     axes.set_xlabel("n")
-    axes.set_ylabel("wall time of the run [s]")
+    axes.set_ylabel("processor time of the run [s]")
     axes.set_title(title, fontsize=10)
     axes.grid(True, linewidth=0.3)
     figure.legend(loc="outside right upper", fontsize=8, frameon=False)

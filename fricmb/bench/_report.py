@@ -82,8 +82,8 @@ _NOTES = """<p class="note">State error: largest error of a position or velocity
 signal over its largest value. References: event-driven solutions in 30-digit arithmetic, closed forms, published
 digits. Peers run the same scene with friction smoothed over a slip speed eps (times the largest speed), with a
 compiled right-hand side and the analytic Jacobian; eps goes from 1e-2 to 1e-7, the tolerance a hundredth of it.
-Their transitions are where the slip speed crosses 10 eps. Times: least of several runs in one process, compilation
-apart.</p>"""
+Their transitions are where the slip speed crosses 10 eps. Times: processor time, the least of several runs in one
+process, compilation apart.</p>"""
 
 
 def scoreboard_table(result: dict[str, Any]) -> str:
