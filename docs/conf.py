@@ -67,5 +67,21 @@ def keep_bars(app, what, name, obj, options, lines):
         lines[i] = "".join(pieces)
 
 
+def benchmark_pages(app):
+    """The measured pages, out of the results that were committed."""
+    import json
+    from pathlib import Path
+
+    from fricmb.bench import report_body
+    from fricmb.bench.stability import stability_body
+
+    here = Path(app.srcdir)
+    for name, body in (("benchmark", report_body), ("stability", stability_body)):
+        data = here / "benchmark" / f"{'result' if name == 'benchmark' else name}.json"
+        html = body(json.loads(data.read_text(encoding="utf-8")))
+        (here / "reference" / f"_{name}.html").write_text(html, encoding="utf-8")
+
+
 def setup(app):
+    app.connect("builder-inited", benchmark_pages)
     app.connect("autodoc-process-docstring", keep_bars, priority=400)

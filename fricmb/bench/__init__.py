@@ -14,7 +14,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "_metrics": ["Metrics", "measure"],
         "_own": ["Own", "own_methods"],
         "_reference": ["Reference", "Transitions"],
-        "_report": ["report"],
+        "_report": ["report", "report_body"],
         "_run": ["Run", "Setting"],
         "_scenes": ["SCENES"],
         "_startup": ["start_up_times"],

@@ -52,6 +52,11 @@ def report(result: dict[str, Any]) -> str:
     return page("fricmb: error against run time", _parts(result))
 
 
+def report_body(result: dict[str, Any]) -> str:
+    """The same without the frame of a page, for another one."""
+    return "\n".join(_parts(result))
+
+
 def _parts(result: dict[str, Any]) -> Iterator[str]:
     about = result["about"]
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())

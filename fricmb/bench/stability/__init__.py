@@ -2,6 +2,6 @@
 
 from fricmb.bench.stability._extreme import Extreme
 from fricmb.bench.stability._grid import judge, run_stability, scenes
-from fricmb.bench.stability._report import stability_report
+from fricmb.bench.stability._report import stability_body, stability_report
 
-__all__ = ["Extreme", "judge", "run_stability", "scenes", "stability_report"]
+__all__ = ["Extreme", "judge", "run_stability", "scenes", "stability_body", "stability_report"]

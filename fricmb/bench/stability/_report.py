@@ -21,6 +21,11 @@ def stability_report(result: dict[str, Any]) -> str:
     return page("fricmb: stability, stiff and extreme scenes", _parts(result))
 
 
+def stability_body(result: dict[str, Any]) -> str:
+    """The same without the frame of a page, for another one."""
+    return "\n".join(_parts(result))
+
+
 def _parts(result: dict[str, Any]) -> Iterator[str]:
     about = result["about"]
     yield f"<p>{html.escape(about['date'])}, {html.escape(about['machine'])}; fricmb {about['versions']['fricmb']}.</p>"
