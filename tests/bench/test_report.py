@@ -6,7 +6,7 @@ import pytest
 
 import fricmb as fm
 from fricmb.bench import Options, Own, Setting, Store, fingerprint, measure_cell, names, report
-from fricmb.bench._orders import configurations, measure_order
+from fricmb.bench._orders import measure_order
 from fricmb.bench._scenes import SCENES
 from fricmb.bench._suite import Cell, about, measure_named, plan, run, titles
 
@@ -64,15 +64,6 @@ def test_the_report_needs_no_network_and_shows_failures():
 def test_the_published_scheme_is_of_order_two():
     found = measure_order("bdf2-paper")
     assert found["order"] == pytest.approx(2.0, abs=0.05)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("stages", [2, 3, 4])
-def test_radau_has_its_order(stages):
-    """2 s - 1 at the end of a step, somewhat less where the error is taken over a grid of dense output."""
-    assert f"radau, stages {stages}" in dict(configurations())
-    found = measure_order(f"radau, stages {stages}")
-    assert stages < found["order"] < 2 * stages + 1
 
 
 def test_cells_are_named_by_what_is_hard_in_them():

@@ -31,7 +31,8 @@ def regions() -> Any:
     x, y, z = _grid(-15.0, 60.0, 40.0, 121)
     for i, s in enumerate(STAGES):
         radau.contour(x, y, radau_growth(s, z), levels=[1.0], colors=[f"C{i}"])
-    radau.legend(handles=[Line2D([], [], color=f"C{i}", label=f"{s} stages") for i, s in enumerate(STAGES)], fontsize=8)
+    stages = [Line2D([], [], color=f"C{i}", label=f"{s} stages") for i, s in enumerate(STAGES)]
+    radau.legend(handles=stages, fontsize=7, loc="upper left")
     radau.set_title("Radau IIA: unstable inside", fontsize=10)
     for axes in (bdf, radau):
         axes.axvline(0.0, color="0.6", linewidth=0.8)
@@ -55,7 +56,8 @@ def axis() -> Any:
     growth.legend(fontsize=8)
     for i, s in enumerate(STAGES):
         lost = -np.log(np.maximum(radau_growth(s, 1j * w), 1e-300)) / w
-        loss.loglog(w, np.maximum(lost, 1e-17), label=f"{s} stages", color=f"C{i}")
+        lost[lost < 1e-14] = np.nan  # round-off
+        loss.loglog(w, lost, label=f"{s} stages", color=f"C{i}")
     loss.set_xlabel("h ω")
     loss.set_ylabel("amplitude lost a radian, Radau IIA")
     loss.legend(fontsize=8)

@@ -30,7 +30,8 @@ def bdf_growth(k: int, z: Complexes | ComplexFloats) -> Floats:
         shifted = polynomial.copy()
         shifted[0] -= value
         roots = np.roots(shifted[::-1])
-        out[i] = 1.0 / np.abs(roots).min()
+        smallest = np.abs(roots).min()
+        out[i] = 1.0 / smallest if smallest > 0.0 else np.inf
     return out
 
 
