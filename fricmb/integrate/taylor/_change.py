@@ -9,7 +9,7 @@ from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, S
 from fricmb.integrate._room import block
 from fricmb.integrate.taylor._correct import add_correction, correct, local_force
 from fricmb.integrate.taylor._heap import push_due
-from fricmb.integrate.taylor._layout import BEFORE, INPUT, N_EVENTS, SHIFTED, STEP, TIME, WATCH
+from fricmb.integrate.taylor._layout import BEFORE, INPUT, JUMP, N_EVENTS, SHIFTED, STEP, TIME, WATCH
 from fricmb.integrate.taylor._ledger import count_local, moving_belts
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._search import shift_one, taylor_search
@@ -144,6 +144,10 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     count = correct(net, c, h)
     full = count >= net.local.shape[0] and count < net.q.shape[0]
     weigh_local(net, count, c, tau, h)
+    last = net.Q.shape[0] - 1
+    reach = (1.0 - tau) ** (last - 1)
+    for a in range(count):
+        net.x[JUMP] = max(net.x[JUMP], last * abs(net.dQ[last, a]) * reach / h)
     count_local(net, count, tau, -1.0)
     add_correction(net, count, tau)
     count_local(net, count, tau, 1.0)

@@ -11,6 +11,7 @@ from fricmb.integrate.taylor._heap import pop_due, push_due
 from fricmb.integrate.taylor._layout import (
     END,
     INPUT,
+    JUMP,
     LIMIT,
     LONGEST,
     N_EVENTS,
@@ -195,6 +196,14 @@ def finish_step(net: Net) -> int:
     for u in range(net.series.shape[0]):
         for k in range(net.rates.shape[1]):
             net.travel[u] += h * net.rates[u, k] / (k + 1)
+    fastest = 0.0
+    for j in range(n):
+        fastest = max(fastest, net.top[j])
+    error = net.x[JUMP] / (net.x[TOL] * fastest + 1e-300)
+    net.x[JUMP] = 0.0
+    if error > 1.0:
+        # corrections are not taken back: their error is kept down in the steps that follow
+        net.x[NEXT] = min(net.x[NEXT], h * max(0.3, 0.9 * error ** (-1.0 / (last - 1.0))))
     at = net.i[N_STEPS]
     net.steps[at, 0] = net.x[TIME]
     net.steps[at, 1] = h

@@ -1,8 +1,8 @@
 """Names of places in the arrays of a run (see _net)."""
 
 # x: time; size of the present step; longest step; tolerance; totals of input and damping; end of the run; corrections
-# below CUT are left out; speeds below NOISE are round-off
-TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, CUT, NOISE, NEXT = range(10)
+# below CUT are left out; speeds below NOISE are round-off; next step; last coefficient of a correction of this step
+TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, CUT, NOISE, NEXT, JUMP = range(11)
 # i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
 # phase of the step, next stop
 N_STEPS, N_SHORTER, N_EVENTS, N_SAMPLES, N_HEAP, N_SEARCHES, N_HERE, LIMIT, PHASE, N_STOP = range(10)

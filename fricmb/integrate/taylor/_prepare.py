@@ -182,7 +182,7 @@ def _net(problem: Problem, P: int) -> Net:
         "flat": z((5, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
         "place": np.full(n, -1, dtype=i),
         "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)), "stops": z(1),
-        "places": addresses(*BLOCKS), **no_samples(n, m), "events": z((64, 3)), "steps": z((64, 2)),
+        "places": addresses(*BLOCKS), **no_samples(n, m), "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)),
     }  # fmt: skip
     return room(Net(**{name: _solid(arrays[name]) for name in Net._fields}))
 

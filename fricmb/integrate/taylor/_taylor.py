@@ -54,7 +54,7 @@ FAILURES = {
 
 def degree_for(rtol: float) -> int:
     """Degree of the polynomials that takes the least time to a tolerance."""
-    return int(np.clip(round(7.0 - 1.1 * math.log10(rtol)), 8, 22))
+    return int(np.clip(round(7.0 - math.log10(rtol)), 8, 22))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,7 +134,7 @@ def set_start(
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
     net.x[:] = 0.0
     net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest
-    net.x[TOL], net.x[CUT] = 0.3 * tolerance.rtol, 0.0
+    net.x[TOL], net.x[CUT] = 0.1 * tolerance.rtol, 0.0
     net.x[STEP] = longest
     net.x[NOISE] = 1e-13 * speed
     net.i[:] = 0
