@@ -6,28 +6,20 @@ from fricmb.scene._axes import Direction, check_axis, check_ends, direction
 from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._contact import Contact
 from fricmb.scene._damper import Damper
+from fricmb.scene._driven_joints import DrivenAngle, DrivenSlide
 from fricmb.scene._element import Element
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._force import Force
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
-from fricmb.scene._joints import (
-    DrivenAngle,
-    DrivenSlide,
-    Fixed,
-    Gear,
-    Prismatic,
-    Revolute,
-    Rod,
-    RollerOnCircle,
-    RollerOnLine,
-)
+from fricmb.scene._joints import Fixed, Gear, Prismatic, Revolute, Rod
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._modal_from import modal_matrices
 from fricmb.scene._part import GROUND, End, Ground, Part
 from fricmb.scene._point import PointDamper, PointSpring
 from fricmb.scene._rigid import GroundPoint, RigidBody, RigidPoint, ground_point
+from fricmb.scene._rollers import RollerOnCircle, RollerOnLine
 from fricmb.scene._scene import Scene
 from fricmb.scene._spring import Spring
 from fricmb.scene._symbols import coordinate, speed

@@ -1,0 +1,25 @@
+"""What joints in the plane share."""
+
+from __future__ import annotations
+
+from fricmb.scene._forms import LinearForm
+from fricmb.scene._joint import Joint
+from fricmb.scene._rigid import angle_of, plane_motion, start_angle
+
+
+class PlaneJoint(Joint):
+    """A joint between two points in the plane."""
+
+    def apart(self) -> tuple[LinearForm, LinearForm]:
+        """Components of the vector from b to a."""
+        (ax, ay), (bx, by) = plane_motion(self, "a", self.a), plane_motion(self, "b", self.b)
+        return ax - bx, ay - by
+
+    def angles(self) -> tuple[LinearForm, LinearForm]:
+        """Angles of both ends."""
+        return angle_of(self, "a", self.a), angle_of(self, "b", self.b)
+
+    def kept_angle(self) -> LinearForm:
+        """Relative angle less its declared start."""
+        a, b = self.angles()
+        return a - b - LinearForm((), start_angle(self.a) - start_angle(self.b))

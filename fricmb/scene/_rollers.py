@@ -1,0 +1,131 @@
+"""Points that roll or slide on a line or a circle."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar
+
+from fricmb.errors import SceneError
+from fricmb.scene._expressions import check_expression
+from fricmb.scene._forms import LinearForm
+from fricmb.scene._plane_joint import PlaneJoint
+from fricmb.scene._rigid import angle_of
+
+
+@dataclass(frozen=True, eq=False)
+class RollerOnLine(PlaneJoint):
+    """A point of a stays on a line through b, fixed in b.  Reaction: force on a along the line's left-hand normal.
+
+    Parameters
+    ----------
+    name : str
+    a, b : ends
+    angle : float
+        Direction of the line in the axes of b; the normal is 90 degrees further.
+    push_only : bool
+        The line can push but not pull; where it would have to pull, contact is lost and the run ends.
+    slide : number or SymPy expression in ``fm.t``
+        Velocity of the line's surface along the line.
+    friction : FrictionLaw, optional
+        Normal force: magnitude of the reaction.
+    """
+
+    takes_friction: ClassVar[bool] = True
+    _: KW_ONLY
+    angle: Any = 0.0
+    push_only: bool = False
+    slide: Any = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.push_only, bool):
+            self._refuse("push_only", self.push_only, "True or False")
+        self._set("slide", check_expression(self, "slide", self.slide, motions=False))
+        self.local_coordinates()
+
+    def _takes_expression(self, field: str) -> bool:
+        return field == "slide"
+
+    @property
+    def one_sided(self) -> bool:
+        """As ``push_only``."""
+        return self.push_only
+
+    def drives(self) -> tuple[Any, ...]:
+        """The surface's own motion."""
+        return (("rate", self.slide, 0.0),) if self.friction is not None else ()
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """Distance of the points and angle of b."""
+        b = angle_of(self, "b", self.b) if self._turns() else LinearForm()
+        return (*self.apart(), b)
+
+    def _turns(self) -> bool:
+        try:
+            angle_of(self, "b", self.b)
+        except SceneError:
+            return False
+        return True
+
+    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """No distance across the line."""
+        import sympy
+
+        turn = x[2] + self.angle
+        return (x[1] * sympy.cos(turn) - x[0] * sympy.sin(turn),)
+
+    def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Along the line, seen from b, less the motion of its surface."""
+        import sympy
+
+        turn = x[2] + self.angle
+        across = x[1] * sympy.cos(turn) - x[0] * sympy.sin(turn)
+        return sympy.cos(turn), sympy.sin(turn), across, -1
+
+    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
+        """Magnitude of the reaction."""
+        import sympy
+
+        return lam[0] if self.push_only else sympy.Abs(lam[0])
+
+
+@dataclass(frozen=True, eq=False)
+class RollerOnCircle(PlaneJoint):
+    """A point of a stays on a circle about b.  Reaction: force on a, outward.
+
+    Parameters
+    ----------
+    name : str
+    a, b : ends
+    radius : float
+        > 0.
+    friction : FrictionLaw, optional
+        Normal force: magnitude of the reaction; slip relative to a circle that does not turn.
+    """
+
+    takes_friction: ClassVar[bool] = True
+    positive: ClassVar[tuple[str, ...]] = ("radius",)
+    _: KW_ONLY
+    radius: Any
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.local_coordinates()
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """The distance of the points."""
+        return self.apart()
+
+    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Of unit slope outward."""
+        return ((x[0] ** 2 + x[1] ** 2) / (2 * self.radius) - self.radius / 2,)
+
+    def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Counter-clockwise along the circle."""
+        return -x[1] / self.radius, x[0] / self.radius
+
+    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
+        """Magnitude of the reaction."""
+        import sympy
+
+        return sympy.Abs(lam[0])
