@@ -46,7 +46,7 @@ def measure_order(label: str) -> dict[str, Any]:
             errors.append(error)
     except FricmbError as reason:
         return {"method": label, "failure": one_line(reason)}
-    first = next((i for i in range(1, len(steps)) if steps[i] <= steps[i - 1]), len(steps))
+    first = next((i for i in range(1, len(steps)) if steps[i] < steps[i - 1]), len(steps))
     # fewer steps for a tighter tolerance: another formula has taken over
     return {"method": label, "steps": steps, "errors": errors, "order": order(steps[:first], errors[:first])}
 

@@ -20,7 +20,7 @@ def _style(method: str, peer: bool) -> dict[str, Any]:
         marker = _PEERS.get(method, "*")
         grey = 0.45 + 0.08 * (list(_PEERS).index(method) if method in _PEERS else 6) / 2
         return {"color": str(grey), "marker": marker, "linestyle": ":", "linewidth": 1.0, "markersize": 5}
-    colour = _OWN.get(method) or _MORE[hash(method) % len(_MORE)]
+    colour = _OWN.get(method) or _MORE[sum(method.encode()) % len(_MORE)]
     if method == "auto":
         return {"color": colour, "marker": "o", "linestyle": "-", "linewidth": 2.4, "markersize": 4, "alpha": 0.5}
     return {"color": colour, "marker": ".", "linestyle": "-", "linewidth": 1.2, "markersize": 6}
