@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from fricmb.integrate._problem import Floats
 from fricmb.integrate.dae._engine import Record
 from fricmb.integrate.dae._function import parameters
-from fricmb.integrate.dae._result import evaluate
+from fricmb.integrate.dae._result import interpolate
 
 
 class Event:
@@ -97,8 +97,10 @@ class Events:
 def _state(record: Record, point: int, t: float) -> tuple[Floats, Floats]:
     low = max(0, point - int(record.order[point]))
     part = slice(low, point + 1)
-    forward = bool(record.t[point] > record.t[point - 1])
-    value, rate = evaluate(record.t[part], record.y[part], record.order[part], np.array([t]), forward)
+    value, rate = np.empty((2, 1, record.y.shape[1]))
+    # the polynomial of this very step, also at its left end
+    step = np.array([point - low - 1])
+    interpolate(record.t[part], record.y[part], record.order[part], np.array([t]), step, value, rate)
     return value[0], rate[0]
 
 
