@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate._field import Scratch
-from fricmb.integrate._instant import State
+from fricmb.integrate._instant import INFINITE, State
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._modes import Rest
-from fricmb.integrate._onestep import Accuracy, OneStep, attempt, error_norm, finish, stage_powers, update_scales
+from fricmb.integrate._onestep import Accuracy, OneStep, add_work, attempt, error_norm, finish, ladder, update_scales
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import SLIP, Floats, Ints
 from fricmb.integrate._room import block
@@ -19,12 +19,14 @@ from fricmb.integrate._transitions import EPS, Before, copy_state, locate, swap_
 from fricmb.integrate._triggers import find_trigger
 
 #: What a step or a loop of steps ends with: an accepted or rejected step, a transition gone through, or why not.
-ACCEPTED, REJECTED, CHANGED, DONE, FULL, FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW = range(10)
+ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
+FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW, FAIL_INFINITE = range(5, 11)
 FAILURES = {
     FAIL_STEP: "the step size fell below round-off: the equations of the step could not be solved to tolerance",
     FAIL_MODES: "no consistent set of stick and slip was found for contacts at rest",
     FAIL_REDUNDANT: "stuck contacts are redundant: their forces are not determined",
     FAIL_LAW: "the coefficient of a friction law is negative at the slip speed reached: friction would drive",
+    FAIL_INFINITE: "forces or accelerations became infinite",
     FAIL_CHATTER: "transitions pile up at one instant (chattering)",
 }
 
@@ -49,7 +51,13 @@ def settled(code: int) -> int:
     """What a transition that went wrong is reported as; CHANGED where it did not."""
     if code == 0:
         return CHANGED
-    return FAIL_MODES if code == 1 else FAIL_REDUNDANT
+    return (FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code - 1]
+
+
+@kernel
+def incomplete(y: State) -> int:
+    """Why the forces of a state could not be found."""
+    return FAIL_INFINITE if y.fault[0] == INFINITE else FAIL_REDUNDANT
 
 
 @block
@@ -68,8 +76,9 @@ def advance(
     h = min(clock.h[0], 0.01 * (clock.span[1] - clock.span[0]))
     if h >= left * (1.0 - 1e-9):
         h = left
-    elif h > 0.5 * left:
-        h = 0.5 * left
+    else:
+        # steps of a ladder come again, and their factors with them
+        h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h)
     if not h > 8.0 * EPS * abs(t) + 1e-280:
         return FAIL_STEP
     error = np.inf
@@ -81,7 +90,7 @@ def advance(
         return REJECTED
     copy_state(y, end)
     if not finish(packed, s, end, one, acc, h, address):
-        return FAIL_REDUNDANT
+        return incomplete(end)
     k = find_trigger(packed, s, y, end, one, clock.found, address)
     wanted = h * min(5.0, max(0.1, 0.85 * max(error, 1e-20) ** -order))
     if k < 0 and error <= 1.0:
@@ -89,6 +98,7 @@ def advance(
             return FAIL_LAW
         # of accepted steps alone: a wild trial must not loosen the tolerance for the rest of the run
         update_scales(packed, y, one, acc)
+        add_work(packed, s, end, one, end.t[0] - t)
         record_inside(packed, s, y, end, one, out, address)
         swap_state(y, end)
         record(out, y, STEP)
@@ -118,6 +128,7 @@ def advance(
     lifted = clock.found[1] == 1.0
     if end.t[0] > t:
         update_scales(packed, y, one, acc)
+        add_work(packed, s, end, one, end.t[0] - t)
         record_inside(packed, s, y, end, one, out, address)
         one.counts[0] += 1
     clock.same[0] = 0 if end.t[0] - t > 16.0 * EPS * abs(t) else clock.same[0] + 1
@@ -125,6 +136,7 @@ def advance(
         return FAIL_CHATTER
     copy_state(end, y)
     clock.h[0] = clock.usual[0]
+    one.last[1] = 0.0
     return settled(transition(packed, s, y, k, lifted, r, old, out, address))
 
 
@@ -151,21 +163,12 @@ def record_inside(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
         at = put(row, at, w.F[j])
         at = put(row, at, w.N[j])
         for i in range(nc + 2):
-            row[at + i] = y.work[i]
-        stage_powers(packed, s, one, j)
-        put(row, at + nc + 2, one.power)
+            energy = y.work[i]
+            for x in range(n_s):
+                energy += h * tab.A[j, x] * one.power[x, i]
+            row[at + i] = energy
+        put(row, at + nc + 2, one.power[j])
         out.kind[k] = INSIDE
         for i in range(nc):
             out.mode[k, i] = y.mode[i]
         out.used[0] = k + 1
-    # energies up to each stage, from the rates of all of them
-    stage_powers(packed, s, one, n_s - 1)
-    width = out.values.shape[1]
-    for j in range(n_s - 1):
-        row = out.values[out.used[0] - n_s + 1 + j]
-        for x in range(n_s):
-            for i in range(nc + 2):
-                rate = one.power[i]
-                if x < n_s - 1:
-                    rate = out.values[out.used[0] - n_s + 1 + x, width - nc - 2 + i]
-                row[width - 2 * (nc + 2) + i] += h * tab.A[j, x] * rate

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fricmb.integrate._advance import ACCEPTED, CHANGED, DONE, FAILURES, FULL, Clock, advance
+from fricmb.integrate._advance import ACCEPTED, CHANGED, FULL, Clock, advance
 from fricmb.integrate._bdf_step import HANDOVER, bdf_step
-from fricmb.integrate._collect import Collector, accuracy, clock_of, one_step
+from fricmb.integrate._collect import Collector, accuracy, cost, one_step, run_loop, stages_for
 from fricmb.integrate._drive import arrive, crowded, reached, set_window
-from fricmb.integrate._factor import Factor, jacobians
+from fricmb.integrate._factor import Factor, forget, jacobians
 from fricmb.integrate._field import Scratch, set_state, set_time
 from fricmb.integrate._history import History, history, spectrum, start_history
 from fricmb.integrate._instant import State
@@ -40,6 +40,18 @@ def calm(packed: Packed, y: State, h: float) -> bool:
     return True
 
 
+#: BDF steps after which the two methods are compared.
+PATIENCE = 16
+
+
+@kernel
+def give_up(hist: History) -> None:
+    """Leave the run to the one-step method, which gets on faster, for longer each time."""
+    hist.status[2] = 0
+    hist.status[7] = min(2000, max(50, 4 * hist.status[7]))
+    hist.status[4] = hist.status[7]
+
+
 @entry
 def drive_bdf(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy, hist: History,
@@ -54,27 +66,34 @@ def drive_bdf(
         if reached(y.t[0], stop):
             code = arrive(packed, s, y, r, old, out, clock, stop, address)
             stop = set_window(clock, s, y.t[0])
+            one.last[1] = 0.0
             hist.status[2] = 0
         elif hist.status[2] == 1:
             code = bdf_step(packed, s, y, end, multi, acc, hist, out, left, address)
+            if code == ACCEPTED and hist.status[6] > PATIENCE and hist.h[0] * hist.cost[0] < clock.usual[0]:
+                give_up(hist)
+                clock.h[0] = clock.usual[0]
             if code == HANDOVER:
                 hist.status[2] = 0
                 clock.h[0] = max(clock.h[0], hist.h[0])
                 # where it came to nothing it is not tried again at once
                 hist.status[5] = min(50, 2 * hist.status[5] + 1) if hist.status[6] < 8 else 0
                 hist.status[4] = hist.status[5]
+                if hist.status[6] > 4 * PATIENCE:
+                    hist.status[7] = 0
                 code = ACCEPTED
         else:
             code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
             h = y.t[0] - end.t[0]
-            if code == CHANGED:
+            if code == CHANGED and hist.status[7] == 0:
                 hist.status[4] = 0
             elif code == ACCEPTED and hist.status[4] > 0:
                 hist.status[4] -= 1
             elif code == ACCEPTED and calm(packed, y, h):
                 usual = hist.good[0] if hist.good[0] > 0.0 else h
                 start_history(packed, s, end, y, one, hist, min(usual, 0.25 * h), address)
-                multi.h_made[0] = 0.0 if packed.elements.address.shape[0] > 0 else multi.h_made[0]
+                if packed.elements.address.shape[0] > 0:
+                    forget(multi.fac)
         if code > CHANGED:
             return code
 
@@ -91,7 +110,8 @@ def jacobian_at(packed: Packed, s: Scratch, y: State, fac: Factor) -> None:
 class Bdf(Integrator):
     """BDF of order 1 to 5 for the implicit index-1 DAE of motion and contact, condensed to the contacts.
 
-    Every transition is located; around transitions, at starts and near landing Radau IIA of ``stages`` stages steps.
+    Every transition is located; around transitions, at starts and near landing Radau IIA of ``stages`` stages
+    steps, and wherever it gets on faster.
     The spectrum limits the order at a step size where a lightly damped oscillation would grow.
 
     Parameters
@@ -120,24 +140,20 @@ class Bdf(Integrator):
         memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
-        stages = self.stages or (3 if tolerance.rtol > 1e-4 else 5 if tolerance.rtol > 1e-9 else 7)
+        stages = stages_for(problem, tolerance.rtol, self.stages)
         run = Collector(problem, start, t_end, "start_history", "bdf_step")
         acc = accuracy(run, tolerance)
         one = one_step(problem, radau(stages), run.counts)
         multi = one_step(problem, one_stage(), run.counts)
         code = run.begin()
-        if code == DONE:
-            jacobian_at(run.packed, run.scratch, run.y, multi.fac)
-            spectral = spectrum(multi.fac.K, multi.fac.C, run.packed.structure.Minv)
-            hist = history(problem, t_end - start.t, spectral)
-            clock = clock_of(run)
-            code = FULL
-            while code == FULL and not run.is_full(memory):
-                code = drive_bdf(
-                    run.packed, run.scratch, run.y, run.end, one, multi, acc, hist, run.rest, run.old, run.rows,
-                    clock, run.address,
-                )  # fmt: skip
-                run.collect()
-                if progress is not None:
-                    progress(float(run.y.t[0]))
-        return run.trajectory(None if code in (DONE, FULL) else FAILURES[code])
+        jacobian_at(run.packed, run.scratch, run.y, multi.fac)
+        spectral = spectrum(multi.fac.K, multi.fac.C, run.packed.structure.Minv)
+        hist = history(problem, t_end - start.t, spectral, cost(problem, stages) / cost(problem, 1))
+
+        def go_on(clock: Clock) -> int:
+            return drive_bdf(
+                run.packed, run.scratch, run.y, run.end, one, multi, acc, hist, run.rest, run.old, run.rows, clock,
+                run.address,
+            )  # fmt: skip
+
+        return run_loop(run, code, go_on, memory, progress)

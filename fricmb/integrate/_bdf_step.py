@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate._advance import ACCEPTED, FAIL_LAW, REJECTED
-from fricmb.integrate._factor import factorise, jacobians
+from fricmb.integrate._factor import forget, prepare
 from fricmb.integrate._field import Scratch, normal_force
 from fricmb.integrate._history import History, admissible, rescale
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._onestep import Accuracy, OneStep, grain, newton_tolerances, state_noise, widest
+from fricmb.integrate._onestep import Accuracy, OneStep, add_to_position, grain, newton_tolerances, state_noise, widest
 from fricmb.integrate._orders import MAX_ORDER
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
@@ -28,11 +28,13 @@ from fricmb.integrate._transitions import copy_state, slip_rate
 
 #: A step near which something changes its mode: the one-step method takes over.
 HANDOVER = -1
+#: Largest growth of a step: differences of old values are extrapolated, their round-off with them.
+GROWTH = 3.0
 
 
 @kernel
 def predict(hist: History) -> None:
-    """Prediction, and psi (into ``new``)."""
+    """Prediction, and psi (into ``new``; ``lag``: psi without the prediction)."""
     k = hist.status[0]
     for i in range(hist.guess.shape[0]):
         guess = hist.D[0, i]
@@ -41,7 +43,8 @@ def predict(hist: History) -> None:
             guess += hist.D[j, i]
             psi += hist.gamma[j] * hist.D[j, i]
         hist.guess[i] = guess
-        hist.new[i] = guess - psi / hist.gamma[k]
+        hist.lag[i] = -psi / hist.gamma[k]
+        hist.new[i] = guess + hist.lag[i]
 
 
 @kernel
@@ -54,15 +57,9 @@ def solve_formula(
     h = hist.h[0]
     beta_h = h / hist.gamma[hist.status[0]]
     nonlinear = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
-    if one.h_made[0] != beta_h:
-        if nonlinear or one.h_made[0] == 0.0:
-            jacobians(packed, s, one.fac)
-            one.counts[3] += 1
-        one.counts[4] += 1
-        if not factorise(packed, one.tab, beta_h, one.fac, w, address):
-            one.h_made[0] = 0.0
-            return False
-        one.h_made[0] = beta_h
+    again = nonlinear and one.fac.made[one.fac.slot[0]] != beta_h
+    if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
+        return False
     st.t[0] = y.t[0] + h
     st.hA[0, 0] = beta_h
     for i in range(n):
@@ -159,12 +156,19 @@ def accept(y: State, end: State, hist: History) -> None:
     """Bring the differences to the end of the step and the energies with them."""
     k = hist.status[0]
     n_y = hist.D.shape[1]
+    n = y.q.shape[0]
     for i in range(n_y):
         correction = hist.d[i]
         hist.D[k + 2, i] = correction - hist.D[k + 1, i]
         hist.D[k + 1, i] = correction
-        for j in range(k, -1, -1):
+        for j in range(k, 0, -1):
             hist.D[j, i] += hist.D[j + 1, i]
+        if i >= n:
+            hist.D[0, i] += hist.D[1, i]
+        else:
+            end.q[i] = hist.D[0, i]
+            add_to_position(end, i, hist.D[1, i] + end.low[i])
+            hist.D[0, i] = end.q[i]
     rates = n_y - y.rate.shape[0]
     for i in range(y.rate.shape[0]):
         gained = 0.0
@@ -197,7 +201,7 @@ def select_order(
         if factor > best and admissible(hist, k + 1, hist.h[0], left):
             best_k, best = k + 1, factor
     # a hundred steps at least: where nothing moves, no error says how fast a load changes
-    step = ladder(min(best, 8.0, 1.0 / (hist.h[0] * hist.unit[0])))
+    step = ladder(min(best, GROWTH, 1.0 / (hist.h[0] * hist.unit[0])))
     while step > 1.0 and not admissible(hist, best_k, hist.h[0] * step, left):
         step = ladder(0.99 * step)
     if not admissible(hist, best_k, hist.h[0] * step, left):
@@ -226,7 +230,7 @@ def bdf_step(
     predict(hist)
     copy_state(y, end)
     if not solve_formula(packed, s, y, one, acc, hist, address):
-        one.h_made[0] = 0.0
+        forget(one.fac)
         hist.status[3] += 2
         one.counts[1] += 1
         rescale(hist, 0.5)
@@ -236,7 +240,10 @@ def bdf_step(
         end.v[i] = hist.new[n + i] = one.st.V[0, i]
     for i in range(nz):
         end.z[i] = hist.new[2 * n + i] = one.w.z[0, i]
-    for i in range(2 * n + nz):
+    for i in range(n):
+        # without a difference of large positions, whose round-off would stay in the history
+        hist.d[i] = hist.lag[i] + one.st.hA[0, 0] * one.st.V[0, i]
+    for i in range(n, 2 * n + nz):
         hist.d[i] = hist.new[i] - hist.guess[i]
     state_noise(packed, one, acc, hist.h[0])
     error = scaled(packed, y, one, acc, hist, hist.d, 1.0 / (k + 1))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from fricmb.integrate._advance import DONE, FAIL_MODES, FAIL_REDUNDANT, Clock
+from fricmb.integrate._advance import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL, Clock
 from fricmb.integrate._factor import factor
 from fricmb.integrate._field import scratch
 from fricmb.integrate._hermite import RowTrajectory
@@ -48,7 +50,7 @@ def one_step(problem: Problem, tableau: Tableau, counts: np.ndarray) -> OneStep:
     """Room for steps of one tableau."""
     return room(OneStep(
         tableau, factor(problem, tableau), stages(problem, tableau), port_state(problem, len(tableau.c)),
-        np.zeros(problem.n_c), np.zeros(problem.n), np.zeros(1), counts, np.zeros(problem.n_c + 2),
+        np.zeros(problem.n_c), np.zeros(problem.n), np.zeros(2), counts, np.zeros((len(tableau.c), problem.n_c + 2)),
         np.zeros(problem.n_z), np.zeros(len(tableau.c)),
     ))  # fmt: skip
 
@@ -80,7 +82,7 @@ class Collector:
         # a function of time that switches right at the start has switched
         self.scratch.window[0] = self.start.t + 4e-16 * abs(self.start.t) + 1e-300
         code = begin(self.packed, self.scratch, self.y, self.rest, self.old, given, self.rows, self.address)
-        return (DONE, FAIL_MODES, FAIL_REDUNDANT)[code]
+        return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]
 
     def is_full(self, memory: float | None) -> bool:
         """Whether the rows so far use up the memory (bytes) that they may."""
@@ -112,6 +114,37 @@ class Collector:
         end = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
         transitions = Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
         return RowTrajectory(self.problem, values[:keep], kind[:keep], mode[:keep], transitions, counters, end, failure)
+
+
+def stages_for(problem: Problem, rtol: float, wanted: int | None) -> int:
+    """Stages of the one-step method that are fastest at a tolerance (measured); many contacts make stages dear."""
+    if wanted is not None:
+        return wanted
+    if problem.m + problem.n_z > 6:
+        return 3 if rtol > 1e-4 else 5 if rtol > 1e-9 else 7
+    return 3 if rtol > 1e-3 else 5 if rtol > 1e-5 else 6 if rtol > 1e-7 else 7
+
+
+def cost(problem: Problem, stages: int) -> float:
+    """Cost of a step of so many stages, about in microseconds (measured; only ratios are used)."""
+    u = stages * (problem.m + problem.n_z + int(np.sum(problem.contacts.normal != 0)))
+    return 1.5 + 0.5 * stages + 0.002 * stages * problem.n**2 + 0.02 * u**2 + 0.0005 * u**3
+
+
+def run_loop(
+    run: Collector, code: int, step: Callable[[Clock], int], memory: float | None,
+    progress: Callable[[float], None] | None,
+) -> RowTrajectory:  # fmt: skip
+    """Let ``step`` fill the room for rows, again and again, until the end of the run, of memory, or a failure."""
+    if code == DONE:
+        clock = clock_of(run)
+        code = FULL
+        while code == FULL and not run.is_full(memory):
+            code = step(clock)
+            run.collect()
+            if progress is not None:
+                progress(float(run.y.t[0]))
+    return run.trajectory(None if code in (DONE, FULL) else FAILURES[code])
 
 
 def first_step(run: Collector) -> float:

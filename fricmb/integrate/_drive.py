@@ -91,6 +91,7 @@ def drive(
         if reached(y.t[0], stop):
             code = arrive(packed, s, y, r, old, out, clock, stop, address)
             stop = set_window(clock, s, y.t[0])
+            one.last[1] = 0.0
         else:
             code = advance(packed, s, y, end, one, acc, r, old, out, clock, stop - y.t[0], address)
         if code > CHANGED:

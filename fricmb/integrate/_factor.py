@@ -20,20 +20,24 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._lapack import solve_complex
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._port_state import PortState
-from fricmb.integrate._problem import Floats, Floats2, Floats4, Ints, Problem
+from fricmb.integrate._problem import Floats, Floats2, Floats3, Ints, Problem
 from fricmb.integrate._room import block, room
-from fricmb.integrate._tableau import Complexes2, Complexes3, Tableau
+from fricmb.integrate._tableau import Complexes, Complexes2, Complexes3, Tableau
 
 
 class Factor(NamedTuple):
-    """What depends on the step size: ``Sinv`` (l, n, n), ``P`` (s, n, s, m_i) response of V to port inputs, ``G``.
+    """What depends on the step size alone, for several step sizes (slots, k).
 
+    ``Sinv`` (k l, n, n); ``P`` (k, s n, s m_i) response of V to port inputs, ``G`` (k, s m_i, s m_i) of their outputs.
+    ``made`` (k,) step sizes of the slots (0: none); ``slot`` (2,) the present one and the one filled last.
     ``Nq``, ``Nv`` (n_v, n) gradients of varying normal forces; ``K``, ``C`` (n, n) the Jacobian they were made with.
     """
 
     Sinv: Complexes3
-    P: Floats4
-    G: Floats2
+    P: Floats3
+    G: Floats3
+    made: Floats
+    slot: Ints
     K: Floats2
     C: Floats2
     Nq: Floats2
@@ -42,16 +46,59 @@ class Factor(NamedTuple):
     X: Complexes3
 
 
+#: Most step sizes whose factors are kept, and bytes for them: a ladder of steps comes back to the same ones.
+SLOTS, SLOT_BYTES = 24, 6.4e7
+
+
 def factor(problem: Problem, tableau: Tableau) -> Factor:
-    """Room for a factor."""
+    """Room for factors."""
     n, s, levels = problem.n, len(tableau.c), len(tableau.lam)
     nv = int(np.sum(problem.contacts.normal != 0))
     mi = problem.m + nv
     square, wide = (n, n), (levels, mi, n)
+    each = 16.0 * levels * n * n + 8.0 * s * s * mi * (n + mi)
+    k = 2 if changes(problem) else int(np.clip(SLOT_BYTES / max(each, 1.0), 2, SLOTS))
     return room(Factor(
-        np.zeros((levels, n, n), complex), np.zeros((s, n, s, mi)), np.zeros((s * mi, s * mi)), np.zeros(square),
-        np.zeros(square), np.zeros((nv, n)), np.zeros((nv, n)), np.zeros(square, complex), np.zeros(wide, complex),
+        np.zeros((k * levels, n, n), complex), np.zeros((k, s * n, s * mi)), np.zeros((k, s * mi, s * mi)),
+        np.zeros(k), np.zeros(2, np.int64), np.zeros(square), np.zeros(square), np.zeros((nv, n)), np.zeros((nv, n)),
+        np.zeros(square, complex), np.zeros(wide, complex),
     ))  # fmt: skip
+
+
+def changes(problem: Problem) -> bool:
+    """Whether the Jacobian changes with the state: nonlinear elements or varying normal forces."""
+    return len(problem.elements.table.address) > 0 or bool(np.any(problem.contacts.normal != 0))
+
+
+@kernel
+def prepare(
+    packed: Packed, tab: Tableau, s: Scratch, fac: Factor, w: PortState, counts: Ints, h: float, again: bool,
+    keep: bool, address: Ints,
+) -> bool:  # fmt: skip
+    """Make the factor for step h the present one; False where the matrix is singular.
+
+    ``again``: the Jacobian is made anew, at X, before that; else only the first time.  Steps that are met once, in
+    searches (not ``keep``), share slot 0.
+    """
+    made = fac.made
+    slots = made.shape[0]
+    if again or fac.slot[1] == 0:
+        jacobians(packed, s, fac)
+        counts[3] += 1
+        made[:] = 0.0
+        fac.slot[1] = slots - 1
+    for k in range(slots):
+        if made[k] == h:
+            fac.slot[0] = k
+            return True
+    k = 0
+    if keep:
+        k = fac.slot[1] % (slots - 1) + 1
+        fac.slot[1] = k
+    fac.slot[0] = k
+    counts[4] += 1
+    made[k] = h if factorise(packed, tab, h, fac, w, address) else 0.0
+    return bool(made[k] == h)
 
 
 @kernel
@@ -64,73 +111,97 @@ def jacobians(packed: Packed, s: Scratch, fac: Factor) -> None:
             normal_gradient(packed.ports, packed.normals, k, s, fac.Nq[a], fac.Nv[a])
 
 
+@kernel
+def forget(fac: Factor) -> None:
+    """Let the Jacobian be made anew before the next step."""
+    fac.made[:] = 0.0
+    fac.slot[1] = 0
+
+
 @block
 def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState, address: Ints) -> bool:
-    """Make the factor for h from its Jacobian.  False where the matrix is singular."""
-    n = fac.K.shape[0]
-    ports = packed.ports
-    m = ports.row[-1]
-    mi = w.Fin.shape[1]
-    s = tab.c.shape[0]
-    for x in range(tab.lam.shape[0]):
+    """Fill the present slot for h from the Jacobian.  False where the matrix is singular."""
+    M, K, C, S, X = packed.structure.M, fac.K, fac.C, fac.S, fac.X
+    W, Wn, var = packed.ports.W, packed.ports.Wn, packed.ports.var
+    n = K.shape[0]
+    m = W.shape[1]
+    levels = tab.lam.shape[0]
+    X[:, :, :] = 0.0
+    for x in range(levels):
         sigma = h * tab.lam[x]
+        inverse = fac.Sinv[fac.slot[0] * levels + x]
         for i in range(n):
             for j in range(n):
                 # transposed: LAPACK reads by columns
-                fac.S[j, i] = packed.structure.M[i, j] + sigma * (fac.C[i, j] + sigma * fac.K[i, j])
-                fac.Sinv[x, i, j] = 1.0 if i == j else 0.0
-        if n > 0 and solve_complex(address[1], fac.S, fac.Sinv[x], w.sizes, w.pivots) != 0:
+                S[j, i] = M[i, j] + sigma * (C[i, j] + sigma * K[i, j])
+                inverse[i, j] = 1.0 if i == j else 0.0
+        if n > 0 and solve_complex(address[1], S, inverse, w.sizes, w.pivots) != 0:
             return False
         # right-hand sides were columns for LAPACK, rows for us: transpose back
         for i in range(n):
             for j in range(i):
-                value = fac.Sinv[x, i, j]
-                fac.Sinv[x, i, j] = fac.Sinv[x, j, i]
-                fac.Sinv[x, j, i] = value
-        for c in range(m):
-            for i in range(n):
-                value = 0.0 + 0.0j
-                for j in range(n):
-                    value += fac.Sinv[x, i, j] * ports.W[j, c]
-                fac.X[x, c, i] = sigma * value
-        for k in range(ports.var.shape[0]):
-            if ports.var[k] >= 0:
-                for i in range(n):
-                    value = 0.0 + 0.0j
-                    for j in range(n):
-                        value += fac.Sinv[x, i, j] * ports.Wn[j, k]
-                    fac.X[x, m + ports.var[k], i] = sigma * value
-    for i in range(s):
-        for j in range(s):
-            for a in range(n):
-                for c in range(mi):
-                    value = 0.0
-                    for x in range(tab.lam.shape[0]):
-                        value += (tab.T[i, x] * fac.X[x, c, a] * tab.Tinv[x, j]).real
-                    fac.P[i, a, j, c] = value
-    port_outputs(ports.W, tab.A, h, fac)
+                value = inverse[i, j]
+                inverse[i, j] = inverse[j, i]
+                inverse[j, i] = value
+        for j in range(n):
+            for c in range(m):
+                if W[j, c] != 0.0:
+                    spread_column(X[x, c], inverse, j, sigma * W[j, c])
+            for k in range(var.shape[0]):
+                if var[k] >= 0 and Wn[j, k] != 0.0:
+                    spread_column(X[x, m + var[k]], inverse, j, sigma * Wn[j, k])
+    port_inputs(tab, fac)
+    port_outputs(W, tab.A, h, fac)
     return True
 
 
 @kernel
-def port_outputs(W: Floats, A: Floats, h: float, fac: Factor) -> None:
+def spread_column(line: Complexes, inverse: Complexes2, j: int, weight: complex) -> None:
+    """Add weight times column j of the inverse."""
+    for i in range(line.shape[0]):
+        line[i] += weight * inverse[i, j]
+
+
+@kernel
+def port_inputs(tab: Tableau, fac: Factor) -> None:
+    """P: velocities that follow from unit port inputs, over all stages."""
+    X = fac.X
+    P = fac.P[fac.slot[0]]
+    mi = X.shape[1]
+    n = X.shape[2]
+    P[:, :] = 0.0
+    for i in range(tab.c.shape[0]):
+        for j in range(tab.c.shape[0]):
+            for x in range(X.shape[0]):
+                weight = tab.T[i, x] * tab.Tinv[x, j]
+                for a in range(n):
+                    for c in range(mi):
+                        P[i * n + a, j * mi + c] += (weight * X[x, c, a]).real
+
+
+@kernel
+def port_outputs(W: Floats2, A: Floats2, h: float, fac: Factor) -> None:
     """G: relative velocities and varying normal forces that follow from unit port inputs."""
-    s = fac.P.shape[0]
-    n = fac.P.shape[1]
-    mi = fac.P.shape[3]
+    P, G, Nq, Nv = fac.P[fac.slot[0]], fac.G[fac.slot[0]], fac.Nq, fac.Nv
+    s = A.shape[0]
+    n = W.shape[0]
     m = W.shape[1]
+    mi = fac.X.shape[1]
+    G[:, :] = 0.0
     for i in range(s):
-        for j in range(s):
-            for c in range(mi):
-                for a in range(m):
-                    value = 0.0
-                    for b in range(n):
-                        value += W[b, a] * fac.P[i, b, j, c]
-                    fac.G[i * mi + a, j * mi + c] = value
-                for a in range(mi - m):
-                    value = 0.0
-                    for b in range(n):
-                        value += fac.Nv[a, b] * fac.P[i, b, j, c]
-                        for x in range(s):
-                            value += h * A[i, x] * fac.Nq[a, b] * fac.P[x, b, j, c]
-                    fac.G[i * mi + m + a, j * mi + c] = value
+        for a in range(m):
+            for b in range(n):
+                add_row(G[i * mi + a], P[i * n + b], W[b, a])
+        for a in range(mi - m):
+            for b in range(n):
+                add_row(G[i * mi + m + a], P[i * n + b], Nv[a, b])
+                for x in range(s):
+                    add_row(G[i * mi + m + a], P[x * n + b], h * A[i, x] * Nq[a, b])
+
+
+@kernel
+def add_row(line: Floats, other: Floats, weight: float) -> None:
+    """Add weight times the other row."""
+    if weight != 0.0:
+        for c in range(line.shape[0]):
+            line[c] += weight * other[c]

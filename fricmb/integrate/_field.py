@@ -83,14 +83,15 @@ def structure_force(structure: Structure, elements: Table, spread: Spread, s: Sc
     """All forces on the dofs at X but those of the contacts, into f (n,)."""
     n = f.shape[0]
     nu = s.ddu.shape[0]
-    u0 = 1 + 2 * n
+    K, C = structure.K, structure.C
+    q, v, u, du = s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n], s.X[1 + 2 * n : 1 + 2 * n + nu], s.X[1 + 2 * n + nu :]
     for i in range(n):
         value = structure.f[i]
         for j in range(n):
-            value -= structure.K[i, j] * s.X[1 + j] + structure.C[i, j] * s.X[1 + n + j]
+            value -= K[i, j] * q[j] + C[i, j] * v[j]
         for j in range(nu):
-            value -= structure.Ku[i, j] * s.X[u0 + j] + structure.Cu[i, j] * s.X[u0 + nu + j]
-            value += structure.B[i, j] * s.X[u0 + j]
+            value -= structure.Ku[i, j] * u[j] + structure.Cu[i, j] * du[j]
+            value += structure.B[i, j] * u[j]
         f[i] = value
     for k in range(elements.address.shape[0]):
         gather(elements, k, s.X, s.x)
@@ -199,11 +200,12 @@ def powers(packed: Packed, s: Scratch, F: Floats, N: Floats, g: Floats, out: Flo
             push = N[k] - ports.N0[k]
             damping -= (push + s.out[4]) * rate
             supply += push * (felt - rate)
+    C, Ka, q, v = structure.C, structure.Ka, s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n]
     for i in range(n):
-        vi = s.X[1 + n + i]
+        vi = v[i]
         for j in range(n):
-            damping += vi * structure.C[i, j] * s.X[1 + n + j]
-            supply -= vi * structure.Ka[i, j] * s.X[1 + j]
+            damping += vi * C[i, j] * v[j]
+            supply -= vi * Ka[i, j] * q[j]
         for j in range(nu):
             damping += vi * structure.Cu[i, j] * s.X[u0 + nu + j]
             supply += vi * structure.B[i, j] * s.X[u0 + j]

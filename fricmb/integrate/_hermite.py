@@ -190,7 +190,7 @@ class RowTrajectory(Trajectory):
         pivots = np.zeros(max(1, m, n), np.int32)
         sample_rows(
             packed, scratch(problem), room, self._values, self._mode, packed.breakpoints, index.astype(np.int64), t,
-            out, modes, np.zeros(3, np.int32), pivots, addresses("complete"),
+            out, modes, np.zeros(4, np.int32), pivots, addresses("complete"),
         )  # fmt: skip
         ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
         _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])

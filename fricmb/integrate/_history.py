@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import State
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._onestep import OneStep, stage_powers
+from fricmb.integrate._onestep import OneStep
 from fricmb.integrate._orders import COLUMNS, MAX_ORDER, SPACING, growth_table
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import Floats, Floats2, Ints, Problem
@@ -19,12 +19,13 @@ from fricmb.integrate._room import block, room
 class History(NamedTuple):
     """Backward differences ``D`` (8, n_y) of y = [q, v, z, powers] at step ``h`` (1,).
 
-    ``status`` (7,): order, steps since the last change, whether BDF is on, rejections in a row, one-step steps to wait
-    for before it is tried again, the last wait, steps since its start.  ``good`` (1,) last accepted step.  ``new``,
-    ``guess``, ``d`` (n_y,) values, prediction and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;
+    ``status`` (8,): order, steps since the last change, whether BDF is on, rejections in a row, one-step steps to wait
+    for before it is tried again, the last wait, steps since its start, the last wait because it was the slower.
+    ``good`` (1,) last accepted step.  ``new``, ``guess``, ``lag``, ``d`` (n_y,) values, prediction, psi without it,
+    and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;
     ``adams`` (7,) weights of an integral over the last step by backward differences (Adams-Moulton).  ``unit`` (1,)
-    allowed local error per unit of time, relative to rtol.  ``growth`` table of :mod:`_orders`, ``omega`` and ``decay``
-    spectrum of the scene.
+    allowed local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
+    ``growth`` table of :mod:`_orders`, ``omega`` and ``decay`` spectrum of the scene.
     ``over`` (n_c,) how far stuck forces came nearer to their limits in the last step; ``U``, ``E``, ``column`` room for
     rescaling.
     """
@@ -35,10 +36,12 @@ class History(NamedTuple):
     good: Floats
     new: Floats
     guess: Floats
+    lag: Floats
     d: Floats
     gamma: Floats
     adams: Floats
     unit: Floats
+    cost: Floats
     growth: Floats2
     omega: Floats
     decay: Floats
@@ -48,8 +51,11 @@ class History(NamedTuple):
     column: Floats
 
 
-def history(problem: Problem, span: float, spectrum: tuple[Floats, Floats]) -> History:
-    """Room for the history of a run over ``span``; spectrum: frequencies and decay rates of the structure."""
+def history(problem: Problem, span: float, spectrum: tuple[Floats, Floats], cost: float) -> History:
+    """Room for the history of a run over ``span``; spectrum: frequencies and decay rates of the structure.
+
+    ``cost``: of a one-step step, in steps of BDF.
+    """
     n_y = 2 * problem.n + problem.n_z + problem.n_c + 2
     gamma = np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))])
     adams = np.array([1.0, -1 / 2, -1 / 12, -1 / 24, -19 / 720, -3 / 160, -863 / 60480])
@@ -59,14 +65,16 @@ def history(problem: Problem, span: float, spectrum: tuple[Floats, Floats]) -> H
         History(
             D=np.zeros((8, n_y)),
             h=np.zeros(1),
-            status=np.zeros(7, np.int64),
+            status=np.zeros(8, np.int64),
             good=np.zeros(1),
             new=np.zeros(n_y),
             guess=np.zeros(n_y),
+            lag=np.zeros(n_y),
             d=np.zeros(n_y),
             gamma=gamma,
             adams=adams,
             unit=unit,
+            cost=np.array([cost]),
             growth=growth_table(),
             omega=np.ascontiguousarray(spectrum[0], dtype=float),
             decay=np.ascontiguousarray(spectrum[1], dtype=float),
@@ -144,11 +152,6 @@ def start_history(
     H = y.t[0] - before.t[0]
     k = min(4, n_s)
     step = min(h, H / k)
-    powers = np.zeros((n_s, nr))
-    for j in range(n_s):
-        stage_powers(packed, s, one, j)
-        for i in range(nr):
-            powers[j, i] = one.power[i]
     for j in range(k + 1):
         x = 1.0 - j * step / H
         for i in range(hist.D.shape[1]):
@@ -158,14 +161,17 @@ def start_history(
             for p in range(n_s, -1, -1):
                 weight = weight * x + tab.basis[p, c]
             for i in range(n):
-                hist.D[j, i] += weight * (before.q[i] if c == 0 else st.Q[c - 1, i])
+                # ways from the end of the step, free of the round-off of large positions
+                for i_s in range(n_s):
+                    part = st.hA[c - 1, i_s] if c > 0 else 0.0
+                    hist.D[j, i] += weight * (part - st.hA[n_s - 1, i_s]) * st.V[i_s, i]
                 hist.D[j, n + i] += weight * (before.v[i] if c == 0 else st.V[c - 1, i])
             for i in range(nz):
                 hist.D[j, 2 * n + i] += weight * (before.z[i] if c == 0 else w.z[c - 1, i])
             for i in range(nr):
-                hist.D[j, 2 * n + nz + i] += weight * (before.rate[i] if c == 0 else powers[c - 1, i])
+                hist.D[j, 2 * n + nz + i] += weight * (before.rate[i] if c == 0 else one.power[c - 1, i])
     for i in range(n):
-        hist.D[0, i] = y.q[i]
+        hist.D[0, i] = 0.0
         hist.D[0, n + i] = y.v[i]
     for i in range(1, k + 1):
         for j in range(k, i - 1, -1):
@@ -174,6 +180,8 @@ def start_history(
     for j in range(k + 1, 8):
         for i in range(hist.D.shape[1]):
             hist.D[j, i] = 0.0
+    for i in range(n):
+        hist.D[0, i] = y.q[i]
     hist.h[0] = step
     hist.status[0] = k
     hist.status[1] = 0

@@ -22,6 +22,9 @@ from fricmb.integrate._pack import Packed, Ports
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
 from fricmb.integrate._room import block, room
 
+#: What can be wrong with a state: see State.fault.
+NEGATIVE, INFINITE = 1.0, 2.0
+
 
 class State(NamedTuple):
     """The state of a run with all that follows from it; ``t`` (1,), ``n`` (m,) directions of slip.
@@ -29,7 +32,8 @@ class State(NamedTuple):
     ``a`` (n,) accelerations, ``zd`` (n_z,) rates, ``work`` and ``rate`` (n_c+2,) energies and powers (see ``powers``).
     ``a0`` (m,) relative accelerations without the forces of stuck contacts, ``size`` (m,)
     sums of magnitudes behind g (its round-off), ``wd`` (m,) rates of the prescribed part.
-    ``fault`` (1,): 1 where a slip coefficient has turned negative.
+    ``fault`` (1,): NEGATIVE where a slip coefficient has turned so, INFINITE where an acceleration has.
+    ``low`` (n,): what the last additions to q have lost to round-off.
     """
 
     t: Floats
@@ -52,6 +56,7 @@ class State(NamedTuple):
     J: Floats
     rhs: Floats
     fault: Floats
+    low: Floats
 
 
 def state(problem: Problem, start: Start) -> State:
@@ -63,7 +68,7 @@ def state(problem: Problem, start: Start) -> State:
     return room(State(
         np.array([float(start.t)]), q, v, z, np.zeros_like(z), np.zeros(m), np.zeros(nc), direction, np.zeros(m),
         np.zeros(n), np.zeros(n), mode, np.zeros(nc + 2), np.zeros(nc + 2), np.zeros(m), np.zeros(m), np.zeros(m),
-        np.zeros(m * m), np.zeros(m), np.zeros(1),
+        np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n),
     ))  # fmt: skip
 
 
@@ -124,7 +129,7 @@ def known_forces(packed: Packed, s: Scratch, y: State) -> None:
             if y.mode[k] == SLIP:
                 mu = coefficient(ports, packed.laws, k, s, r, y.N[k])[0]
                 if mu < 0.0:
-                    y.fault[0] = 1.0
+                    y.fault[0] = NEGATIVE
             for a in range(row0, row0 + d):
                 # not g/|g|: close to r = 0 the direction in g is lost in round-off, and the stages know it
                 y.F[a] = -mu * y.N[k] * y.n[a]
@@ -186,6 +191,10 @@ def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots, addres
                 size += 1
     if size == 0:
         return True
+    for i in range(size):
+        if not abs(y.rhs[i]) < np.inf:
+            y.fault[0] = INFINITE
+            return False
     if not solve_response(ports, y, y.mode, True, size, sizes, pivots, address):
         return False
     i = 0
@@ -197,14 +206,13 @@ def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots, addres
             i += 1
             for b in range(y.q.shape[0]):
                 y.f[b] += ports.W[b, a] * y.F[a]
-    wd = y.a0[0]
     free_acceleration(packed, y)
-    return bool(wd < np.inf)
+    return True
 
 
 @block
 def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
-    """All that follows from t, q, v, z, modes and directions.  False where stuck contacts are redundant."""
+    """All that follows from t, q, v, z, modes and directions.  False: redundant stuck contacts, or see ``fault``."""
     kinematics(packed, s, y)
     known_forces(packed, s, y)
     if not stuck_forces(packed, y, sizes, pivots, address):

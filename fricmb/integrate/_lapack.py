@@ -15,12 +15,16 @@ from fricmb.integrate._problem import Floats
 from fricmb.integrate._room import LAPACK, PLACES
 from fricmb.integrate._share import shared_addresses
 
+#: Routines that came later and stand at the end of the table; their places.
+LATER = ("dgetrf", "dgetrs")
+FACTOR, SOLVE = (PLACES.index(name) for name in LATER)
+
 
 @lru_cache(maxsize=8)
 def addresses(*blocks: str) -> np.ndarray[Any, np.dtype[np.int64]]:
     """Table of addresses: LAPACK and the named blocks; the rest stays 0 and uncompiled."""
     table = np.zeros(len(PLACES), dtype=np.int64)
-    for name in LAPACK:
+    for name in (*LAPACK, *LATER):
         table[PLACES.index(name)] = get_cython_function_address("scipy.linalg.cython_lapack", name)
     for name, address in zip(blocks, shared_addresses(blocks), strict=True):
         table[PLACES.index(name)] = address
@@ -43,6 +47,24 @@ def _gesv(typingctx: Any, address: Any, sizes: Any, pivots: Any, a: Any, b: Any)
         arguments = [builder.bitcast(x, byte) for x in (n, nrhs, data(3), n, data(2), data(4), n, info)]
         kind = ir.FunctionType(ir.VoidType(), [byte] * 8)
         builder.call(builder.inttoptr(args[0], kind.as_pointer()), arguments)
+        return context.get_dummy_value()
+
+    return signature, codegen
+
+
+@intrinsic
+def call_lapack(typingctx: Any, address: Any, arguments: Any) -> Any:
+    """Call the routine at ``address`` with pointers to the data of a tuple of arrays, Fortran's way."""
+    signature = types.void(address, arguments)
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        byte = ir.IntType(8).as_pointer()
+        pointers = []
+        for i, kind in enumerate(signature.args[1]):
+            array = context.make_array(kind)(context, builder, builder.extract_value(args[1], i))
+            pointers.append(builder.bitcast(array.data, byte))
+        function = ir.FunctionType(ir.VoidType(), [byte] * len(pointers))
+        builder.call(builder.inttoptr(args[0], function.as_pointer()), pointers)
         return context.get_dummy_value()
 
     return signature, codegen

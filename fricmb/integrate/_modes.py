@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate._field import Scratch, normal_force
-from fricmb.integrate._instant import State, complete, kinematics, known_forces, slip_speed, solve_response
+from fricmb.integrate._instant import INFINITE, State, complete, kinematics, known_forces, slip_speed, solve_response
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._pack import Packed, Ports, Table
 from fricmb.integrate._port_state import PortState, port_state
@@ -134,7 +134,8 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
     """Find modes, directions, forces and accelerations of the state: contacts with ``r.part`` 0 keep their mode.
 
     On entry part marks contacts at rest (1) or just released (2).  Velocities of those at rest are projected to g = 0.
-    Returns 0, or 1 where no consistent set of modes was found, 2 where stuck contacts are redundant.
+    Returns 0, or 1 where no consistent set of modes was found, 2 where stuck contacts are redundant, 3 where
+    accelerations are infinite.
     """
     sizes, pivots = r.w.sizes, r.w.pivots
     some = False
@@ -149,7 +150,7 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
         if solve_rest(packed, s, y, r, address) < 0:
             return 1
     if not complete(packed, s, y, sizes, pivots, address):
-        return 2
+        return 3 if y.fault[0] == INFINITE else 2
     return 0
 
 

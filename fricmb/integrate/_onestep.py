@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fricmb.integrate._factor import Factor, factorise, jacobians
+import numpy as np
+
+from fricmb.integrate._factor import Factor, prepare
 from fricmb.integrate._field import Scratch, powers, set_state, set_time
+from fricmb.integrate._guess import start_at_rest, start_on_last
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._pack import Packed, Ports
 from fricmb.integrate._port_state import PortState
-from fricmb.integrate._problem import OPEN, Floats, Ints
+from fricmb.integrate._problem import Floats, Floats2, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate._stages import Stages, solve_stages
 from fricmb.integrate._tableau import Tableau
@@ -35,8 +38,8 @@ class Accuracy(NamedTuple):
 class OneStep(NamedTuple):
     """All that a one-step method of one tableau needs.
 
-    ``h_made`` (1,) the step size of the factor (0: none), ``counts`` work done (see Counters), ``power`` (n_c+2,)
-    powers of one stage, ``noise_z`` (n_z,) sizes of states that do not matter.
+    ``last`` (2,) start and length of the step that the stages are of (0: of none), ``counts`` work done (see
+    Counters), ``power`` (s, n_c+2) powers at the stages, ``noise_z`` (n_z,) sizes of states that do not matter.
     """
 
     tab: Tableau
@@ -45,9 +48,9 @@ class OneStep(NamedTuple):
     w: PortState
     tol: Floats
     scale: Floats
-    h_made: Floats
+    last: Floats
     counts: Ints
-    power: Floats
+    power: Floats2
     noise_z: Floats
     margin: Floats
 
@@ -81,19 +84,12 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
     """Solve the stages of a step h from y (values in ``one.st``, ``one.w``).  False without convergence."""
     n = y.q.shape[0]
     st, w, tab = one.st, one.w, one.tab
-    nonlinear = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
-    if nonlinear:
+    again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
+    if again:
         set_time(packed.signals, s, y.t[0], n)
         set_state(s, y.q, y.v)
-    if nonlinear or one.h_made[0] == 0.0:
-        jacobians(packed, s, one.fac)
-        one.counts[3] += 1
-    if nonlinear or one.h_made[0] != h:
-        one.counts[4] += 1
-        if not factorise(packed, tab, h, one.fac, w, address):
-            one.h_made[0] = 0.0
-            return False
-        one.h_made[0] = h
+    if not prepare(packed, tab, s, one.fac, w, one.counts, h, again, on_ladder(h), address):
+        return False
     for i in range(n):
         st.psi_v[i] = y.v[i]
         st.psi_q[i] = y.q[i]
@@ -103,21 +99,33 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
         st.t[i] = y.t[0] + tab.c[i] * h
         for j in range(tab.c.shape[0]):
             st.hA[i, j] = h * tab.A[i, j]
-        for a in range(n):
-            st.V[i, a] = y.v[a] + tab.c[i] * h * y.a[a]
-        for a in range(y.z.shape[0]):
-            w.z[i, a] = y.z[a]
-        for k in range(y.mode.shape[0]):
-            row0 = packed.ports.row[k]
-            w.N[i, k] = y.N[k]
-            w.r[i, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
-            for a in range(row0, packed.ports.row[k + 1]):
-                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
-                w.n[i, a] = y.n[a]
-                w.g[i, a] = y.g[a]
     newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
-    one.counts[2] += tab.c.shape[0]
-    return solve_stages(packed, tab, s, one.fac, st, w, y.mode, one.tol, one.scale, address) > 0
+    found = start_on_last(packed, y, tab, st, w, one.last, h) and solve(packed, s, y, one, address)
+    if not found:
+        start_at_rest(packed, y, tab, st, w, h)
+        found = solve(packed, s, y, one, address)
+    one.last[0] = y.t[0]
+    one.last[1] = h if found else 0.0
+    return found
+
+
+@kernel
+def solve(packed: Packed, s: Scratch, y: State, one: OneStep, address: Ints) -> bool:
+    """Solve the stages from the values that stand in them."""
+    one.counts[2] += one.tab.c.shape[0]
+    return solve_stages(packed, one.tab, s, one.fac, one.st, one.w, y.mode, one.tol, one.scale, address) > 0
+
+
+@kernel
+def ladder(h: float) -> float:
+    """The step rounded down to a power of 2^(1/8)."""
+    return float(2.0 ** (0.125 * np.floor(8.0 * np.log2(h) + 1e-9)))
+
+
+@kernel
+def on_ladder(h: float) -> bool:
+    """Whether a step is one of the ladder's."""
+    return bool(h == ladder(h))
 
 
 @kernel
@@ -188,22 +196,29 @@ def error_norm(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) 
 
 @block
 def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
-    """Put the end of the step into y, with forces, accelerations, work."""
+    """Put the end of the step into y, with forces and accelerations."""
     st, w, tab = one.st, one.w, one.tab
     n_s = tab.c.shape[0]
-    for j in range(n_s):
-        stage_powers(packed, s, one, j)
-        for k in range(y.rate.shape[0]):
-            y.work[k] += h * tab.b[j] * one.power[k]
     y.t[0] = y.t[0] + h
     for i in range(y.q.shape[0]):
-        y.q[i] = st.Q[n_s - 1, i]
+        way = y.low[i]
+        for j in range(n_s):
+            way += st.hA[n_s - 1, j] * st.V[j, i]
+        add_to_position(y, i, way)
         y.v[i] = st.V[n_s - 1, i]
     for a in range(y.z.shape[0]):
         y.z[a] = w.z[n_s - 1, a]
     for a in range(y.n.shape[0]):
         y.n[a] = w.n[n_s - 1, a]
     return complete(packed, s, y, w.sizes, w.pivots, address)
+
+
+@kernel
+def add_to_position(y: State, i: int, way: float) -> None:
+    """Move position i by ``way`` (which holds y.low); what round-off takes is kept for the next step (Kahan)."""
+    new = y.q[i] + way
+    y.low[i] = way - (new - y.q[i])
+    y.q[i] = new
 
 
 @kernel
@@ -221,10 +236,13 @@ def update_scales(packed: Packed, y: State, one: OneStep, acc: Accuracy) -> None
 
 
 @kernel
-def stage_powers(packed: Packed, s: Scratch, one: OneStep, j: int) -> None:
-    """Powers at stage j into ``one.power``."""
-    from_stage(packed, s, one.st, j)
-    powers(packed, s, one.w.F[j], one.w.N[j], one.w.g[j], one.power)
+def add_work(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> None:
+    """Powers at the stages of an accepted step, and the energies at its end y from them."""
+    for j in range(one.tab.c.shape[0]):
+        from_stage(packed, s, one.st, j)
+        powers(packed, s, one.w.F[j], one.w.N[j], one.w.g[j], one.power[j])
+        for k in range(y.rate.shape[0]):
+            y.work[k] += h * one.tab.b[j] * one.power[j, k]
 
 
 @kernel

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fricmb.integrate._advance import DONE, FAIL_LAW, FAIL_REDUNDANT, FAIL_STEP, FULL
+from fricmb.integrate._advance import DONE, FAIL_LAW, FAIL_STEP, FULL, incomplete
 from fricmb.integrate._drive import crowded
-from fricmb.integrate._factor import factorise, jacobians
+from fricmb.integrate._factor import prepare
 from fricmb.integrate._field import Scratch, normal_force, set_state, set_time
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import entry, kernel
@@ -74,17 +74,12 @@ def solve_with(
         if mode[k] != last.mode[k]:
             same = False
     beta_h = formula(y, one, last, h, same)
-    nonlinear = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
-    if nonlinear or one.h_made[0] == 0.0:
+    again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
+    if again:
         set_time(packed.signals, s, y.t[0], y.q.shape[0])
         set_state(s, y.q, y.v)
-        jacobians(packed, s, one.fac)
-        one.counts[3] += 1
-    if nonlinear or one.h_made[0] != beta_h:
-        one.counts[4] += 1
-        if not factorise(packed, one.tab, beta_h, one.fac, w, address):
-            return False
-        one.h_made[0] = beta_h
+    if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
+        return False
     st.t[0] = y.t[0] + h
     st.hA[0, 0] = beta_h
     for i in range(y.q.shape[0]):
@@ -189,7 +184,7 @@ def drive_paper(
         for a in range(y.n.shape[0]):
             end.n[a] = one.w.n[0, a]
         if not complete(packed, s, end, one.w.sizes, one.w.pivots, address):
-            return FAIL_REDUNDANT
+            return incomplete(end)
         if end.fault[0] > 0.0:
             return FAIL_LAW
         for i in range(y.rate.shape[0]):

@@ -30,7 +30,7 @@ class PortState(NamedTuple):
 
     ``n``, ``F``, ``g`` (s, m), ``r``, ``N`` (s, n_c), ``z``, ``zd`` (s, n_z); ``Fo`` (s, m+n_v) and ``Fin`` likewise:
     all port inputs (F, then varying N), ``gbuf`` their last values; ``gb`` (s, m+n_v) their outputs at Fo;
-    ``psi_z`` (n_z,) history of z;
+    ``psi_z`` (n_z,) history of z; ``dF`` (s (m+n_v),) Fin - Fo;
     ``L`` (s, n_c, rows, columns) derivatives of (F, z') with respect to (unknowns, N, z) of one contact.
     """
 
@@ -48,8 +48,9 @@ class PortState(NamedTuple):
     psi_z: Floats
     L: Floats4
     G: Floats2
-    J: Floats
+    J: Floats2
     rhs: Floats
+    dF: Floats
     sizes: Pivots
     pivots: Pivots
 
@@ -77,55 +78,56 @@ def port_state(problem: Problem, s: int) -> PortState:
     rooms = [np.zeros(shape) for shape in shapes]
     local = np.zeros((s, nc, 3 + states, 4 + states))
     G = np.zeros((s * (m + nv), s * (m + nv)))
-    sizes, pivots = np.zeros(3, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
-    solver = [np.zeros(unknowns * unknowns), np.zeros(unknowns), sizes, pivots]
+    sizes, pivots = np.zeros(4, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
+    solver = [np.zeros((unknowns, unknowns)), np.zeros(unknowns), np.zeros(s * (m + nv)), sizes, pivots]
     return room(PortState._make([*rooms, local, G, *solver]))
 
 
 @kernel
 def evaluate_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, mode: Codes) -> None:
     """Forces, state rates and local derivatives at the present unknowns."""
-    for i in range(w.F.shape[0]):
+    F, g, n, r, Ns, L, Fin = w.F, w.g, w.n, w.r, w.N, w.L, w.Fin
+    row, law, var, z_start = ports.row, ports.law, ports.var, ports.z_start
+    m = F.shape[1]
+    for i in range(F.shape[0]):
         for k in range(mode.shape[0]):
-            row0 = ports.row[k]
-            d = ports.row[k + 1] - row0
-            if ports.law[k] == LAW_SMOOTH:
+            row0 = row[k]
+            d = row[k + 1] - row0
+            if var[k] >= 0:
                 if mode[k] == OPEN:
-                    w.N[i, k] = 0.0
-                z0 = ports.z_start[k]
-                nz = ports.z_start[k + 1] - z0
-                smooth_force(laws, k, s, w.g[i], row0, d, w.N[i, k], w.z[i], z0, nz)
+                    Ns[i, k] = 0.0
+                Fin[i, m + var[k]] = Ns[i, k]
+            if law[k] == LAW_SMOOTH:
+                z0 = z_start[k]
+                nz = z_start[k + 1] - z0
+                smooth_force(laws, k, s, g[i], row0, d, Ns[i, k] if mode[k] != OPEN else 0.0, w.z[i], z0, nz)
                 for a in range(d):
-                    w.F[i, row0 + a] = s.out[a]
+                    F[i, row0 + a] = s.out[a]
                 for a in range(nz):
                     w.zd[i, z0 + a] = s.out[d + a]
                 for a in range(d + nz):
                     for b in range(d + 1 + nz):
-                        w.L[i, k, a, b] = s.out[d + nz + a * (d + 1 + nz) + b]
+                        L[i, k, a, b] = s.out[d + nz + a * (d + 1 + nz) + b]
             elif mode[k] == STICK:
                 for a in range(d):
-                    w.g[i, row0 + a] = 0.0
+                    g[i, row0 + a] = 0.0
                     for b in range(d + 1):
-                        w.L[i, k, a, b] = 1.0 if a == b else 0.0
+                        L[i, k, a, b] = 1.0 if a == b else 0.0
             elif mode[k] == SLIP:
-                N = w.N[i, k]
-                mu, slope, load = coefficient(ports, laws, k, s, w.r[i, k], N)
+                N = Ns[i, k]
+                mu, slope, load = coefficient(ports, laws, k, s, r[i, k], N)
                 for a in range(d):
-                    unit = w.n[i, row0 + a]
-                    w.F[i, row0 + a] = -mu * N * unit
-                    w.g[i, row0 + a] = w.r[i, k] * unit
-                    w.L[i, k, a, d - 1] = -slope * N * unit
-                    w.L[i, k, a, d] = -(mu + N * load) * unit
+                    unit = n[i, row0 + a]
+                    F[i, row0 + a] = -mu * N * unit
+                    g[i, row0 + a] = r[i, k] * unit
+                    L[i, k, a, d - 1] = -slope * N * unit
+                    L[i, k, a, d] = -(mu + N * load) * unit
                 if d == 2:
-                    w.L[i, k, 0, 0] = mu * N * w.n[i, row0 + 1]
-                    w.L[i, k, 1, 0] = -mu * N * w.n[i, row0]
+                    L[i, k, 0, 0] = mu * N * n[i, row0 + 1]
+                    L[i, k, 1, 0] = -mu * N * n[i, row0]
             else:
                 for a in range(d):
-                    w.F[i, row0 + a] = 0.0
-                    w.g[i, row0 + a] = 0.0
+                    F[i, row0 + a] = 0.0
+                    g[i, row0 + a] = 0.0
             for a in range(d):
-                w.Fin[i, row0 + a] = w.F[i, row0 + a]
-            if ports.var[k] >= 0:
-                if mode[k] == OPEN:
-                    w.N[i, k] = 0.0
-                w.Fin[i, ports.row[-1] + ports.var[k]] = w.N[i, k]
+                Fin[i, row0 + a] = F[i, row0 + a]

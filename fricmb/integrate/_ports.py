@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb.integrate._field import Scratch
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._lapack import solve_real
+from fricmb.integrate._lu import lu_factor, lu_solve
 from fricmb.integrate._pack import Ports, Table
 from fricmb.integrate._port_state import PortState, evaluate_ports
 from fricmb.integrate._problem import (
@@ -22,22 +22,60 @@ from fricmb.integrate._problem import (
     Codes,
     Floats,
     Floats2,
+    Floats4,
     Ints,
 )
 from fricmb.integrate._room import block
 
+#: Angle to which directions of slip are found: close to landing they decide, and no velocity shows their error.
+DIRECTION = 1e-9
+
 
 @kernel
-def assemble_ports(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
-    """Residuals (negated, into rhs) and Jacobian of the port equations; unknowns stage by stage: rows, z, N."""
+def port_residual(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
+    """Residuals of the port equations, negated, into rhs; unknowns stage by stage: rows, z, N."""
+    G, Fin, Fo, dF, rhs, gb = w.G, w.Fin, w.Fo, w.dF, w.rhs, w.gb
+    s = w.F.shape[0]
+    m = w.F.shape[1]
+    nz = w.z.shape[1]
+    mi = Fin.shape[1]
+    u1 = nz + mi
+    for j in range(s):
+        for c in range(mi):
+            dF[j * mi + c] = Fin[j, c] - Fo[j, c]
+    for i in range(s):
+        for k in range(mode.shape[0]):
+            row0 = ports.row[k]
+            d = ports.row[k + 1] - row0
+            smooth = ports.law[k] == LAW_SMOOTH
+            for a in range(d + 1 if ports.var[k] >= 0 else d):
+                out = row0 + a if a < d else m + ports.var[k]
+                at = i * u1 + (out if a < d else out + nz)
+                if mode[k] == OPEN and (a == d or not smooth):
+                    rhs[at] = 0.0
+                    continue
+                value = gb[i, out] - (w.g[i, out] if a < d else w.N[i, k])
+                gain = G[i * mi + out]
+                for c in range(dF.shape[0]):
+                    value += gain[c] * dF[c]
+                rhs[at] = value
+            for a in range(ports.z_start[k], ports.z_start[k + 1]):
+                value = w.psi_z[a] - w.z[i, a]
+                for j in range(s):
+                    value += hA[i, j] * w.zd[j, a]
+                rhs[i * u1 + m + a] = value
+
+
+@kernel
+def port_jacobian(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
+    """Jacobian of the port equations at the present unknowns."""
+    J, G, L, n = w.J, w.G, w.L, w.n
     s = w.F.shape[0]
     m = w.F.shape[1]
     nz = w.z.shape[1]
     mi = w.Fin.shape[1]
     u1 = nz + mi
-    size = s * u1
-    for x in range(size * size):
-        w.J[x] = 0.0
+    J[:, :] = 0.0
     for i in range(s):
         for k in range(mode.shape[0]):
             row0 = ports.row[k]
@@ -45,81 +83,66 @@ def assemble_ports(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None
             z0 = ports.z_start[k]
             nzk = ports.z_start[k + 1] - z0
             smooth = ports.law[k] == LAW_SMOOTH
-            for a in range(d + 1):
-                if a == d:
-                    if ports.var[k] < 0:
-                        continue
-                    out = m + ports.var[k]
-                    at = i * u1 + m + nz + ports.var[k]
-                    value = w.N[i, k]
-                else:
-                    out = row0 + a
-                    at = i * u1 + out
-                    value = w.g[i, out]
+            for a in range(d + 1 if ports.var[k] >= 0 else d):
+                out = row0 + a if a < d else m + ports.var[k]
+                at = i * u1 + (out if a < d else out + nz)
                 if mode[k] == OPEN and (a == d or not smooth):
-                    w.J[at * size + at] = 1.0
-                    w.rhs[at] = 0.0
+                    J[at, at] = 1.0
                     continue
-                for j in range(s):
-                    for c in range(mi):
-                        value -= w.G[i * mi + out, j * mi + c] * (w.Fin[j, c] - w.Fo[j, c])
-                w.rhs[at] = w.gb[i, out] - value
-                fill_row(ports, w, mode, i * mi + out, at, size, u1)
+                fill_row(ports, L, G[i * mi + out], J[at], mode, s, m, nz, mi)
                 if a == d or smooth:
-                    w.J[at * size + at] += 1.0
+                    J[at, at] += 1.0
                 elif mode[k] == STICK:
-                    w.J[at * size + at] -= ports.soft[0] * w.G[i * mi + out, i * mi + out]
+                    J[at, at] -= ports.soft[0] * G[i * mi + out, i * mi + out]
                 elif mode[k] == SLIP:
-                    w.J[at * size + i * u1 + row0 + d - 1] += w.n[i, out]
+                    J[at, i * u1 + row0 + d - 1] += n[i, out]
                     if d == 2:
-                        tangent = -w.n[i, row0 + 1] if a == 0 else w.n[i, row0]
+                        tangent = -n[i, row0 + 1] if a == 0 else n[i, row0]
                         # softened likewise: of redundant contacts at r = 0 only the sum of the forces is determined
-                        load = np.sqrt(w.L[i, k, 0, 0] ** 2 + w.L[i, k, 1, 0] ** 2)
-                        held = ports.soft[0] * w.G[i * mi + out, i * mi + out] * load
-                        w.J[at * size + i * u1 + row0] += (w.r[i, k] + held) * tangent
+                        load = np.sqrt(L[i, k, 0, 0] ** 2 + L[i, k, 1, 0] ** 2)
+                        held = ports.soft[0] * G[i * mi + out, i * mi + out] * load
+                        J[at, i * u1 + row0] += (w.r[i, k] + held) * tangent
             for a in range(nzk):
                 at = i * u1 + m + z0 + a
-                value = w.z[i, z0 + a] - w.psi_z[z0 + a]
                 for j in range(s):
-                    value -= hA[i, j] * w.zd[j, z0 + a]
-                    at_j = at * size + j * u1
                     for b in range(d):
-                        w.J[at_j + row0 + b] -= hA[i, j] * w.L[j, k, d + a, b]
+                        J[at, j * u1 + row0 + b] -= hA[i, j] * L[j, k, d + a, b]
                     if ports.var[k] >= 0:
-                        w.J[at_j + m + nz + ports.var[k]] -= hA[i, j] * w.L[j, k, d + a, d]
+                        J[at, j * u1 + m + nz + ports.var[k]] -= hA[i, j] * L[j, k, d + a, d]
                     for b in range(nzk):
-                        w.J[at_j + m + z0 + b] -= hA[i, j] * w.L[j, k, d + a, d + 1 + b]
-                w.J[at * size + at] += 1.0
-                w.rhs[at] = -value
+                        J[at, j * u1 + m + z0 + b] -= hA[i, j] * L[j, k, d + a, d + 1 + b]
+                J[at, at] += 1.0
 
 
 @kernel
-def fill_row(ports: Ports, w: PortState, mode: Codes, out: int, at: int, size: int, u1: int) -> None:
-    """Subtract from row ``at`` of the Jacobian how output ``out`` follows the unknowns of all contacts and stages."""
-    m = w.F.shape[1]
-    nz = w.z.shape[1]
-    mi = w.Fin.shape[1]
-    for j in range(w.F.shape[0]):
+def fill_row(
+    ports: Ports, L: Floats4, gains: Floats, line: Floats, mode: Codes, s: int, m: int, nz: int, mi: int
+) -> None:
+    """Subtract from a line of the Jacobian how one output follows the unknowns of all contacts and stages."""
+    u1 = nz + mi
+    for j in range(s):
+        gain = gains[j * mi : (j + 1) * mi]
+        into = line[j * u1 : (j + 1) * u1]
         for k in range(mode.shape[0]):
-            if mode[k] == OPEN and ports.law[k] != LAW_SMOOTH:
+            smooth = ports.law[k] == LAW_SMOOTH
+            if mode[k] == OPEN and not smooth:
                 continue
             row0 = ports.row[k]
             d = ports.row[k + 1] - row0
-            z0 = ports.z_start[k]
-            nzk = ports.z_start[k + 1] - z0 if ports.law[k] == LAW_SMOOTH else 0
-            at_j = at * size + j * u1
             for b in range(d):
-                gain = w.G[out, j * mi + row0 + b]
-                if gain == 0.0:
+                x = gain[row0 + b]
+                if x == 0.0:
                     continue
                 for c in range(d):
-                    w.J[at_j + row0 + c] -= gain * w.L[j, k, b, c]
+                    into[row0 + c] -= x * L[j, k, b, c]
                 if ports.var[k] >= 0 and mode[k] != OPEN:
-                    w.J[at_j + m + nz + ports.var[k]] -= gain * w.L[j, k, b, d]
-                for c in range(nzk):
-                    w.J[at_j + m + z0 + c] -= gain * w.L[j, k, b, d + 1 + c]
+                    into[m + nz + ports.var[k]] -= x * L[j, k, b, d]
+                if smooth:
+                    z0 = ports.z_start[k]
+                    for c in range(ports.z_start[k + 1] - z0):
+                        into[m + z0 + c] -= x * L[j, k, b, d + 1 + c]
             if ports.var[k] >= 0 and mode[k] != OPEN:
-                w.J[at_j + m + nz + ports.var[k]] -= w.G[out, j * mi + m + ports.var[k]]
+                into[m + nz + ports.var[k]] -= gain[m + ports.var[k]]
 
 
 @kernel
@@ -163,50 +186,81 @@ def round_off(w: PortState, i: int, mi: int, a: int, g: float) -> float:
     return float(2e-15 * (abs(g) + abs(w.Fin[i, a] * w.G[i * mi + a, i * mi + a])))
 
 
+@kernel
+def speed_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
+    """Largest correction of a slip speed in rhs, in units of its tolerance."""
+    mi = w.Fin.shape[1]
+    u1 = mi + w.z.shape[1]
+    change = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            if mode[k] == SLIP and ports.law[k] != LAW_SMOOTH:
+                at = ports.row[k + 1] - 1
+                change = max(change, abs(w.rhs[i * u1 + at]) / max(tol[k], round_off(w, i, mi, at, w.r[i, k])))
+    return change
+
+
+@kernel
+def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
+    """How far the port inputs have moved from ``gbuf``, as velocities in units of tol; inf where not finite."""
+    G, Fin, last = w.G, w.Fin, w.gbuf
+    mi = Fin.shape[1]
+    change = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            for a in range(ports.row[k], ports.row[k + 1]):
+                moved = abs((Fin[i, a] - last[i, a]) * G[i * mi + a, i * mi + a])
+                if not moved < np.inf:
+                    return np.inf
+                change = max(change, moved / max(tol[k], round_off(w, i, mi, a, w.g[i, a])))
+            if ports.var[k] >= 0:
+                a = ports.row[-1] + ports.var[k]
+                push = abs(G[i * mi + ports.row[k], i * mi + ports.row[k]])
+                change = max(change, abs(Fin[i, a] - last[i, a]) * push / tol[k])
+    return change
+
+
 @block
 def solve_ports(
     ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats, address: Ints
 ) -> int:
     """Newton on the port unknowns from their present values; ``tol`` (n_c,) on relative velocities.
 
-    Returns the number of iterations, or -1 where it does not converge.
+    The factors of the Jacobian are kept while directions hardly turn.  Returns the number of iterations, or -1 where
+    it does not converge.
     """
-    mi = w.Fin.shape[1]
-    size = w.F.shape[0] * (mi + w.z.shape[1])
-    if size == 0:
+    if w.rhs.shape[0] == 0:
         return 0
     evaluate_ports(ports, laws, s, w, mode)
     linear = all_linear(ports, mode)
+    renew = True
+    last, last_turn = np.inf, np.inf
     for iteration in range(25):
-        assemble_ports(ports, w, hA, mode)
-        if solve_real(address[0], w.J, w.rhs, size, w.sizes, w.pivots) != 0:
-            return -1
-        change = 0.0
-        for i in range(w.F.shape[0]):
-            for k in range(mode.shape[0]):
-                if mode[k] == SLIP and ports.law[k] != LAW_SMOOTH:
-                    at = ports.row[k + 1] - 1
-                    grain = round_off(w, i, mi, at, w.r[i, k])
-                    change = max(change, abs(w.rhs[i * (mi + w.z.shape[1]) + at]) / max(tol[k], grain))
+        port_residual(ports, w, hA, mode)
+        if renew:
+            port_jacobian(ports, w, hA, mode)
+            if not lu_factor(w.J, w.sizes, w.pivots, address):
+                return -1
+        lu_solve(w.J, w.rhs, w.sizes, w.pivots, address)
+        change = speed_change(ports, w, mode, tol)
         turn = update_ports(ports, w, mode)
         for i in range(w.F.shape[0]):
-            for c in range(mi):
+            for c in range(w.Fin.shape[1]):
                 w.gbuf[i, c] = w.Fin[i, c]
         evaluate_ports(ports, laws, s, w, mode)
-        for i in range(w.F.shape[0]):
-            for k in range(mode.shape[0]):
-                for a in range(ports.row[k], ports.row[k + 1]):
-                    moved = abs((w.Fin[i, a] - w.gbuf[i, a]) * w.G[i * mi + a, i * mi + a])
-                    if not moved < np.inf:
-                        return -1
-                    change = max(change, moved / max(tol[k], round_off(w, i, mi, a, w.g[i, a])))
-                if ports.var[k] >= 0:
-                    a = ports.row[-1] + ports.var[k]
-                    push = abs(w.G[i * mi + ports.row[k], i * mi + ports.row[k]])
-                    change = max(change, abs(w.Fin[i, a] - w.gbuf[i, a]) * push / tol[k])
+        change = max(change, force_change(ports, w, mode, tol))
+        if not change < np.inf:
+            return -1
         # softening leaves a part of itself behind, which a second iteration takes away
-        if (linear and (ports.soft[0] == 0.0 or iteration > 0)) or (change < 1.0 and turn < 0.5):
+        if linear and (ports.soft[0] == 0.0 or iteration > 0):
             return iteration + 1
+        rate = max(change / last, turn / last_turn) if iteration > 0 else 1.0
+        # what is left of the turns: the square of the last with new factors, a part of it with old ones
+        left = turn * (turn if renew else rate)
+        if left < DIRECTION and (change < 1.0 or (rate < 0.1 and change * rate < 0.1)):
+            return iteration + 1
+        renew = turn > 0.02 or (iteration > 0 and rate > 0.02)
+        last, last_turn = change, max(turn, 1e-300)
     return -1
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fricmb.integrate._advance import DONE, FAILURES, FULL
-from fricmb.integrate._collect import Collector, accuracy, clock_of, one_step
+from fricmb.integrate._advance import Clock
+from fricmb.integrate._collect import Collector, accuracy, one_step, run_loop, stages_for
 from fricmb.integrate._drive import drive
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._problem import Floats, Problem, Start
@@ -52,23 +52,17 @@ class Radau(Integrator):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         if problem.mechanism is not None:
-            from fricmb.integrate.constrained import run_mechanism, stages_for
+            from fricmb.integrate import constrained
 
-            count = self.stages or stages_for(tolerance.rtol)
-            return run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
-        s = self.stages or (3 if tolerance.rtol > 1e-4 else 5 if tolerance.rtol > 1e-9 else 7)
+            count = self.stages or constrained.stages_for(tolerance.rtol)
+            return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
         run = Collector(problem, start, t_end)
         acc = accuracy(run, tolerance)
-        one = one_step(problem, radau(s), run.counts)
-        code = run.begin()
-        if code == DONE:
-            clock = clock_of(run)
-            code = FULL
-            while code == FULL and not run.is_full(memory):
-                code = drive(
-                    run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
-                )
-                run.collect()
-                if progress is not None:
-                    progress(float(run.y.t[0]))
-        return run.trajectory(None if code in (DONE, FULL) else FAILURES[code])
+        one = one_step(problem, radau(stages_for(problem, tolerance.rtol, self.stages)), run.counts)
+
+        def go_on(clock: Clock) -> int:
+            return drive(
+                run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
+            )
+
+        return run_loop(run, run.begin(), go_on, memory, progress)

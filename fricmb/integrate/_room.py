@@ -241,6 +241,8 @@ FURTHER = (
     "enumerate_modes",
     "margins",
     "change_modes",
+    "dgetrf",
+    "dgetrs",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

@@ -32,7 +32,10 @@ from fricmb.integrate._tableau import Complexes2, Tableau
 
 
 class Stages(NamedTuple):
-    """Stage values V, Q (s, n), forces f, residuals; ``psi_v``, ``psi_q`` (n,), times ``t`` (s,)."""
+    """Stage values V, Q (s, n), forces f, residuals; ``psi_v``, ``psi_q`` (n,), times ``t`` (s,).
+
+    ``weight`` (s, s), ``line`` (s,): room for starting values.
+    """
 
     V: Floats2
     Q: Floats2
@@ -44,6 +47,8 @@ class Stages(NamedTuple):
     psi_q: Floats
     hA: Floats2
     y: Complexes2
+    weight: Floats2
+    line: Floats
 
 
 def stages(problem: Problem, tableau: Tableau) -> Stages:
@@ -52,6 +57,7 @@ def stages(problem: Problem, tableau: Tableau) -> Stages:
     rooms = [np.zeros((s, n)) for _ in range(5)]
     levels = len(tableau.lam)
     history = [np.zeros(s), np.zeros(n), np.zeros(n), np.zeros((s, s)), np.zeros((levels, n), complex)]
+    history += [np.zeros((s, s)), np.zeros(s)]
     return room(Stages._make([*rooms, *history]))
 
 
@@ -84,13 +90,14 @@ def stage_residual(packed: Packed, s: Scratch, st: Stages, w: PortState, mode: C
             for b in range(n):
                 value += ports.W[b, a] * st.V[i, b]
             w.gb[i, a] = value
-    for i in range(st.V.shape[0]):
+    M, V, hA, f = packed.structure.M, st.V, st.hA, st.f
+    for i in range(V.shape[0]):
         for a in range(n):
             value = 0.0
             for b in range(n):
-                value += packed.structure.M[a, b] * (st.V[i, b] - st.psi_v[b])
-            for j in range(st.V.shape[0]):
-                value -= st.hA[i, j] * st.f[j, a]
+                value += M[a, b] * (V[i, b] - st.psi_v[b])
+            for j in range(V.shape[0]):
+                value -= hA[i, j] * f[j, a]
             st.res[i, a] = value
 
 
@@ -99,22 +106,22 @@ def structure_correction(tab: Tableau, fac: Factor, st: Stages) -> None:
     """DV = -S^-1 res over all stages."""
     n = st.V.shape[1]
     s = st.V.shape[0]
-    for x in range(tab.lam.shape[0]):
+    T, Tinv, res, y, dV = tab.T, tab.Tinv, st.res, st.y, st.dV
+    levels = tab.lam.shape[0]
+    dV[:, :] = 0.0
+    for x in range(levels):
+        inverse = fac.Sinv[fac.slot[0] * levels + x]
         for a in range(n):
             value = 0.0 + 0.0j
             for j in range(s):
-                value += tab.Tinv[x, j] * st.res[j, a]
-            st.y[x, a] = value
-    for i in range(s):
-        for a in range(n):
-            st.dV[i, a] = 0.0
-    for x in range(tab.lam.shape[0]):
+                value += Tinv[x, j] * res[j, a]
+            y[x, a] = value
         for a in range(n):
             value = 0.0 + 0.0j
             for b in range(n):
-                value += fac.Sinv[x, a, b] * st.y[x, b]
+                value += inverse[a, b] * y[x, b]
             for i in range(s):
-                st.dV[i, a] -= (tab.T[i, x] * value).real
+                dV[i, a] -= (T[i, x] * value).real
 
 
 @block
@@ -141,35 +148,37 @@ def solve_stages(
     mi = w.Fin.shape[1]
     linear = packed.elements.address.shape[0] == 0 and mi == m
     last = np.inf
-    for i in range(mi * n_s):
-        for j in range(mi * n_s):
-            w.G[i, j] = fac.G[i, j]
+    P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
+    w.G[:, :] = fac.G[fac.slot[0]]
     for iteration in range(12):
         stage_residual(packed, s, st, w, mode)
         structure_correction(tab, fac, st)
         for i in range(n_s):
             for c in range(m):
-                w.Fo[i, c] = w.F[i, c]
+                Fo[i, c] = w.F[i, c]
                 for a in range(n):
-                    w.gb[i, c] += ports.W[a, c] * st.dV[i, a]
+                    gb[i, c] += ports.W[a, c] * dV[i, a]
             for k in range(mode.shape[0]):
                 c = ports.var[k]
                 if c >= 0:
-                    w.Fo[i, m + c] = w.N[i, k]
+                    Fo[i, m + c] = w.N[i, k]
                     for a in range(n):
-                        w.gb[i, m + c] += fac.Nv[c, a] * st.dV[i, a]
+                        gb[i, m + c] += fac.Nv[c, a] * dV[i, a]
                         for j in range(n_s):
-                            w.gb[i, m + c] += st.hA[i, j] * fac.Nq[c, a] * st.dV[j, a]
+                            gb[i, m + c] += st.hA[i, j] * fac.Nq[c, a] * dV[j, a]
         if solve_ports(ports, packed.laws, s, w, st.hA, mode, tol, address) < 0:
             return -1
         change = 0.0
+        for j in range(n_s):
+            for c in range(mi):
+                w.dF[j * mi + c] = w.Fin[j, c] - Fo[j, c]
         for i in range(n_s):
             for a in range(n):
-                value = st.dV[i, a]
-                for j in range(n_s):
-                    for c in range(mi):
-                        value += fac.P[i, a, j, c] * (w.Fin[j, c] - w.Fo[j, c])
-                st.V[i, a] += value
+                value = dV[i, a]
+                line = P[i * n + a]
+                for c in range(line.shape[0]):
+                    value += line[c] * w.dF[c]
+                V[i, a] += value
                 change = max(change, abs(value) / scale[a])
         if not change < np.inf:
             return -1

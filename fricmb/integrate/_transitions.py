@@ -49,6 +49,7 @@ def copy_state(source: State, target: State) -> None:
         target.v[i] = source.v[i]
         target.a[i] = source.a[i]
         target.f[i] = source.f[i]
+        target.low[i] = source.low[i]
     for a in range(source.z.shape[0]):
         target.z[a] = source.z[a]
         target.zd[a] = source.zd[a]
@@ -75,6 +76,7 @@ def swap_state(one: State, other: State) -> None:
         (one.q, other.q),
         (one.v, other.v),
         (one.a, other.a),
+        (one.low, other.low),
         (one.z, other.z),
         (one.zd, other.zd),
         (one.F, other.F),
