@@ -37,7 +37,8 @@ def start_at_rest(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
 @kernel
 def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortState, last: Floats, h: float) -> bool:
     """Stages from the polynomial through those solved last (``last``: their t, h); False where it says nothing here."""
-    if last[1] == 0.0:
+    if last[1] == 0.0 or packed.ports.soft[0] > 0.0:
+        # of redundant contacts the sum alone is determined: their shares would drift from step to step
         return False
     shift = (y.t[0] - last[0]) / last[1]
     ratio = h / last[1]
@@ -45,18 +46,26 @@ def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
         return False
     weight = st.weight
     lagrange(tab.c, shift, ratio, weight)
-    carry(st.V, weight, st.line)
+    if packed.elements.address.shape[0] > 0:
+        carry(st.V, weight, st.line)
+    else:
+        # a linear structure follows in one iteration; what is at rest stays there to the last digit
+        for i in range(tab.c.shape[0]):
+            for a in range(y.q.shape[0]):
+                st.V[i, a] = y.v[a] + tab.c[i] * h * y.a[a]
     carry(w.z, weight, st.line)
     carry(w.N, weight, st.line)
     carry(w.r, weight, st.line)
-    carry(w.F, weight, st.line)
     carry(w.g, weight, st.line)
     carry(w.n, weight, st.line)
     for k in range(y.mode.shape[0]):
         row0 = packed.ports.row[k]
-        if packed.ports.var[k] < 0:
-            for i in range(tab.c.shape[0]):
+        for i in range(tab.c.shape[0]):
+            # constant values would bring round-off in, times the weights
+            if packed.ports.var[k] < 0:
                 w.N[i, k] = y.N[k]
+            for a in range(row0, packed.ports.row[k + 1]):
+                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
         if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
             continue
         for i in range(tab.c.shape[0]):

@@ -254,6 +254,11 @@ def solve_ports(
         # softening leaves a part of itself behind, which a second iteration takes away
         if linear and (ports.soft[0] == 0.0 or iteration > 0):
             return iteration + 1
+        if ports.soft[0] > 0.0:
+            # softened Jacobians are not exact, and converge as they do only where they are new
+            if change < 1.0 and turn < 0.5:
+                return iteration + 1
+            continue
         rate = max(change / last, turn / last_turn) if iteration > 0 else 1.0
         # what is left of the turns: the square of the last with new factors, a part of it with old ones
         left = turn * (turn if renew else rate)

@@ -182,7 +182,8 @@ def test_a_nonlinear_scene(kind, method):
     assert errors[0] < 1e-1
     assert errors[1] < 1e-4
     assert errors[2] < 1e-7
-    assert errors[2] < errors[0]
+    # a hundred steps at least: some scenes are exact to round-off at every tolerance
+    assert errors[2] < max(errors[0], 1e-12)
 
 
 @METHODS
