@@ -17,7 +17,12 @@ def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
     if n > SMALL:
         sizes[0] = n
         sizes[2] = 0
-        # LAPACK reads columns: these are factors of the transpose
+        # LAPACK reads columns; factors of the transpose would share loads otherwise between redundant contacts
+        for i in range(n):
+            for j in range(i):
+                x = a[i, j]
+                a[i, j] = a[j, i]
+                a[j, i] = x
         call_lapack(address[FACTOR], (sizes[:1], sizes[:1], a, sizes[:1], pivots, sizes[2:]))
         return bool(sizes[2] == 0)
     for k in range(n):
@@ -33,10 +38,8 @@ def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
                 x = a[k, j]
                 a[k, j] = a[best, j]
                 a[best, j] = x
-        inverse = 1.0 / a[k, k]
-        a[k, k] = inverse
         for i in range(k + 1, n):
-            x = a[i, k] * inverse
+            x = a[i, k] / a[k, k]
             a[i, k] = x
             if x != 0.0:
                 for j in range(k + 1, n):
@@ -52,7 +55,7 @@ def lu_solve(a: Floats2, b: Floats, sizes: Pivots, pivots: Pivots, address: Ints
         sizes[0] = n
         sizes[1] = 1
         sizes[2] = 0
-        sizes[3] = ord("T")
+        sizes[3] = ord("N")
         call_lapack(
             address[SOLVE],
             (sizes[3:], sizes[:1], sizes[1:], a, sizes[:1], pivots, b, sizes[:1], sizes[2:]),
@@ -73,4 +76,4 @@ def lu_solve(a: Floats2, b: Floats, sizes: Pivots, pivots: Pivots, address: Ints
         x = b[i]
         for j in range(i + 1, n):
             x -= a[i, j] * b[j]
-        b[i] = x * a[i, i]
+        b[i] = x / a[i, i]
