@@ -24,6 +24,8 @@ from fricmb.integrate._room import block, room
 
 #: What can be wrong with a state: see State.fault.
 NEGATIVE, INFINITE = 1.0, 2.0
+#: Softening of redundant contacts at rest, and rounds of refinement that take it out again (SOFT^rounds < round-off).
+SOFT, REFINEMENTS = 1e-4, 5
 
 
 class State(NamedTuple):
@@ -159,10 +161,8 @@ def free_acceleration(packed: Packed, y: State) -> None:
 
 
 @kernel
-def solve_response(
-    ports: Ports, y: State, codes: Codes, zero: bool, size: int, sizes: Pivots, pivots: Pivots, address: Ints
-) -> bool:
-    """Solve D x = ``y.rhs`` in place over the rows of the contacts whose code is 0 (``zero``) or is not."""
+def fill_response(ports: Ports, y: State, codes: Codes, zero: bool, size: int, soft: float) -> None:
+    """D over the rows of the contacts whose code is 0 (``zero``) or is not, its diagonal softened, into ``y.J``."""
     i = 0
     for k in range(codes.shape[0]):
         if (codes[k] == 0) != zero:
@@ -173,10 +173,40 @@ def solve_response(
                 if (codes[x] == 0) != zero:
                     continue
                 for b in range(ports.row[x], ports.row[x + 1]):
-                    y.J[i * size + j] = ports.D[a, b] * (1.0 + (ports.soft[0] if a == b else 0.0))
+                    y.J[i * size + j] = ports.D[a, b] * (1.0 + (soft if a == b else 0.0))
                     j += 1
             i += 1
-    return bool(solve_real(address[0], y.J, y.rhs, size, sizes, pivots) == 0)
+
+
+@kernel
+def solve_response(
+    ports: Ports, y: State, codes: Codes, zero: bool, size: int, sizes: Pivots, pivots: Pivots, address: Ints
+) -> bool:
+    """Solve D x = ``y.rhs`` in place over the rows of the contacts whose code is 0 (``zero``) or is not.
+
+    Where D is singular (redundant contacts): the least-norm solution, by Tikhonov's regularisation with iterative
+    refinement.  What the softening leaves falls by its size in each round, and shares of the load are equal to
+    round-off over softening.
+    """
+    if ports.soft[0] == 0.0:
+        fill_response(ports, y, codes, zero, size, 0.0)
+        return bool(solve_real(address[0], y.J, y.rhs, size, sizes, pivots) == 0)
+    b, x = y.rhs[:size].copy(), np.zeros(size)
+    for _ in range(REFINEMENTS):
+        fill_response(ports, y, codes, zero, size, 0.0)
+        for i in range(size):
+            value = b[i]
+            for j in range(size):
+                value -= y.J[i * size + j] * x[j]
+            y.rhs[i] = value
+        fill_response(ports, y, codes, zero, size, SOFT)
+        if solve_real(address[0], y.J, y.rhs, size, sizes, pivots) != 0:
+            return False
+        for i in range(size):
+            x[i] += y.rhs[i]
+    for i in range(size):
+        y.rhs[i] = x[i]
+    return True
 
 
 @kernel

@@ -205,7 +205,9 @@ def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h:
         for j in range(n_s):
             way += st.hA[n_s - 1, j] * st.V[j, i]
         add_to_position(y, i, way)
-        y.v[i] = st.V[n_s - 1, i]
+        v = st.V[n_s - 1, i]
+        # what rests would creep on in denormal numbers, which cost time and say nothing
+        y.v[i] = v if abs(v) > 1e-290 else 0.0
     for a in range(y.z.shape[0]):
         y.z[a] = w.z[n_s - 1, a]
     for a in range(y.n.shape[0]):

@@ -93,7 +93,7 @@ def _softness(D: Floats) -> float:
     """Relative softening of stuck contacts: 0, or a trifle where rows of W depend on one another (least-norm force)."""
     if len(D) == 0 or np.linalg.matrix_rank(D, hermitian=True) == len(D):
         return 0.0
-    return 1e-10
+    return 1e-7  # squared in two iterations below round-off; shares of a load differ by round-off over it
 
 
 def _table(templates: Templates) -> Table:
