@@ -52,7 +52,8 @@ def four_bar(
     C = _meeting(B, coupler, D, rocker)
     bars = [_bar("crank", A, B, density, speed), _bar("coupler", B, C, density), _bar("rocker", D, C, density)]
     first, second, third = bars
-    radius = pin if friction is not None else 0.0
+    checked = fm.parameter("pin", pin).value  # refused by name also where no friction uses it
+    radius = checked if friction is not None else 0.0
     return fm.Scene(
         "four-bar linkage",
         [

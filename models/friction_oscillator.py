@@ -48,10 +48,11 @@ def friction_oscillator(
     start = x0 if x0 is not None else (0.0 if amplitude else 1.0)
     body = fm.Body("mass", mass=mass, axes="x", position={"x": start}, velocity={"x": v0})
     forces = []
+    omega = fm.parameter("frequency", frequency)  # refused by name also where nothing drives
     if amplitude:
         import sympy  # a free oscillator does without
 
-        drive = fm.parameter("amplitude", amplitude) * sympy.cos(fm.parameter("frequency", frequency) * fm.t)
+        drive = fm.parameter("amplitude", amplitude) * sympy.cos(omega * fm.t)
         forces.append(fm.Force("drive", body, axis="x", value=drive))
     return fm.Scene(
         "friction oscillator",

@@ -55,7 +55,8 @@ def slider_crank(
     bars = _bars(crank, rod, masses, angle, speed, lean, turn)
     pushed = -speed * crank * sin(angle) + turn * rod * sin(lean)
     slider = fm.RigidBody("slider", mass=masses[2], inertia=1e-3, position=(end, 0.0), velocity=(pushed, 0.0))
-    radius = pin if friction is not None else 0.0
+    checked = fm.parameter("pin", pin).value  # refused by name also where no friction uses it
+    radius = checked if friction is not None else 0.0
     first, second = bars
     return fm.Scene(
         "slider crank",

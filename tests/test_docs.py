@@ -2,6 +2,8 @@
 
 import os
 import re
+import sys
+import types
 from pathlib import Path
 
 import pytest
@@ -19,8 +21,10 @@ def test_code_on_the_page_runs(page, tmp_path, monkeypatch):
     monkeypatch.setitem(os.environ, "MPLBACKEND", "Agg")
     file = tmp_path / f"{page.stem}.py"
     file.write_text("\n".join(BLOCK.findall(page.read_text())))
-    names = {"__name__": "page"}
-    exec(compile(file.read_text(), str(file), "exec"), names)
+    # a module that can be imported, as the one that readers paste it into: its classes can be pickled
+    module = types.ModuleType("page")
+    monkeypatch.setitem(sys.modules, "page", module)
+    exec(compile(file.read_text(), str(file), "exec"), module.__dict__)
 
 
 def test_readme_has_exactly_two_set_up_commands():

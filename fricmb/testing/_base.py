@@ -29,5 +29,10 @@ def findings(name: str, rules: Iterable[Rule], *arguments: Any) -> None:
 
 def pickles(held: Any, *rest: Any) -> Iterator[str]:
     """It comes back equal from a pickle."""
-    if pickle.loads(pickle.dumps(held)) != held:
+    try:
+        again = pickle.loads(pickle.dumps(held))
+    except Exception as error:
+        yield f"cannot be pickled: {type(error).__name__}: {error}"
+        return
+    if again != held:
         yield "does not come back equal from a pickle"

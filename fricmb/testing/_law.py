@@ -10,6 +10,7 @@ from fricmb.analysis import compiled_force
 from fricmb.laws import FrictionLaw
 from fricmb.testing._base import ConformanceError, Floats, Rule, findings, pickles
 from fricmb.testing._law_states import STATE_RULES
+from fricmb.testing._refusal import refuses
 from fricmb.testing._trial import AT_REST, SPEEDS, random_state, velocities
 
 __all__ = ["ConformanceError", "check_law"]
@@ -37,28 +38,11 @@ def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
     r = 0 the declared one.  Of a law without states: the force opposes the slip and is 0 at rest.  Of states:
     finite rates, 0 at rest unless the law ages (``rests``), and no work gained over a closed cycle.
     """
-    rules: tuple[Rule, ...] = (pickles, _refuses, _finite_force, _odd, _turns, _jacobian)
+    rules: tuple[Rule, ...] = (pickles, refuses, _finite_force, _odd, _turns, _jacobian)
     if law.has_coefficient:
         rules += (_coefficient, _derivative, _limit)
     rules += STATE_RULES if law.states else (_opposes, _rests)
     findings(type(law).__name__, rules, law, normal_force)
-
-
-def _refuses(law: FrictionLaw, normal_force: float) -> Iterator[str]:
-    """Numbers that cannot be, by the name of their field."""
-    for path, value in law.slots().items():
-        wrong = [float("nan"), float("inf")]
-        if path in law.positive:
-            wrong += [0.0, -1.0]
-        for number in wrong:
-            bad = (number, *value[1:]) if isinstance(value, tuple) else number
-            try:
-                law.with_slots({path: bad})
-            except Exception as error:
-                if not isinstance(error, ValueError) or path.rsplit(".", 1)[-1] not in str(error):
-                    yield f"{path} = {number!r} is refused by {type(error).__name__} without its name: {error}"
-            else:
-                yield f"{path} = {number!r} is accepted"
 
 
 def _coefficient(law: FrictionLaw, normal_force: float) -> Iterator[str]:
