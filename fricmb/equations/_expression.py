@@ -57,7 +57,7 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
         outputs = [offset if integral is None else integral + offset, value, sympy.diff(value, t)]
     for expression in outputs:
         _code.check(expression, title)
-    facts = {"closed": closed, "switches": switches(value, t, parameters)}
+    facts = {"closed": closed, "switches": switches(value, t, parameters), "uniform": bool(outputs[2] == 0)}
     return facts, _code.kernel([t], [*parameters, offset], outputs, title)
 
 

@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate._exact_step import CAP, rung_below
 from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import INFINITE, State
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._modes import Rest
-from fricmb.integrate._onestep import Accuracy, OneStep, add_work, attempt, error_norm, finish, ladder, update_scales
+from fricmb.integrate._onestep import Accuracy, OneStep, add_work, attempt, finish, ladder, step_error, update_scales
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import SLIP, Floats, Ints
 from fricmb.integrate._room import block
@@ -72,10 +73,14 @@ def advance(
     """
     order = 1.0 / one.tab.c.shape[0]
     t = y.t[0]
-    # a hundred steps at least: where nothing moves, no error says how fast a load changes
-    h = min(clock.h[0], 0.01 * (clock.span[1] - clock.span[0]))
+    # a hundred steps at least: where nothing moves, no error says how fast a load changes (with exact structure loads
+    # are among what is collocated, and the error knows them)
+    part = 0.01 if one.exact.ladder.shape[0] == 0 else 0.02
+    h = min(clock.h[0], part * (clock.span[1] - clock.span[0]))
     if h >= left * (1.0 - 1e-9):
         h = left
+    elif one.exact.ladder.shape[0] > 0:
+        h = one.exact.ladder[rung_below(h)]
     else:
         # steps of a ladder come again, and their factors with them
         h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h)
@@ -83,7 +88,7 @@ def advance(
         return FAIL_STEP
     error = np.inf
     if attempt(packed, s, y, one, acc, h, address):
-        error = error_norm(packed, y, one, acc, h)
+        error = step_error(packed, y, one, acc, h, address)
     if not error < np.inf:
         one.counts[1] += 1
         clock.h[0] = 0.25 * h
@@ -93,13 +98,12 @@ def advance(
         return incomplete(end)
     k = find_trigger(packed, s, y, end, one, clock.found, address)
     wanted = h * min(5.0, max(0.1, 0.85 * max(error, 1e-20) ** -order))
+    if one.exact.ladder.shape[0] > 0:
+        wanted = min(wanted, one.exact.par[CAP])
     if k < 0 and error <= 1.0:
         if end.fault[0] > 0.0:
             return FAIL_LAW
-        # of accepted steps alone: a wild trial must not loosen the tolerance for the rest of the run
-        update_scales(packed, y, one, acc)
-        add_work(packed, s, end, one, end.t[0] - t)
-        record_inside(packed, s, y, end, one, out, address)
+        record_inside(packed, s, y, end, one, acc, out, address)
         swap_state(y, end)
         record(out, y, STEP)
         one.counts[0] += 1
@@ -127,9 +131,7 @@ def advance(
         return REJECTED
     lifted = clock.found[1] == 1.0
     if end.t[0] > t:
-        update_scales(packed, y, one, acc)
-        add_work(packed, s, end, one, end.t[0] - t)
-        record_inside(packed, s, y, end, one, out, address)
+        record_inside(packed, s, y, end, one, acc, out, address)
         one.counts[0] += 1
     clock.same[0] = 0 if end.t[0] - t > 16.0 * EPS * abs(t) else clock.same[0] + 1
     if clock.same[0] > 20 + 4 * y.mode.shape[0]:
@@ -141,11 +143,16 @@ def advance(
 
 
 @block
-def record_inside(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, out: Rows, address: Ints) -> None:
+def record_inside(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows, address: Ints
+) -> None:
     """Rows for the stages inside an accepted step: dense output between them keeps the accuracy of the step."""
+    # of accepted steps alone: a wild trial must not loosen the tolerance for the rest of the run
+    update_scales(packed, y, one, acc)
     st, w, tab = one.st, one.w, one.tab
     n_s = tab.c.shape[0]
     h = end.t[0] - y.t[0]
+    add_work(packed, s, end, one, h)
     n, nc = y.q.shape[0], y.mode.shape[0]
     for j in range(n_s - 1):
         k = out.used[0]

@@ -9,6 +9,7 @@ from fricmb.integrate._integrator import Integrator
 from fricmb.integrate._problem import Problem
 from fricmb.integrate._radau import Radau
 from fricmb.integrate.collocation import Collocation
+from fricmb.integrate.collocation._prepare import is_single
 from fricmb.integrate.taylor import Taylor
 
 #: Built-in integrators by the name that ``simulate(method=...)`` takes.
@@ -23,7 +24,9 @@ def choose(problem: Problem) -> tuple[Integrator, str]:
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
     fast = Collocation()
-    reason = fast.refuses(problem)
+    reason: str | None = "more than one contact under constant friction and loads linear in time"
+    if is_single(problem):
+        reason = fast.refuses(problem)
     if reason is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
     many = Taylor()

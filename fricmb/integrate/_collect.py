@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fricmb.integrate._advance import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL, Clock
+from fricmb.integrate._exact_step import no_exact
 from fricmb.integrate._factor import factor
 from fricmb.integrate._field import scratch
 from fricmb.integrate._hermite import RowTrajectory
@@ -17,7 +18,7 @@ from fricmb.integrate._modes import rest
 from fricmb.integrate._onestep import Accuracy, OneStep
 from fricmb.integrate._pack import packed_of
 from fricmb.integrate._port_state import port_state
-from fricmb.integrate._problem import Problem, Start
+from fricmb.integrate._problem import Ints, Problem, Start
 from fricmb.integrate._room import CORE, room
 from fricmb.integrate._rows import rows
 from fricmb.integrate._stages import stages
@@ -48,17 +49,18 @@ def accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
 
 def one_step(problem: Problem, tableau: Tableau, counts: np.ndarray) -> OneStep:
     """Room for steps of one tableau."""
+    s, nc = len(tableau.c), problem.n_c
     return room(OneStep(
-        tableau, factor(problem, tableau), stages(problem, tableau), port_state(problem, len(tableau.c)),
-        np.zeros(problem.n_c), np.zeros(problem.n), np.zeros(2), counts, np.zeros((len(tableau.c), problem.n_c + 2)),
-        np.zeros(problem.n_z), np.zeros(len(tableau.c)),
+        tableau, factor(problem, tableau), stages(problem, tableau), port_state(problem, s), np.zeros(nc),
+        np.zeros(problem.n), np.zeros(2), counts, np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s),
+        np.zeros(s + 1), np.zeros((s, nc)), no_exact(),
     ))  # fmt: skip
 
 
 class Collector:
     """State and rooms of one run; takes the rows out of the kernels' room chunk by chunk."""
 
-    def __init__(self, problem: Problem, start: Start, t_end: float, *further: str) -> None:
+    def __init__(self, problem: Problem, start: Start, t_end: float, *further: str, places: Ints | None = None) -> None:
         self.problem = problem
         self.start = start
         self.t_end = t_end
@@ -70,7 +72,7 @@ class Collector:
         self.old = room(Before(np.zeros(problem.n_c, np.int8), np.zeros(problem.m)))
         self.rows = rows(problem, CHUNK)
         self.counts = np.zeros(8, np.int64)
-        self.address = addresses(*CORE, *further)
+        self.address = addresses(*CORE, "step_error", *further) if places is None else places
         self.natural_v, self.natural_q = natural_scales(problem, self.packed, self.scratch, start.t, t_end - start.t)
         self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
@@ -87,6 +89,10 @@ class Collector:
     def is_full(self, memory: float | None) -> bool:
         """Whether the rows so far use up the memory (bytes) that they may."""
         return memory is not None and sum(chunk[0].nbytes for chunk in self._chunks) >= memory
+
+    def widen(self, columns: int) -> None:
+        """Give rows further columns."""
+        self.rows = rows(self.problem, CHUNK, columns)
 
     def collect(self) -> None:
         """Empty the room for rows."""

@@ -162,6 +162,7 @@ class RowTrajectory(Trajectory):
         self.failure = failure
         self._values = values
         self._mode = mode
+        self._kind = kind
         self._times = np.ascontiguousarray(values[:, 0])
         self._steps = np.flatnonzero(kind != INSIDE)
 

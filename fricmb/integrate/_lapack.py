@@ -87,7 +87,7 @@ def solve_real(address: int, a: Floats, b: Floats, n: int, sizes: Any, pivots: A
     Small systems by elimination with row pivoting here (a call of LAPACK costs more than the work), others by dgesv.
     Returns 0, or k > 0 where pivot k vanished.
     """
-    if n > 12:
+    if n > 24:
         for i in range(n):
             for j in range(i):
                 x = a[i * n + j]
@@ -125,3 +125,18 @@ def solve_real(address: int, a: Floats, b: Floats, n: int, sizes: Any, pivots: A
             x -= a[i * n + j] * b[j]
         b[i] = x / a[i * n + i]
     return 0
+
+
+@kernel
+def solve_rows(address: int, a: Floats, b: Any, n: int, sizes: Any, pivots: Any) -> bool:
+    """Overwrite each row of b (nrhs, n) by the solution of ``a x = row``; a (n*n,) row-major is overwritten too."""
+    for i in range(n):
+        for j in range(i):
+            x = a[i * n + j]
+            a[i * n + j] = a[j * n + i]
+            a[j * n + i] = x
+    sizes[0] = n
+    sizes[1] = b.shape[0]
+    sizes[2] = 0
+    _gesv(address, sizes, pivots, a, b)
+    return bool(sizes[2] == 0)

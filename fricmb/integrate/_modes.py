@@ -192,8 +192,8 @@ def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> N
         speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
         if y.mode[k] == STICK or speed <= 8e-16 * y.size[row0] + r.small[k]:
             r.part[k] = 1
-        if y.mode[k] == STICK and speed > 1e-9 * y.size[row0] + r.small[k]:
-            # a prescribed velocity has jumped: the contact slips from now on
+        if y.mode[k] == STICK and speed > 1e-9 * y.size[row0] + 1e3 * r.small[k]:
+            # a prescribed velocity has jumped: the contact slips from now on (what drifts in stick is round-off)
             r.part[k] = 0
             y.mode[k] = SLIP
         if r.part[k] == 0:

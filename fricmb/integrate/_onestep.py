@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate._exact_step import Exact
 from fricmb.integrate._factor import Factor, prepare
-from fricmb.integrate._field import Scratch, powers, set_state, set_time
+from fricmb.integrate._field import Scratch, normal_force, powers, set_state, set_time
 from fricmb.integrate._guess import start_at_rest, start_on_last
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
@@ -39,7 +40,9 @@ class OneStep(NamedTuple):
     """All that a one-step method of one tableau needs.
 
     ``last`` (2,) start and length of the step that the stages are of (0: of none), ``counts`` work done (see
-    Counters), ``power`` (s, n_c+2) powers at the stages, ``noise_z`` (n_z,) sizes of states that do not matter.
+    Counters), ``power`` (s, n_c+2) powers at the stages, ``noise_z`` (n_z,) sizes of states that do not matter, ``N``
+    (s, n_c) normal forces at the stages before max(0, .), ``margin`` (s,) and ``series`` (s+1,) what is searched for
+    zeros, ``exact`` the structure where it is exact.
     """
 
     tab: Tableau
@@ -53,6 +56,9 @@ class OneStep(NamedTuple):
     power: Floats2
     noise_z: Floats
     margin: Floats
+    series: Floats
+    N: Floats2
+    exact: Exact
 
 
 @kernel
@@ -106,6 +112,11 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
         found = solve(packed, s, y, one, address)
     one.last[0] = y.t[0]
     one.last[1] = h if found else 0.0
+    if found and w.Fin.shape[1] > y.F.shape[0]:
+        for j in range(tab.c.shape[0]):
+            from_stage(packed, s, st, j)
+            for k in range(y.mode.shape[0]):
+                one.N[j, k] = normal_force(packed.ports, packed.normals, k, s)
     return found
 
 
@@ -161,8 +172,8 @@ def grain(packed: Packed, y: State, w: PortState, acc: Accuracy, h: float, i: in
     return float(acc.grain[i])
 
 
-@kernel
-def error_norm(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+@block
+def step_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> float:
     """Largest scaled error: the last Legendre coefficients of velocity, position, states, against tolerance."""
     st, tab = one.st, one.tab
     n_s = tab.c.shape[0]

@@ -234,6 +234,7 @@ def solve_ports(
     evaluate_ports(ports, laws, s, w, mode)
     linear = all_linear(ports, mode)
     renew = True
+    close = not some_stick(mode)
     last, last_turn = np.inf, np.inf
     for iteration in range(25):
         port_residual(ports, w, hA, mode)
@@ -254,19 +255,29 @@ def solve_ports(
         # softening leaves a part of itself behind, which a second iteration takes away
         if linear and (ports.soft[0] == 0.0 or iteration > 0):
             return iteration + 1
-        if ports.soft[0] > 0.0:
-            # softened Jacobians are not exact, and converge as they do only where they are new
-            if change < 1.0 and turn < 0.5:
-                return iteration + 1
-            continue
         rate = max(change / last, turn / last_turn) if iteration > 0 else 1.0
         # what is left of the turns: the square of the last with new factors, a part of it with old ones
         left = turn * (turn if renew else rate)
-        if left < DIRECTION and (change < 1.0 or (rate < 0.1 and change * rate < 0.1)):
+        good = left < DIRECTION and (change < 1.0 or (rate < 0.1 and change * rate < 0.1))
+        if ports.soft[0] > 0.0:
+            # softened Jacobians are not exact, and converge as they do only where they are new
+            good = change < 1.0 and turn < 0.5
+        # what sticks must not creep by what the last iteration leaves
+        if good and close:
             return iteration + 1
-        renew = turn > 0.02 or (iteration > 0 and rate > 0.02)
+        close = close or good
+        renew = ports.soft[0] > 0.0 or turn > 0.02 or (iteration > 0 and rate > 0.02)
         last, last_turn = change, max(turn, 1e-300)
     return -1
+
+
+@kernel
+def some_stick(mode: Codes) -> bool:
+    """Whether some contact sticks."""
+    found = False
+    for k in range(mode.shape[0]):
+        found = found or mode[k] == STICK
+    return bool(found)
 
 
 @kernel

@@ -130,11 +130,13 @@ class Signals:
 
     A signal of a driven body is its position, velocity and acceleration; of a time-dependent force the force as u; of a
     ``slide`` the slide velocity as u' (its u is unused).  ``breakpoints`` are stepped to exactly; integrators evaluate
-    on the inner side of the interval between two of them.
+    on the inner side of the interval between two of them.  ``uniform`` (n_u,): 1 where a signal is known to be linear
+    in time (empty: nothing is known).
     """
 
     table: Templates = field(default_factory=Templates)
     breakpoints: Floats = field(default_factory=lambda: _f(0))
+    uniform: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -243,6 +243,14 @@ FURTHER = (
     "change_modes",
     "dgetrf",
     "dgetrs",
+    "plain_ports",
+    "exact_tables",
+    "exact_attempt",
+    "exact_ports",
+    "exact_error",
+    "exact_finish",
+    "exact_record",
+    "step_error",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

@@ -34,11 +34,11 @@ def widths(problem: Problem) -> list[int]:
     return [1, n, n, n, problem.n_z, problem.n_z, problem.m, nc, nc + 2, nc + 2]
 
 
-def rows(problem: Problem, capacity: int) -> Rows:
-    """Empty room for ``capacity`` rows."""
+def rows(problem: Problem, capacity: int, further: int = 0) -> Rows:
+    """Empty room for ``capacity`` rows with ``further`` columns behind."""
     kinds = np.zeros(capacity, np.int8)
     modes = np.zeros((capacity, problem.n_c), np.int8)
-    values = np.zeros((capacity, sum(widths(problem))))
+    values = np.zeros((capacity, sum(widths(problem)) + further))
     return room(Rows(values, kinds, modes, np.zeros((capacity, 3)), np.zeros(2, np.int64)))
 
 

@@ -10,7 +10,7 @@ from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import State, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._modes import Rest, find_open, mark_rest, settle
-from fricmb.integrate._onestep import Accuracy, OneStep, attempt, error_norm, finish
+from fricmb.integrate._onestep import Accuracy, OneStep, attempt, finish, step_error
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import (
     EVENT_CLOSE,
@@ -142,12 +142,14 @@ def locate(
         if not attempt(packed, s, y, one, acc, step, address):
             failures += 1
             if failures > 8:
-                return -2
+                # close to a sharp turn that looks like a stop: up to where it can be solved, and on from there
+                retry[0] = 0.7 * lo if lo > 0.0 else step
+                return -1 if retry[0] > 16.0 * t_unit else -2
             hi = step
             f_hi = np.nan
             step = lo + 0.5 * (step - lo)
             continue
-        error = error_norm(packed, y, one, acc, step)
+        error = step_error(packed, y, one, acc, step, address)
         if error > 1.0:
             retry[0] = step * max(0.1, 0.85 * error**-s_order)
             return -1

@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate._field import Scratch, normal_force, set_state, set_time
 from fricmb.integrate._instant import State, slip_speed
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._onestep import OneStep, from_stage
+from fricmb.integrate._onestep import OneStep
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate._room import block
@@ -30,7 +30,9 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
         d = packed.ports.row[k + 1] - row0
         x = 2.0
         if packed.ports.law[k] != LAW_SMOOTH and y.mode[k] == SLIP:
-            x = first_crossing(tab, slip_speed(y.g, row0, d), w.r[:, k])
+            for j in range(n_s):
+                one.margin[j] = w.r[j, k]
+            x = first_crossing(tab, slip_speed(y.g, row0, d), one)
         elif y.mode[k] == STICK:
             x = cone_crossing(packed, y, end, one, k)
         if packed.ports.var[k] >= 0:
@@ -42,25 +44,108 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
 
 
 @kernel
-def first_crossing(tab: Tableau, r0: float, r: Floats) -> float:
-    """Where the polynomial through r0 at 0 and r at the stages first goes below 0, looked for at and between them."""
-    last_x = 0.0
-    last = r0
-    for j in range(r.shape[0]):
-        for half in range(2):
-            if half == 0:
-                value = tab.mid[j, 0] * r0
-                for i in range(r.shape[0]):
-                    value += tab.mid[j, i + 1] * r[i]
-                x = 0.5 * (tab.c[j] + (tab.c[j - 1] if j > 0 else 0.0))
-            else:
-                value = r[j]
-                x = tab.c[j]
-            if value < 0.0:
-                return float(last_x + (x - last_x) * last / (last - value))
-            last = value
-            last_x = x
+def polynomial(tab: Tableau, first: float, one: OneStep) -> None:
+    """Monomial coefficients of the polynomial through ``first`` at 0 and ``margin`` at the stages, into ``series``."""
+    for k in range(tab.basis.shape[0]):
+        value = tab.basis[k, 0] * first
+        for j in range(tab.c.shape[0]):
+            value += tab.basis[k, j + 1] * one.margin[j]
+        one.series[k] = value
+
+
+@kernel
+def evaluate(c: Floats, x: float) -> tuple[float, float, float]:
+    """Value, slope and half the curvature of a polynomial."""
+    value = 0.0
+    slope = 0.0
+    curve = 0.0
+    for k in range(c.shape[0] - 1, -1, -1):
+        curve = curve * x + slope
+        slope = slope * x + value
+        value = value * x + c[k]
+    return value, slope, curve
+
+
+@kernel
+def lowest_between(c: Floats, low: float, high: float) -> float:
+    """Where the polynomial has its minimum between two points, if it is negative there; else -1."""
+    x = 0.5 * (low + high)
+    for _ in range(30):
+        value, slope, curve = evaluate(c, x)
+        if value < 0.0:
+            return x
+        if slope < 0.0:
+            low = x
+        else:
+            high = x
+        new = x - 0.5 * slope / curve if curve > 0.0 else low
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - x) <= 1e-6 * high:
+            return -1.0
+        x = new
+    return -1.0
+
+
+@kernel
+def root_between(c: Floats, low: float, high: float) -> float:
+    """Root of the polynomial between a point where it is not negative and one where it is."""
+    x = 0.5 * (low + high)
+    for _ in range(60):
+        value, slope, _ = evaluate(c, x)
+        if value >= 0.0:
+            low = x
+        else:
+            high = x
+        new = x - value / slope if slope != 0.0 else low
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - x) <= 1e-13 * high:
+            return new
+        x = new
+    return x
+
+
+@kernel
+def first_crossing(tab: Tableau, first: float, one: OneStep) -> float:
+    """Where the polynomial through ``first`` at 0 and ``margin`` at the stages first goes below 0; 2 if it does not.
+
+    The stages, the points half-way between and the minima between these are looked at.
+    """
+    n_s = tab.c.shape[0]
+    low = first
+    high = first
+    for j in range(n_s):
+        low = min(low, one.margin[j])
+        high = max(high, one.margin[j])
+    if low > 0.5 * high:
+        return 2.0
+    polynomial(tab, first, one)
+    before = 0.0
+    falls = one.series[1] < 0.0 and first > 0.0
+    for i in range(2 * n_s):
+        x = tab.c[i // 2]
+        if i % 2 == 0:
+            x = 0.5 * (x + (tab.c[i // 2 - 1] if i > 0 else 0.0))
+        value, slope, _ = evaluate(one.series, x)
+        if i % 2 == 1:
+            value = one.margin[i // 2]
+        if value >= 0.0 and falls and slope > 0.0:
+            bottom = lowest_between(one.series, before, x)
+            if bottom > 0.0:
+                return root_between(one.series, before, bottom)
+        if value < 0.0:
+            return root_between(one.series, before, x) if before > 0.0 or first > 0.0 else 0.0
+        falls = slope < 0.0
+        before = x
     return 2.0
+
+
+@kernel
+def force_noise(packed: Packed, y: State, k: int, h: float) -> float:
+    """Round-off of a stuck contact's forces at the stages of a step h."""
+    row0 = packed.ports.row[k]
+    return float(1e-15 * y.size[row0] / max(h * packed.ports.D[row0, row0], 1e-290))
 
 
 @kernel
@@ -70,74 +155,37 @@ def cone_crossing(packed: Packed, y: State, end: State, one: OneStep, k: int) ->
     d = packed.ports.row[k + 1] - row0
     mu = packed.ports.mu_s[k]
     limit = mu * y.N[k]
-    first = limit * limit - slip_speed(y.F, row0, d) ** 2
-    last = max(0.0, first)
-    last_x = 0.0
+    first = max(0.0, limit * limit - slip_speed(y.F, row0, d) ** 2)
     n_s = one.tab.c.shape[0]
-    for j in range(n_s):
-        if j == n_s - 1:
-            limit = mu * end.N[k]
-            value = limit * limit - slip_speed(end.F, row0, d) ** 2
-        else:
-            limit = mu * one.w.N[j, k]
-            # stage multipliers are of lower order: a hair beyond the cone inside the step is left to its end
-            value = limit * limit * (1.0 + 1e-6) - slip_speed(one.w.F[j], row0, d) ** 2
-        if value < 0.0:
-            return float(last_x + (one.tab.c[j] - last_x) * last / (last - value))
-        one.margin[j] = limit * limit - slip_speed(one.w.F[j], row0, d) ** 2
-        last = value
-        last_x = one.tab.c[j]
-    one.margin[n_s - 1] = last
-    return dip_between(one, first, 1e-12 * limit * limit)
-
-
-@kernel
-def dip_between(one: OneStep, first: float, noise: float) -> float:
-    """Where the polynomial through ``first`` at 0 and ``one.margin`` dips below 0 between the stages; 2 if it does not.
-
-    A stuck contact moves nothing, so no error estimate keeps steps short: its force may pass the limit and come back
-    within one.
-    """
-    tab = one.tab
-    x0, v0 = 0.0, first
-    x1, v1 = 0.0, first
-    for j in range(tab.c.shape[0]):
-        for half in range(2):
-            if half == 0:
-                x = 0.5 * (tab.c[j] + (tab.c[j - 1] if j > 0 else 0.0))
-                value = tab.mid[j, 0] * first
-                for i in range(tab.c.shape[0]):
-                    value += tab.mid[j, i + 1] * one.margin[i]
-            else:
-                x, value = tab.c[j], one.margin[j]
-            if x1 > x0 and v1 <= v0 and v1 <= value:
-                # the parabola through three neighbours
-                left, right = (v1 - v0) / (x1 - x0), (value - v1) / (x - x1)
-                curve = (right - left) / (x - x0)
-                slope = left + curve * (x1 - x0)
-                if curve > 0.0 and v1 - 0.25 * slope * slope / curve < -noise:
-                    return float(x1 - 0.5 * slope / curve)
-            x0, v0 = x1, v1
-            x1, v1 = x, value
-    return 2.0
+    # stage multipliers are of lower order: a hair beyond the cone inside the step is left to its end
+    hair = 1e-6 * limit * limit
+    limit = mu * end.N[k]
+    last = limit * limit - slip_speed(end.F, row0, d) ** 2
+    # and in a very short step they are the round-off of velocities over the step
+    unknown = force_noise(packed, y, k, end.t[0] - y.t[0]) > 1e-8 * limit
+    for j in range(n_s - 1):
+        limit = mu * one.w.N[j, k]
+        one.margin[j] = limit * limit - slip_speed(one.w.F[j], row0, d) ** 2 + hair
+        if unknown:
+            one.margin[j] = first + one.tab.c[j] * (last - first) + hair
+    one.margin[n_s - 1] = last + hair
+    x = first_crossing(one.tab, first + hair, one)
+    if x > 1.0 and last < 0.0:
+        before = one.tab.c[n_s - 2] if n_s > 1 else 0.0
+        inner = one.margin[n_s - 2] - hair if n_s > 1 else first
+        return float(before + (1.0 - before) * inner / (inner - last)) if inner > 0.0 else 1.0
+    return x
 
 
 @kernel
 def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) -> float:
     """Where the normal force of a closed contact goes below 0, or of an open one above; 2 where it does not."""
     sign = -1.0 if y.mode[k] == OPEN else 1.0
-    last_x = 0.0
     set_time(packed.signals, s, y.t[0], y.q.shape[0])
     set_state(s, y.q, y.v)
-    last = max(0.0, sign * normal_force(packed.ports, packed.normals, k, s))
     for j in range(one.tab.c.shape[0]):
-        from_stage(packed, s, one.st, j)
-        value = sign * normal_force(packed.ports, packed.normals, k, s)
-        if value < 0.0:
-            return float(last_x + (one.tab.c[j] - last_x) * last / (last - value))
-        last = value
-        last_x = one.tab.c[j]
-    return 2.0
+        one.margin[j] = sign * one.N[j, k]
+    return first_crossing(one.tab, max(0.0, sign * normal_force(packed.ports, packed.normals, k, s)), one)
 
 
 @kernel

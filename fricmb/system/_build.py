@@ -88,7 +88,7 @@ def _build(scene: Any, plan: Any) -> System:
     known, searched = switches_of(timed)
     problem = Problem(
         linear=linear,
-        signals=Signals(table=signals.table.build(n, n_u), breakpoints=known),
+        signals=Signals(table=signals.table.build(n, n_u), breakpoints=known, uniform=signals.uniform()),
         contacts=contacts.build(n, n_u),
         elements=structure.elements(n_u),
         omega=omega,

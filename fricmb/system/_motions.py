@@ -6,8 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from fricmb.equations import Expression, Signal, signal_expression, uniform_signal
 from fricmb.errors import SceneError
+from fricmb.integrate._problem import Codes
 from fricmb.scene import Driven
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
 from fricmb.values import is_expression, value_of
@@ -91,6 +94,10 @@ class Signals:
             self.held.append(signal)
             self.table.add(signal.template.address, signal.parameters)
         return self.index[name]
+
+    def uniform(self) -> Codes:
+        """Which signals are linear in time, by their derivation."""
+        return np.array([bool(signal.template.facts.get("uniform", False)) for signal in self.held], dtype=np.int8)
 
     def need_position(self, name: str) -> None:
         """Refuse a motion whose position has no closed form where something depends on it."""

@@ -17,7 +17,7 @@ _spec = importlib.util.spec_from_file_location("reference", Path(__file__).paren
 reference = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(reference)
 
-METHODS = pytest.mark.parametrize("method", ["bdf", "radau"])
+METHODS = pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
 #: Those that take two-dimensional contacts (the others have tests of their own).
 EVERY = pytest.mark.parametrize("name", [name for name in integrators if name != "taylor"])
 
@@ -62,11 +62,6 @@ def test_a_negative_coefficient_is_a_failure_with_its_part(name):
     body = fm.Body("m", mass=1.0, velocity={"x": 1.0})
     push = fm.Force("f", body, axis="x", value=2.0)
     scene = fm.Scene("driven", [body, push, fm.Contact("c", body, law=law, normal_force=1.0)])
-    if name == "collocation":
-        # what an integrator does not take it refuses in one line, before it runs
-        with pytest.raises(fm.SceneError, match="method: collocation takes"):
-            fm.simulate(scene, t_end=20.0, **options(name))
-        return
     with pytest.raises(fm.IntegrationError, match="negative") as caught:
         fm.simulate(scene, t_end=20.0, rtol=1e-6, **options(name))
     partial = caught.value.partial
@@ -182,8 +177,8 @@ def test_a_nonlinear_scene(kind, method):
     assert errors[0] < 1e-1
     assert errors[1] < 1e-4
     assert errors[2] < 1e-7
-    # a hundred steps at least: some scenes are exact to round-off at every tolerance
-    assert errors[2] < max(errors[0], 1e-12)
+    # linear between ports, or as good as exact at any tolerance
+    assert errors[2] < max(errors[0], 1e-11)
 
 
 @METHODS

@@ -20,7 +20,7 @@ _spec = importlib.util.spec_from_file_location("reference", Path(__file__).paren
 reference = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(reference)
 
-METHODS = pytest.mark.parametrize("method", ["bdf", "radau"])
+METHODS = pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
 TURN = 0.7  # no direction below lies along an axis
 
 
@@ -197,7 +197,7 @@ def test_4_event_times_carry_no_snap_size(method, rtol):
     # a straight line is exact to both methods but for round-off (which bdf's growing steps magnify): all that is left
     # is how the landing is finished
     sol = fm.simulate(puck(turned(0.3, 0), turned(1, 0)), t_end=2.0, rtol=rtol, method=method)
-    exact = {"bdf": 1e-10, "radau": 1e-13}[method]
+    exact = {"bdf": 1e-10, "radau": 1e-13, "collocation": 1e-13}[method]
     assert kinds(sol) == ["stick"]
     assert sol.events[0].t == pytest.approx(1 / 0.7, abs=exact)
     assert sol.q[:, -1] == pytest.approx(turned(0.5 / 0.7, 0), abs=exact)

@@ -14,7 +14,7 @@ _spec = importlib.util.spec_from_file_location("reference", Path(__file__).paren
 reference = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(reference)
 
-METHODS = pytest.mark.parametrize("method", ["bdf", "radau"])
+METHODS = pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
 PLANAR = pytest.mark.parametrize("angle", [None, 0.7], ids=["line", "plane"])
 
 
@@ -118,7 +118,7 @@ def test_8_like_blocks_do_alike(method):
     assert [event.kind for event in sol.events] == ["slip"] * 3 + ["stick"] * 3
 
 
-@METHODS
+@pytest.mark.parametrize("method", ["bdf", "radau"])
 def test_8_two_contacts_share_a_held_body(method):
     # pinched between two pads: which of them holds how much is not determined, that it stays is
     held = fm.Body("held", mass=1.0, axes="xy")

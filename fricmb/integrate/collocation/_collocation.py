@@ -10,8 +10,11 @@ from typing import ClassVar
 import numpy as np
 
 from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._pack import packed_of
 from fricmb.integrate._problem import SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
+from fricmb.integrate.collocation._general_prepare import free_blocks
+from fricmb.integrate.collocation._general_run import run_general
 from fricmb.integrate.collocation._nodes import Z_EXACT
 from fricmb.integrate.collocation._prepare import Rows, is_single, model, run_of, with_rows
 from fricmb.integrate.collocation._run import Run
@@ -45,26 +48,38 @@ class Collocation(Integrator):
         Number of nodes, 4 to 9; None: from the tolerance.
     safety : float
         Tolerance of a step per ``rtol``: errors of single steps come out far smaller at the end of a run.
+    general : bool
+        Whether one contact under constant friction and loads, too, is run as any other scene is; it has a faster way
+        of its own.
+    exact_up_to : float or None
+        Largest frequency times step of modes whose motion is exact, beyond it they take Radau IIA's answer; None: as
+        far as stick is stable.  With 0 the structure, too, is plain Radau IIA (to see what exactness is worth); only
+        where ``general``.
     """
 
     nodes: int | None = None
     safety: float = 300.0
+    general: bool = False
+    exact_up_to: float | None = None
 
     name: ClassVar[str] = "collocation"
     order: ClassVar[str] = "7 to 17"
-    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports"})
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
     pauses: ClassVar[bool] = True
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
         if problem.mechanism is not None:
             return super().refuses(problem)
-        if not is_single(problem):
-            return "collocation takes one contact under constant friction and loads linear in time"
         try:
-            model(problem)
+            if is_single(problem):
+                model(problem)
+            free_blocks(problem)
+            stuck_together = packed_of(problem).ports.soft[0] > 0.0
         except NoBlocks as error:
             return f"collocation needs the structure in blocks; here {error}"
+        if stuck_together:
+            return "collocation needs contacts whose forces in stick are determined; here some are redundant"
         return None
 
     def integrate(
@@ -81,6 +96,11 @@ class Collocation(Integrator):
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         with _running:
+            if not is_single(problem) or self.general:
+                s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
+                # where tolerances are loose a step may still not err by more than 2 %
+                safety = min(self.safety, 0.02 / tolerance.rtol)
+                return run_general(problem, start, t_end, tolerance, s, safety, self.exact_up_to, progress, memory)
             return _run_single(problem, start, t_end, tolerance, self.nodes, self.safety, progress, memory)
 
 

@@ -134,7 +134,7 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
         T[:n, k + i], T[n:, n + k + i] = null[:, i], null[:, i]
     J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(w2), -np.diag(d)]])
     off = np.abs(A @ T - T @ J).max(initial=0.0) / max(np.abs(A).max(initial=0.0) * np.abs(T).max(initial=0.0), 1e-300)
-    if n and (off > 1e-9 or np.linalg.cond(T / np.linalg.norm(T, axis=0)) > 1e7):
+    if n and (not np.isfinite(T).all() or off > 1e-9 or np.linalg.cond(T / np.linalg.norm(T, axis=0)) > 1e7):
         raise NoBlocks("its state matrix has (nearly) multiple poles")
     return w2, d, T
 

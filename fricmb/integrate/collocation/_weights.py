@@ -3,11 +3,15 @@
 A block is left alone with S (answer of v to a unit acceleration), IS and IIS (its integrals):
 ``v = v0 + a0 S + k0 IS``, ``u = u0 + v0 t + a0 IS + k0 IIS`` with a0 the acceleration at the start and k0 = f' - w2 v0;
 so constant and linear loads cost nothing and increments are never differences of large numbers.
+
+``run`` is the room of a run of one contact or that of any ports (:class:`Run`, :class:`Exact`): both name these arrays
+alike.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate.collocation._layout import (
@@ -32,11 +36,10 @@ from fricmb.integrate.collocation._layout import (
     W2,
     S,
 )  # fmt: skip
-from fricmb.integrate.collocation._run import Run
 
 
 @kernel
-def markov(run: Run, h: float, w2: float, d: float, j: int, most: int) -> int:
+def markov(run: Any, h: float, w2: float, d: float, j: int, most: int) -> int:
     """Markov parameters of a block in units of h, into kappa; returns how many matter."""
     z2 = w2 * h * h
     delta = d * h
@@ -53,7 +56,7 @@ def markov(run: Run, h: float, w2: float, d: float, j: int, most: int) -> int:
 
 
 @kernel
-def radau_block(run: Run, h: float, w2: float, d: float) -> None:
+def radau_block(run: Any, h: float, w2: float, d: float) -> None:
     """Plain Radau answer of v at the nodes to a force on v (s, s), into wk[RADAU]."""
     s = run.cx.shape[2]
     for i in range(s):
@@ -69,7 +72,7 @@ def radau_block(run: Run, h: float, w2: float, d: float) -> None:
 
 
 @kernel
-def free_weights(run: Run, z: int, modal: bool, h: float, stiff: float, slot: int) -> None:
+def free_weights(run: Any, z: int, modal: bool, h: float, stiff: float, slot: int) -> None:
     """Tables of every block of structure z for step h, into ``slot`` of tb.
 
     Blocks beyond ``stiff`` (w h) take Radau's own answer throughout; terms = 0 marks them.
@@ -103,7 +106,7 @@ def free_weights(run: Run, z: int, modal: bool, h: float, stiff: float, slot: in
 
 
 @kernel
-def stiff_tables(run: Run, w2: float, d: float, j: int, h: float, slot: int) -> None:
+def stiff_tables(run: Any, w2: float, d: float, j: int, h: float, slot: int) -> None:
     """The tables of one stiff block."""
     s = run.nx.shape[2]
     end = s - 1
@@ -122,7 +125,7 @@ def stiff_tables(run: Run, w2: float, d: float, j: int, h: float, slot: int) -> 
 
 
 @kernel
-def port_weights(run: Run, z: int, modal: bool, h: float, slot: int) -> None:
+def port_weights(run: Any, z: int, modal: bool, h: float, slot: int) -> None:
     """Outputs at the nodes per node value of inputs, into ``slot`` of tk, after :func:`free_weights`."""
     co = run.co
     ci = run.ci
@@ -164,7 +167,7 @@ def port_weights(run: Run, z: int, modal: bool, h: float, slot: int) -> None:
 
 
 @kernel
-def stiff_pair(run: Run, z: int, j: int, a: int, b: int, h: float, slot: int) -> None:
+def stiff_pair(run: Any, z: int, j: int, a: int, b: int, h: float, slot: int) -> None:
     """Add one stiff block's plain Radau answer."""
     nd = run.nd
     wk = run.wk

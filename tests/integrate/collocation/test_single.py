@@ -197,9 +197,9 @@ def test_rows_hold_both_sides_of_transitions():
 def test_refuses_what_it_cannot_run():
     p = brake("2")
     assert Collocation().refuses(p) is None
-    empty = Contacts(W=np.zeros((4, 0)), w=np.zeros(0), Wu=np.zeros((0, 0)), Wn=np.zeros((4, 0)))
-    nothing = Problem(linear=p.linear, signals=Signals(), contacts=empty, elements=Elements())
-    assert "one contact" in Collocation().refuses(nothing)
+    # a critically damped pair, coupled: a double pole with one vector
+    C, K = [[2.0, 1.0], [0.0, 2.0]], [[1.0, 0.0], [0.0, 1.0]]
+    assert "multiple poles" in Collocation().refuses(problem(np.eye(2), K, C, [[1], [0]]))
 
 
 @pytest.mark.parametrize("seed", range(24))

@@ -1,0 +1,135 @@
+"""One step of any ports on an exact structure: guesses, the equations of the ports, the state at its end."""
+
+from __future__ import annotations
+
+from fricmb.integrate._exact_step import INPUTS, OUTPUTS, UNKNOWN
+from fricmb.integrate._field import Scratch, set_state, set_time
+from fricmb.integrate._instant import State, slip_speed
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._onestep import Accuracy, OneStep, newton_tolerances, widest
+from fricmb.integrate._pack import Packed
+from fricmb.integrate._ports import solve_ports
+from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.collocation._general_blocks import (
+    end_blocks,
+    free_outputs,
+    load_at_start,
+    outputs_at_start,
+    slot_of,
+    start_blocks,
+)
+from fricmb.integrate.collocation._general_ports import exact_ports
+from fricmb.integrate.collocation._layout import NODE, TABLEAU, VECTORS
+
+
+@kernel
+def weigh_inputs(y: State, one: OneStep, acc: Accuracy, h: float) -> None:
+    """What a unit of every input, held for the step, changes in velocities, each by its own scale."""
+    ex = one.exact
+    top = widest(acc.v)
+    for c in range(ex.flags[INPUTS]):
+        worst = 0.0
+        for i in range(y.q.shape[0]):
+            size = abs(ex.MB[c, i])
+            if size > 0.0:
+                scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
+                worst = max(worst, size / scale)
+        ex.weight[c] = h * worst
+
+
+@kernel
+def guess_ports(packed: Packed, y: State, one: OneStep, h: float) -> None:
+    """First values of the port unknowns: those at the start of the step."""
+    w, st, ex = one.w, one.st, one.exact
+    n_s = st.t.shape[0]
+    for a in range(y.z.shape[0]):
+        w.psi_z[a] = y.z[a]
+    for i in range(n_s):
+        st.t[i] = y.t[0] + ex.nd[VECTORS, NODE, i] * h
+        for j in range(n_s):
+            st.hA[i, j] = h * ex.nd[TABLEAU, i, j]
+        for a in range(y.z.shape[0]):
+            w.z[i, a] = y.z[a]
+        for k in range(y.mode.shape[0]):
+            row0 = packed.ports.row[k]
+            w.N[i, k] = y.N[k]
+            one.N[i, k] = y.N[k]
+            w.r[i, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            for a in range(row0, packed.ports.row[k + 1]):
+                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
+                w.n[i, a] = y.n[a]
+                w.g[i, a] = y.g[a]
+
+
+@kernel
+def guess_velocities(packed: Packed, y: State, one: OneStep) -> None:
+    """Relative velocities under the forces at the start, where laws ask for them."""
+    w = one.w
+    m = y.g.shape[0]
+    for k in range(y.mode.shape[0]):
+        if packed.ports.law[k] == LAW_CONSTANT:
+            continue
+        for i in range(w.F.shape[0]):
+            w.r[i, k] = 0.0
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+                value = w.gb[i, a]
+                for j in range(w.F.shape[0]):
+                    for c in range(m):
+                        value += w.G[i * m + a, j * m + c] * w.F[j, c]
+                if packed.ports.law[k] != LAW_SMOOTH:
+                    w.r[i, k] += w.n[i, a] * value
+
+
+@kernel
+def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, address: Ints) -> bool:
+    """The equations of contacts alone, on a structure that answers linearly."""
+    w, ex = one.w, one.exact
+    m = y.g.shape[0]
+    n_in = ex.flags[INPUTS]
+    n_s = w.F.shape[0]
+    for a in range(m):
+        for c in range(m):
+            pair = n_in * a + c
+            for i in range(n_s):
+                for j in range(n_s):
+                    w.G[i * m + a, j * m + c] = ex.tk[slot, pair, i, j]
+        for i in range(n_s):
+            w.gb[i, a] = ex.xf[a, i]
+            w.Fo[i, a] = 0.0
+    guess_velocities(packed, y, one)
+    if solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol, address) < 0:
+        return False
+    for a in range(m):
+        for i in range(n_s):
+            ex.P[a, i] = w.F[i, a]
+    return True
+
+
+@block
+def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
+    """Solve a step h from y on an exact structure (stands in for :func:`attempt`).  False without convergence."""
+    ex = one.exact
+    set_time(packed.signals, s, y.t[0], y.q.shape[0])
+    set_state(s, y.q, y.v)
+    load_at_start(packed, s, y.q, ex.f)
+    start_blocks(ex, y.v)
+    slot = slot_of(one, h, address)
+    ex.slot[0] = slot
+    outputs_at_start(packed, s, y, one, h)
+    free_outputs(ex, slot, h, ex.flags[UNKNOWN])
+    guess_ports(packed, y, one, h)
+    weigh_inputs(y, one, acc, h)
+    newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
+    one.counts[2] += 1
+    if ex.flags[OUTPUTS] > y.g.shape[0]:
+        solved = exact_ports(packed, s, y, one, acc, slot, address)
+    else:
+        solved = solve_linear(packed, s, y, one, slot, address)
+    if not solved:
+        return False
+    end_blocks(ex, slot, h)
+    largest = 0.0
+    for i in range(y.q.shape[0]):
+        largest += abs(ex.end[0, i]) + abs(ex.end[1, i])
+    return largest < 1e290

@@ -1,0 +1,158 @@
+"""Motion inside a step of exact structure: Taylor series of its blocks under the polynomials of all inputs."""
+
+from __future__ import annotations
+
+import math
+
+from fricmb.integrate._exact_step import INPUTS, IS_MODAL, STIFF_AT, Exact
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import Floats, Floats2
+from fricmb.integrate.collocation._general_blocks import A0, K0, V0
+from fricmb.integrate.collocation._layout import (
+    B0,
+    B1,
+    DAMP,
+    MONOMIAL,
+    NODE,
+    Q_U,
+    Q_V,
+    RADAU,
+    TABLEAU,
+    V_U,
+    V_V,
+    VECTORS,
+    W2,
+    WITH_START,
+)
+from fricmb.integrate.collocation._weights import radau_block
+
+
+@kernel
+def is_stiff(ex: Exact, j: int, h: float) -> bool:
+    """Whether block j takes Radau's own answer in a step h."""
+    return bool(max(math.sqrt(abs(ex.blk[0, W2, j])), abs(ex.blk[0, DAMP, j])) * h > ex.par[STIFF_AT])
+
+
+@kernel
+def block_input(ex: Exact, P: Floats2, place: int, j: int, i: int) -> float:
+    """Input of block j at node i, on u (B0) or v (B1)."""
+    value = 0.0
+    for c in range(ex.flags[INPUTS]):
+        value += ex.ci[place, c, j] * P[c, i]
+    return value
+
+
+@kernel
+def stiff_nodes(ex: Exact, P: Floats2, j: int, h: float, gain: Floats2) -> None:
+    """Gains of u and v of a stiff block at the nodes, as Radau IIA finds them, into gain (2, s+1) from place 1 on."""
+    bs = ex.bs
+    n_s = P.shape[1]
+    w2 = ex.blk[0, W2, j]
+    radau_block(ex, h, w2, ex.blk[0, DAMP, j])
+    for i in range(n_s):
+        value = 0.0
+        for x in range(n_s):
+            push = bs[A0, j] + bs[K0, j] * ex.nd[VECTORS, NODE, x] * h + block_input(ex, P, B1, j, x)
+            for k in range(n_s):
+                push -= w2 * h * ex.nd[TABLEAU, x, k] * block_input(ex, P, B0, j, k)
+            value += ex.wk[RADAU, i, x] * push
+        gain[1, i + 1] = value
+    for i in range(n_s):
+        value = ex.nd[VECTORS, NODE, i] * h * bs[V0, j]
+        for x in range(n_s):
+            value += h * ex.nd[TABLEAU, i, x] * (gain[1, x + 1] + block_input(ex, P, B0, j, x))
+        gain[0, i + 1] = value
+    gain[0, 0] = 0.0
+    gain[1, 0] = 0.0
+
+
+@kernel
+def input_series(ex: Exact, P: Floats2, h: float, series: Floats2, gain: Floats2) -> None:
+    """Monomial coefficients (in tau/h) of block inputs on u and v (rows j, b + j); of gains where a block is stiff."""
+    n_s = P.shape[1]
+    b = ex.blk.shape[2]
+    for j in range(b):
+        if is_stiff(ex, j, h):
+            stiff_nodes(ex, P, j, h, gain)
+            for r in range(n_s + 1):
+                for place in range(2):
+                    value = 0.0
+                    for x in range(1, n_s + 1):
+                        value += ex.nd[WITH_START, r, x] * gain[place, x]
+                    series[place * b + j, r] = value
+            continue
+        for place in range(2):
+            if place == 0 and ex.flags[IS_MODAL] == 1:
+                for r in range(n_s):
+                    series[j, r] = 0.0
+                continue
+            for i in range(n_s):
+                gain[place, i] = block_input(ex, P, place, j, i)
+            for r in range(n_s):
+                value = 0.0
+                for x in range(n_s):
+                    value += ex.nd[MONOMIAL, r, x] * gain[place, x]
+                series[place * b + j, r] = value
+
+
+@kernel
+def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2) -> tuple[float, float]:
+    """Gains of u and v of block j at tau."""
+    bs = ex.bs
+    b = ex.blk.shape[2]
+    n_s = series.shape[1] - 1
+    theta = tau / h
+    w2 = ex.blk[0, W2, j]
+    d = ex.blk[0, DAMP, j]
+    du = 0.0
+    dv = 0.0
+    if is_stiff(ex, j, h):
+        for r in range(n_s, -1, -1):
+            du = du * theta + series[j, r]
+            dv = dv * theta + series[b + j, r]
+        return du, dv
+    # gains from the start: du' = V0 + dv + e0(tau),  dv' = A0 - w2 du - d dv + e1(tau)
+    power = 1.0
+    size = max(math.sqrt(abs(w2)), abs(d)) * tau
+    bound = 1.0
+    q = 0
+    u = 0.0
+    v = 0.0
+    while q < n_s + 2 or bound > 1e-18:
+        # u, v: the terms of order q of du, dv at tau
+        rate_u = v
+        rate_v = -w2 * u - d * v
+        if q == 0:
+            rate_u = bs[V0, j]
+            rate_v = bs[A0, j]
+        if q < n_s:
+            rate_u += series[j, q] * power
+            rate_v += series[b + j, q] * power
+        q += 1
+        u = tau * rate_u / q
+        v = tau * rate_v / q
+        du += u
+        dv += v
+        power *= theta
+        bound *= size / q
+        if q > 200:
+            break
+    return du, dv
+
+
+@kernel
+def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: Floats) -> None:
+    """Gains of positions and velocities at tau after the start of the step, after :func:`input_series`."""
+    modal = ex.flags[IS_MODAL] == 1
+    for i in range(dq.shape[0]):
+        dq[i] = 0.0
+        dv[i] = 0.0
+    for j in range(ex.blk.shape[2]):
+        u, v = block_gain(ex, j, h, tau, series)
+        for i in range(dq.shape[0]):
+            dq[i] += ex.mat[Q_U, i, j] * u
+            dv[i] += ex.mat[V_V, i, j] * v
+        if not modal:
+            for i in range(dq.shape[0]):
+                dq[i] += ex.mat[Q_V, i, j] * v
+                dv[i] += ex.mat[V_U, i, j] * u

@@ -1,0 +1,129 @@
+"""Any linear structure with its ports as the room of exact steps: blocks, inputs, outputs, tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate._exact_step import RUNGS, UNIT_RUNG, Exact
+from fricmb.integrate._problem import Floats, Problem, Templates
+from fricmb.integrate._room import room
+from fricmb.integrate.collocation._nodes import TERMS, Z_EXACT, nodes
+from fricmb.integrate.collocation._prepare import kept
+from fricmb.integrate.collocation._structure import Blocks, blocks
+
+
+@dataclass(frozen=True, kw_only=True)
+class PortForms:
+    """Inputs B (n, n_in) on the dofs; outputs by positions and velocities (n_o, n) each; sizes of their groups."""
+
+    B: Floats
+    by_q: Floats
+    by_v: Floats
+    unknown: int
+    element_x: int
+    normal_x: int
+    element_f: int
+
+
+def _forms(templates: Templates, n: int) -> tuple[Floats, Floats]:
+    """Arguments of templates by q and by v."""
+    start, index, coefficient = templates.form_start, templates.form_index, templates.form_coefficient
+    count = int(templates.x_start[-1])
+    row = np.repeat(np.arange(count), np.diff(start[: count + 1]))
+    column, value = index[: len(row)] - 1, coefficient[: len(row)]
+    by = np.zeros((2, count, n))
+    for k in range(2):
+        inside = (column >= k * n) & (column < (k + 1) * n)
+        np.add.at(by[k], (row[inside], column[inside] - k * n), value[inside])
+    return by[0], by[1]
+
+
+def port_forms(problem: Problem) -> PortForms:
+    """What acts on the structure and what is asked of it."""
+    n, linear, contacts, elements = problem.n, problem.linear, problem.contacts, problem.elements
+    varies = np.flatnonzero(contacts.normal != 0)
+    n_f = int(elements.f_start[-1])
+    spread = np.zeros((n, n_f))
+    row = np.repeat(np.arange(n_f), np.diff(elements.spread_start[: n_f + 1]))
+    np.add.at(spread, (elements.spread_dof[: len(row)], row), elements.spread_coefficient[: len(row)])
+    loads = linear.B - linear.Kx[:n, n:]
+    B = np.hstack([contacts.W, contacts.Wn[:, varies], spread, loads, -linear.Cx[:n, n:]])
+    xq, xv = _forms(elements.table, n)
+    yq, yv = _forms(contacts.normal_table, n)
+    return PortForms(
+        B=B, by_q=np.vstack([np.zeros((problem.m, n)), xq, yq]), by_v=np.vstack([contacts.W.T, xv, yv]),
+        unknown=problem.m + len(varies) + n_f, element_x=len(xq), normal_x=len(yq), element_f=n_f,
+    )  # fmt: skip
+
+
+def free_blocks(problem: Problem) -> Blocks:
+    """The structure without contact forces in blocks; raises NoBlocks where it has no such form."""
+    n, linear = problem.n, problem.linear
+    M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
+    return kept(problem, "free blocks", lambda: blocks(M, K, C, np.zeros((n, 0)), ()))
+
+
+def _has_ledger(problem: Problem) -> bool:
+    """Whether anything but friction takes or brings energy."""
+    n, linear, contacts = problem.n, problem.linear, problem.contacts
+    K = linear.Kx[:n, :n]
+    parts = [linear.Cx[:n, :n], contacts.w, contacts.Wn, problem.elements.table.address]
+    return bool(problem.n_u > 0 or any(np.any(x) for x in parts) or np.any(K != K.T))
+
+
+def _tables(b: int, s: int, pairs: int) -> tuple[Floats, Floats]:
+    count = 1 + int(np.clip(6_000_000 // (6 * b * s + pairs * s * s + 1), 10, 60))
+    return np.zeros((count, 6, b, s)), np.zeros((count, pairs, s, s))
+
+
+def _exact(problem: Problem, s: int) -> Exact:
+    n, forms, part, table = problem.n, port_forms(problem), free_blocks(problem), nodes(s)
+    b, n_in, n_o = len(part.w2), forms.B.shape[1], len(forms.by_v)
+    Minv = np.linalg.inv(problem.linear.M) if n else np.zeros((0, 0))
+    co = np.stack([forms.by_q @ part.q_u + forms.by_v @ part.v_u, forms.by_q @ part.q_v + forms.by_v @ part.v_v])
+    ci = np.stack([(part.force_0 @ forms.B).T, (part.force_1 @ forms.B).T])
+    for weights in (co, ci):
+        weights[np.abs(weights) < 1e-15 * np.abs(weights).max(initial=0.0)] = 0.0
+    linked = np.abs(co).sum(axis=0) @ np.abs(ci).sum(axis=0).T > 0
+    fastest = float(max(np.sqrt(np.abs(part.w2)).max(initial=0.0), np.abs(part.d).max(initial=0.0)))
+    tb, tk = _tables(b, s, n_o * n_in)
+    slots = np.full(RUNGS + 1, -1, np.int64)
+    slots[-1] = 0
+    xs, ys, nf = forms.element_x, forms.normal_x, forms.element_f
+    nv = int(np.sum(problem.contacts.normal != 0))
+    inner = xs * s
+    flags = [n_in, n_o, part.modal and not co[0].any(), _has_ledger(problem), forms.unknown, xs, ys, nf]
+    made: dict[str, Any] = {
+        "flags": np.array(flags, np.int64),
+        "par": np.array([1.0, Z_EXACT[s] * 1.0001, np.inf, fastest]),
+        "nx": np.zeros((1, 1, s)), "blk": np.stack([part.w2, part.d])[None], "co": co, "ci": ci,
+        "linked": linked.astype(float), "mat": np.stack([part.q_u, part.q_v, part.v_u, part.v_v]),
+        "start": np.stack([part.force_0, part.force_1, part.force_0 @ problem.linear.M,
+                           part.force_1 @ problem.linear.M]),
+        "MB": (Minv @ forms.B).T, "nd": table.nd, "mo": table.mo, "cx": table.cx, "tb": tb, "tk": tk,
+        "ladder": 2.0 ** (0.25 * (np.arange(RUNGS) - UNIT_RUNG)), "slots": slots,
+        "kappa": np.zeros((b, TERMS)), "terms": np.zeros(b, np.int64), "wk": np.zeros((3, s + 1, s + 1)),
+        "bs": np.zeros((8, b)), "xf": np.zeros((n_o, s)), "x": np.zeros((n_o, s)), "P": np.zeros((n_in, s)),
+        "now": np.zeros(n_in), "weight": np.zeros(n_in), "low": np.zeros((2, n + 1)), "end": np.zeros((2, n)),
+        "node": np.zeros((2, s, n)), "f": np.zeros(n), "slot": np.zeros(1, np.int64),
+        "J": np.zeros((s, nf, xs)), "JN": np.zeros((s, nv, ys)), "fe": np.zeros((s, nf)),
+        "A": np.zeros(inner * inner), "R": np.zeros((s * (problem.m + nv) + 1, inner)),
+        "pivots": np.zeros(max(1, inner), np.int32),
+    }  # fmt: skip
+    return room(Exact(**{
+        name: np.ascontiguousarray(value, dtype=None if value.dtype.kind in "ic" else float)
+        for name, value in made.items()
+    }))  # fmt: skip
+
+
+def exact_of(problem: Problem, s: int, safety: float, exact_up_to: float | None) -> Exact:
+    """The room of a problem with s nodes, its tables kept for the next run."""
+    found = kept(problem, ("exact", s, exact_up_to), lambda: _exact(problem, s))
+    found.par[0] = safety
+    found.par[1] = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
+    found.par[2] = np.inf
+    found.low[:] = 0.0
+    return found

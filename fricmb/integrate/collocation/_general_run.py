@@ -1,0 +1,150 @@
+"""A run of any ports on a linear structure: the one-step driver with steps whose structure is exact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from fricmb.integrate._advance import DONE, FAILURES, FULL
+from fricmb.integrate._collect import Collector, accuracy, clock_of
+from fricmb.integrate._drive import drive
+from fricmb.integrate._exact_step import Exact
+from fricmb.integrate._factor import Factor
+from fricmb.integrate._field import scratch
+from fricmb.integrate._hermite import RowTrajectory
+from fricmb.integrate._instant import state
+from fricmb.integrate._integrator import Tolerance
+from fricmb.integrate._lapack import addresses
+from fricmb.integrate._onestep import OneStep
+from fricmb.integrate._pack import packed_of
+from fricmb.integrate._plain_ports import plain_ports
+from fricmb.integrate._port_state import port_state
+from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints, Problem, Start
+from fricmb.integrate._room import CORE, PLACES, room
+from fricmb.integrate._stages import Stages
+from fricmb.integrate._tableau import radau
+from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.collocation._general_attempt import exact_attempt
+from fricmb.integrate.collocation._general_prepare import exact_of
+from fricmb.integrate.collocation._general_sample import sample_exact
+from fricmb.integrate.collocation._general_step import exact_error, exact_finish, exact_record
+
+#: Blocks that stand in for those of plain Radau IIA, and those that are not needed then.
+STANDS_FOR = {
+    "attempt": exact_attempt.__name__,
+    "step_error": exact_error.__name__,
+    "finish": exact_finish.__name__,
+    "record_inside": exact_record.__name__,
+}
+LEFT_OUT = ("factorise", "solve_stages", *STANDS_FOR)
+
+
+@lru_cache(maxsize=4)
+def places(plain: bool, nonlinear: bool) -> Ints:
+    """Table of addresses for exact steps.
+
+    ``plain``: constant friction and normal forces alone; ``nonlinear``: with elements or varying normal forces.
+    """
+    stand_ins = {**STANDS_FOR, "solve_ports": plain_ports.__name__} if plain else STANDS_FOR
+    further = ("exact_tables", "exact_ports") if nonlinear else ("exact_tables",)
+    needed = tuple(name for name in CORE if name not in LEFT_OUT and name not in stand_ins)
+    table = addresses(*needed, *stand_ins.values(), *further).copy()
+    for name, stand_in in stand_ins.items():
+        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
+    return table
+
+
+def _no_factor() -> Factor:
+    shapes = {"Sinv": 3, "P": 3, "G": 3, "made": 1, "slot": 1, "X": 3}
+    kinds = {"Sinv": complex, "S": complex, "X": complex, "slot": np.int64}
+    return room(Factor._make(
+        np.zeros((0,) * shapes.get(name, 2), kinds.get(name, float)) for name in Factor._fields
+    ))  # fmt: skip
+
+
+def exact_step(problem: Problem, exact: Exact, counts: Ints) -> OneStep:
+    """Room for exact steps."""
+    s = exact.nx.shape[2]
+    none, nc = np.zeros((0, 0)), problem.n_c
+    empty = np.zeros(0)
+    stages = Stages(
+        none, none, none, none, none, np.zeros(s), empty, empty, np.zeros((s, s)), np.zeros((0, 0), complex),
+        none, empty,
+    )  # fmt: skip
+    return room(OneStep(
+        radau(s), _no_factor(), room(stages), port_state(problem, s), np.zeros(nc), np.zeros(problem.n), np.zeros(2),
+        counts, np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1), np.zeros((s, nc)),
+        exact,
+    ))  # fmt: skip
+
+
+class ExactRun(RowTrajectory):
+    """A run kept as the rows of its steps, with the node values of their inputs."""
+
+    def __init__(
+        self, problem: Problem, values: Floats, kind: Codes, mode: Codes, transitions: Transitions,
+        counters: Counters, end: Start, failure: str | None, exact: tuple[int, float | None],
+    ) -> None:  # fmt: skip
+        super().__init__(problem, values, kind, mode, transitions, counters, end, failure)
+        self._nodes, self._exact_up_to = exact
+
+    def _sample(self, t: Floats, index: Ints) -> Samples:
+        problem = self.problem
+        n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
+        out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
+        modes = np.zeros((len(t), nc), np.int8)
+        packed = packed_of(problem)
+        y = state(problem, Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz)))
+        exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
+        sample_exact(
+            packed, scratch(problem), y, exact, self._values, self._mode, packed.breakpoints,
+            index.astype(np.int64), t, out, modes, np.zeros(3, np.int32),
+            np.zeros(max(1, m, n), np.int32), addresses("complete"),
+        )  # fmt: skip
+        ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
+        _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])
+        return Samples(
+            t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T), friction_loss=friction,
+            damping_loss=damping[0], input=supply[0],
+        )  # fmt: skip
+
+
+def run_general(
+    problem: Problem, start: Start, t_end: float, tolerance: Tolerance, s: int, safety: float,
+    exact_up_to: float | None, progress: Callable[[float], None] | None, memory: float | None,
+) -> Trajectory:  # fmt: skip
+    """Run with s nodes; a step may err by ``safety`` rtol; modes are exact up to a w h of ``exact_up_to``."""
+    contacts = problem.contacts
+    varies = bool(np.any(contacts.normal != 0))
+    plain = not varies and not np.any(contacts.law != LAW_CONSTANT)
+    nonlinear = len(problem.elements.table.address) > 0 or varies
+    run = Collector(problem, start, t_end, places=places(bool(plain), nonlinear))
+    one = exact_step(problem, exact_of(problem, s, safety, exact_up_to), run.counts)
+    extra = 1 + one.exact.P.size + s * (problem.n_z + problem.n_c + 2)
+    run.widen(extra)
+    acc = accuracy(run, tolerance)
+    code = run.begin()
+    if code == DONE:
+        clock = clock_of(run)
+        code = FULL
+        while code == FULL and not run.is_full(memory):
+            code = drive(
+                run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
+            )
+            run.collect()
+            if progress is not None:
+                progress(float(run.y.t[0]))
+    rows = run.trajectory(None if code in (DONE, FULL) else FAILURES[code])
+    return ExactRun(
+        problem,
+        rows._values,
+        rows._kind,
+        rows._mode,
+        rows.transitions,
+        rows.counters,
+        rows.end,
+        rows.failure,
+        (s, exact_up_to),
+    )

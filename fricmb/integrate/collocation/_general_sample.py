@@ -1,0 +1,184 @@
+"""States anywhere in a run on an exact structure, from the rows of its steps and the inputs kept beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate._exact_step import Exact
+from fricmb.integrate._field import Scratch, set_state, set_time
+from fricmb.integrate._hermite import point_along_slip, relative_velocity
+from fricmb.integrate._instant import State, complete
+from fricmb.integrate._kernel import entry, kernel
+from fricmb.integrate._pack import Packed
+from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.collocation._general_blocks import load_at_start, start_blocks
+from fricmb.integrate.collocation._general_dense import gains_at, input_series
+from fricmb.integrate.collocation._layout import MONOMIAL, WITH_START
+
+
+@kernel
+def set_window_around(stops: Floats, s: Scratch, t: float) -> None:
+    """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
+    low, high = -np.inf, np.inf
+    for i in range(stops.shape[0]):
+        if stops[i] <= t:
+            low = max(low, stops[i] + 4e-16 * abs(stops[i]) + 1e-300)
+        else:
+            high = min(high, stops[i] - 4e-16 * abs(stops[i]) - 1e-300)
+    s.window[0] = low
+    s.window[1] = high
+
+
+@kernel
+def open_step(
+    packed: Packed, s: Scratch, y: State, ex: Exact, left: Floats, right: Floats, at: int, P: Floats2, series: Floats2,
+    gain: Floats2,
+) -> None:  # fmt: skip
+    """Make ready for samples of the step from row ``left`` to row ``right``."""
+    n = y.q.shape[0]
+    for i in range(n):
+        y.q[i] = left[1 + i]
+        y.v[i] = left[1 + n + i]
+    set_time(packed.signals, s, left[0], n)
+    set_state(s, y.q, y.v)
+    load_at_start(packed, s, y.q, ex.f)
+    start_blocks(ex, y.v)
+    for c in range(P.shape[0]):
+        for x in range(P.shape[1]):
+            P[c, x] = right[at + 1 + c * P.shape[1] + x]
+    input_series(ex, P, right[at], series, gain)
+
+
+@kernel
+def through_nodes(ex: Exact, start: float, row: Floats, at: int, width: int, theta: float) -> float:
+    """Polynomial through ``start`` and the node values ``row[at + x width]``."""
+    n_s = ex.nd.shape[1] - 1
+    value = 0.0
+    for r in range(n_s, -1, -1):
+        c = ex.nd[WITH_START, r, 0] * start
+        for x in range(n_s):
+            c += ex.nd[WITH_START, r, x + 1] * row[at + x * width]
+        value = value * theta + c
+    return value
+
+
+@kernel
+def integral_of_nodes(ex: Exact, row: Floats, at: int, width: int, theta: float) -> float:
+    """Integral from 0 to theta of the polynomial through the node values."""
+    n_s = ex.nd.shape[1] - 1
+    value = 0.0
+    for r in range(n_s - 1, -1, -1):
+        c = 0.0
+        for x in range(n_s):
+            c += ex.nd[MONOMIAL, r, x] * row[at + x * width]
+        value = value * theta + c / (r + 1.0)
+    return value * theta
+
+
+@kernel
+def inside_step(
+    packed: Packed, s: Scratch, y: State, ex: Exact, left: Floats, right: Floats, at: int, tau: float, P: Floats2,
+    series: Floats2, dq: Floats, dv: Floats,
+) -> None:  # fmt: skip
+    """State at tau after row ``left``, and the directions of slip from the forces' polynomials."""
+    n, nz = y.q.shape[0], y.z.shape[0]
+    h = right[at]
+    theta = tau / h
+    gains_at(ex, h, tau, series, dq, dv)
+    for i in range(n):
+        y.q[i] = left[1 + i] + dq[i]
+        y.v[i] = left[1 + n + i] + dv[i]
+    states = at + 1 + P.shape[0] * P.shape[1]
+    for a in range(nz):
+        y.z[a] = through_nodes(ex, left[1 + 3 * n + a], right, states + a, nz, theta)
+    width = y.rate.shape[0]
+    rates = states + nz * P.shape[1]
+    for i in range(width):
+        y.work[i] = left[at - 2 * width + i] + h * integral_of_nodes(ex, right, rates + i, width, theta)
+    for a in range(y.F.shape[0]):
+        y.F[a] = 0.0
+        for r in range(P.shape[1] - 1, -1, -1):
+            c = 0.0
+            for x in range(P.shape[1]):
+                c += ex.nd[MONOMIAL, r, x] * P[a, x]
+            y.F[a] = y.F[a] * theta + c
+
+
+@kernel
+def force_directions(packed: Packed, y: State) -> None:
+    """Directions of slip against the forces."""
+    for c in range(y.mode.shape[0]):
+        force = 0.0
+        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+            force += y.F[a] ** 2
+        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+            y.n[a] = -y.F[a] / np.sqrt(force) if force > 0.0 else 0.0
+
+
+@entry
+def sample_exact(
+    packed: Packed, s: Scratch, y: State, ex: Exact, values: Floats2, modes: Codes2, stops: Floats, index: Ints,
+    t: Floats, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours."""
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    width = nc + 2
+    at = 1 + 3 * n + 2 * nz + m + nc + 2 * width
+    at_F = 1 + 3 * n + 2 * nz
+    n_s = ex.nd.shape[1] - 1
+    P = np.zeros((ex.P.shape[0], n_s))
+    series = np.zeros((2 * ex.blk.shape[2], n_s + 1))
+    gain = np.zeros((2, n_s + 1))
+    dq, dv = np.zeros(n), np.zeros(n)
+    opened = -1
+    for j in range(t.shape[0]):
+        k = index[j]
+        left = values[k]
+        right = values[min(k + 1, values.shape[0] - 1)]
+        tau = t[j] - left[0]
+        inside = tau > 0.0 and right[0] > left[0]
+        if k != opened:
+            set_window_around(stops, s, left[0])
+        for c in range(nc):
+            y.mode[c] = modes[k, c]
+            y.N[c] = left[at_F + m + c]
+        if inside:
+            if k != opened:
+                open_step(packed, s, y, ex, left, right, at, P, series, gain)
+            inside_step(packed, s, y, ex, left, right, at, tau, P, series, dq, dv)
+            y.t[0] = t[j]
+            force_directions(packed, y)
+            point_along_slip(packed, s, y)
+            complete(packed, s, y, sizes, pivots, address)
+        else:
+            y.t[0] = t[j]
+            for i in range(n):
+                y.q[i] = left[1 + i]
+                y.v[i] = left[1 + n + i]
+            for i in range(nz):
+                y.z[i] = left[1 + 3 * n + i]
+            for i in range(width):
+                y.work[i] = left[at - 2 * width + i]
+            for a in range(m):
+                y.F[a] = left[at_F + a]
+            relative_velocity(packed, s, y)
+        opened = k if inside else -1
+        row = out[j]
+        row[0] = t[j]
+        for i in range(n):
+            row[1 + i] = y.q[i]
+            row[1 + n + i] = y.v[i]
+        for i in range(nz):
+            row[1 + 2 * n + i] = y.z[i]
+        o = 1 + 2 * n + nz
+        for a in range(m):
+            row[o + a] = y.F[a]
+            row[o + m + nc + a] = y.g[a]
+        for c in range(nc):
+            row[o + m + c] = y.N[c]
+            out_mode[j, c] = y.mode[c]
+            if y.mode[c] == STICK:
+                for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+                    row[o + m + nc + a] = 0.0
+        for i in range(width):
+            row[o + 2 * m + nc + i] = y.work[i]

@@ -1,0 +1,259 @@
+"""After the equations of an exact step are solved: its error, the state at its end, what is kept of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fricmb.integrate._exact_step import CAP, FASTEST_BLOCK, INPUTS, LEDGER, SAFETY, STIFF_AT
+from fricmb.integrate._field import Scratch, powers, set_state, set_time
+from fricmb.integrate._instant import State, complete, slip_speed
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._onestep import Accuracy, OneStep, state_noise, widest
+from fricmb.integrate._pack import Packed
+from fricmb.integrate._problem import LAW_SMOOTH, SLIP, STICK, Floats, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate._rows import Rows
+from fricmb.integrate._triggers import force_noise
+from fricmb.integrate.collocation._fundamental import two_sum
+from fricmb.integrate.collocation._general_blocks import BY_VELOCITY_1
+from fricmb.integrate.collocation._general_dense import gains_at, input_series, is_stiff, stiff_nodes
+from fricmb.integrate.collocation._layout import DAMP, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
+
+#: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
+SMOOTH = 0.03
+
+
+@kernel
+def input_error(one: OneStep) -> float:
+    """Largest weighed tail of the polynomials of all inputs."""
+    ex = one.exact
+    worst = 0.0
+    for c in range(ex.flags[INPUTS]):
+        if ex.weight[c] == 0.0:
+            continue
+        last = 0.0
+        before = 0.0
+        largest = 0.0
+        for x in range(ex.P.shape[1]):
+            last += ex.nd[VECTORS, TAIL, x] * ex.P[c, x]
+            before += ex.nd[VECTORS, TAIL_BEFORE, x] * ex.P[c, x]
+            largest = max(largest, abs(ex.P[c, x]))
+        worst = max(worst, ex.weight[c] * (max(abs(last), 0.2 * abs(before)) - 1e-15 * largest))
+    return worst
+
+
+@kernel
+def state_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Largest scaled tail of the laws' internal states."""
+    tab = one.tab
+    worst = 0.0
+    if y.z.shape[0] > 0:
+        state_noise(packed, one, acc, h)
+    for a in range(y.z.shape[0]):
+        tail = tab.top[0, 0] * y.z[a]
+        size = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
+        for j in range(tab.c.shape[0]):
+            tail += tab.top[0, j + 1] * one.w.z[j, a]
+            size = max(size, abs(one.w.z[j, a]))
+        worst = max(worst, abs(tail) / size)
+    return worst
+
+
+@kernel
+def rough(one: OneStep, first: float, least: float) -> float:
+    """Tail of the polynomial through ``first`` and ``one.margin``, in units of what a search for zeros can bear."""
+    tab = one.tab
+    tail = tab.top[0, 0] * first
+    largest = max(abs(first), least)
+    for j in range(tab.c.shape[0]):
+        tail += tab.top[0, j + 1] * one.margin[j]
+        largest = max(largest, abs(one.margin[j]))
+    return abs(tail) / (SMOOTH * largest) if largest > 0.0 else 0.0
+
+
+@kernel
+def search_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Whether slip speeds, normal forces and stuck forces are smooth enough in the step to be searched for zeros."""
+    w = one.w
+    n_s = w.F.shape[0]
+    top = widest(acc.v)
+    worst = 0.0
+    for k in range(y.mode.shape[0]):
+        row0 = packed.ports.row[k]
+        d = packed.ports.row[k + 1] - row0
+        if packed.ports.var[k] >= 0:
+            for j in range(n_s):
+                one.margin[j] = one.N[j, k]
+            worst = max(worst, rough(one, one.N[0, k], packed.ports.N0[k]))
+        if packed.ports.law[k] == LAW_SMOOTH:
+            continue
+        if y.mode[k] == SLIP:
+            for j in range(n_s):
+                one.margin[j] = w.r[j, k]
+            worst = max(worst, rough(one, slip_speed(y.g, row0, d), max(1e-9 * acc.r[k], 1e-11 * top)))
+        elif y.mode[k] == STICK:
+            for j in range(n_s):
+                one.margin[j] = slip_speed(w.F[j], row0, d) ** 2
+            limit = packed.ports.mu_s[k] * y.N[k]
+            noise = 100.0 * force_noise(packed, y, k, h) * max(limit, slip_speed(y.F, row0, d))
+            worst = max(worst, rough(one, slip_speed(y.F, row0, d) ** 2, limit * limit + noise))
+    return worst
+
+
+@kernel
+def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
+    """Largest velocity per unit of block j, each by its own scale."""
+    ex = one.exact
+    top = widest(acc.v)
+    most = 0.0
+    for i in range(y.v.shape[0]):
+        size = abs(ex.mat[V_V, i, j])
+        rate = max(math.sqrt(abs(ex.blk[0, W2, j])), abs(ex.blk[0, DAMP, j]))
+        size += abs(ex.mat[V_U, i, j]) / max(rate, 1e-290)
+        if size > 0.0:
+            scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
+            most = max(most, size / scale)
+    return most
+
+
+@kernel
+def stiff_error(y: State, one: OneStep, acc: Accuracy, h: float, tol: float) -> float:
+    """Error of blocks that take Radau's answer; sets the longest step at which blocks that ring stay exact."""
+    ex = one.exact
+    ex.par[CAP] = np.inf
+    if 5.0 * h * ex.par[FASTEST_BLOCK] <= ex.par[STIFF_AT]:
+        return 0.0
+    n_s = ex.P.shape[1]
+    worst = 0.0
+    gain = np.empty((2, n_s + 1))
+    for j in range(ex.blk.shape[2]):
+        rate = max(math.sqrt(abs(ex.blk[0, W2, j])), abs(ex.blk[0, DAMP, j]))
+        if 5.0 * h * rate <= ex.par[STIFF_AT]:
+            continue
+        seen = visible(y, one, acc, j, h)
+        swing = 0.0
+        for i in range(y.a.shape[0]):
+            swing += ex.start[BY_VELOCITY_1, j, i] * y.a[i]
+        if abs(swing) / rate * seen > 0.1 * tol and ex.par[STIFF_AT] > 0.0:
+            ex.par[CAP] = min(ex.par[CAP], ex.par[STIFF_AT] / rate)
+        if is_stiff(ex, j, h):
+            stiff_nodes(ex, ex.P, j, h, gain)
+            tail = 0.0
+            for i in range(n_s + 1):
+                tail += one.tab.top[0, i] * gain[1, i]
+            worst = max(worst, seen * abs(tail))
+    return worst
+
+
+@block
+def exact_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> float:
+    """Error of the step just solved in units of the tolerance (stands in for :func:`step_error`)."""
+    tol = one.exact.par[SAFETY] * acc.rtol[0]
+    error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
+    error = max(error, state_error(packed, y, one, acc, h) / acc.rtol[0])
+    return float(max(error, search_error(packed, y, one, acc, h)))
+
+
+@block
+def exact_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
+    """Put the end of the step into y, with forces and accelerations (stands in for :func:`finish`)."""
+    ex, w = one.exact, one.w
+    n = y.q.shape[0]
+    last = w.F.shape[0] - 1
+    for i in range(n):
+        y.q[i], ex.low[1, i] = two_sum(y.q[i], ex.low[0, i], ex.end[0, i])
+        y.v[i] += ex.end[1, i]
+    y.t[0], ex.low[1, n] = two_sum(y.t[0], ex.low[0, n], h)
+    for a in range(y.z.shape[0]):
+        y.z[a] = w.z[last, a]
+    for a in range(y.n.shape[0]):
+        y.n[a] = w.n[last, a]
+    done = complete(packed, s, y, w.sizes, w.pivots, address)
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] == SLIP:
+            # found as a gain over the step: of small slip speeds the difference of velocities knows less
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+                y.g[a] = w.g[last, a]
+    return done
+
+
+@kernel
+def scales_of_step(packed: Packed, y: State, end: State, one: OneStep, acc: Accuracy) -> None:
+    """Running maxima over an accepted step."""
+    for i in range(y.q.shape[0]):
+        acc.q[i] = max(acc.q[i], abs(y.q[i]), abs(end.q[i]))
+        acc.v[i] = max(acc.v[i], abs(y.v[i]), abs(end.v[i]))
+    for j in range(one.tab.c.shape[0]):
+        for a in range(y.z.shape[0]):
+            acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
+        for k in range(y.mode.shape[0]):
+            row0 = packed.ports.row[k]
+            acc.r[k] = max(acc.r[k], slip_speed(one.w.g[j], row0, packed.ports.row[k + 1] - row0))
+
+
+@kernel
+def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, row: Floats, at: int) -> None:
+    """Powers at the nodes into a row, node by node."""
+    ex, w, st = one.exact, one.w, one.st
+    n = y.q.shape[0]
+    width = y.rate.shape[0]
+    n_s = w.F.shape[0]
+    if ex.flags[LEDGER] == 1:
+        series = np.empty((2 * ex.blk.shape[2], n_s + 1))
+        input_series(ex, ex.P, h, series, np.empty((2, n_s + 1)))
+        for j in range(n_s):
+            gains_at(ex, h, st.t[j] - y.t[0], series, ex.node[0, j], ex.node[1, j])
+            for i in range(n):
+                ex.node[0, j, i] += y.q[i]
+                ex.node[1, j, i] += y.v[i]
+            set_time(packed.signals, s, st.t[j], n)
+            set_state(s, ex.node[0, j], ex.node[1, j])
+            powers(packed, s, w.F[j], w.N[j], w.g[j], one.power[j])
+            for i in range(width):
+                row[at + j * width + i] = one.power[j, i]
+        return
+    for j in range(n_s):
+        for k in range(y.mode.shape[0]):
+            loss = 0.0
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+                loss -= w.F[j, a] * w.g[j, a]
+            row[at + j * width + k] = loss
+        row[at + j * width + width - 2] = 0.0
+        row[at + j * width + width - 1] = 0.0
+
+
+@block
+def exact_record(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows, address: Ints
+) -> None:
+    """Keep the step's inputs beside the row of its end, which comes next (stands in for :func:`record_inside`).
+
+    Behind the row proper: h, inputs P (n_in s), states z (s n_z), powers (s (n_c + 2)).
+    """
+    ex, w = one.exact, one.w
+    n_s = w.F.shape[0]
+    n = y.q.shape[0]
+    width = y.rate.shape[0]
+    h = (end.t[0] - y.t[0]) + (ex.low[1, n] - ex.low[0, n])
+    scales_of_step(packed, y, end, one, acc)
+    row = out.values[out.used[0]]
+    at = 1 + 3 * n + 2 * y.z.shape[0] + y.F.shape[0] + y.mode.shape[0] + 2 * width
+    row[at] = h
+    at += 1
+    for c in range(ex.P.shape[0]):
+        for x in range(n_s):
+            row[at] = ex.P[c, x]
+            at += 1
+    for x in range(n_s):
+        for a in range(y.z.shape[0]):
+            row[at] = w.z[x, a]
+            at += 1
+    node_powers(packed, s, y, one, h, row, at)
+    for i in range(width):
+        end.work[i] = y.work[i]
+        for x in range(n_s):
+            end.work[i] += h * ex.nd[VECTORS, WEIGHT, x] * row[at + x * width + i]
+    for i in range(n + 1):
+        ex.low[0, i] = ex.low[1, i]
