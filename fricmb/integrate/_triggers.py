@@ -32,7 +32,10 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
         if packed.ports.law[k] != LAW_SMOOTH and y.mode[k] == SLIP:
             for j in range(n_s):
                 one.margin[j] = w.r[j, k]
-            x = first_crossing(tab, slip_speed(y.g, row0, d), one)
+            if packed.ports.soft[0] > 0.0:
+                x = crossing_at_points(tab, slip_speed(y.g, row0, d), one)
+            else:
+                x = first_crossing(tab, slip_speed(y.g, row0, d), one)
         elif y.mode[k] == STICK:
             x = cone_crossing(packed, y, end, one, k)
         if packed.ports.var[k] >= 0:
@@ -138,6 +141,29 @@ def first_crossing(tab: Tableau, first: float, one: OneStep) -> float:
             return root_between(one.series, before, x) if before > 0.0 or first > 0.0 else 0.0
         falls = slope < 0.0
         before = x
+    return 2.0
+
+
+@kernel
+def crossing_at_points(tab: Tableau, first: float, one: OneStep) -> float:
+    """Like :func:`first_crossing` from the stages and the points half-way alone.
+
+    For redundant contacts: slip speeds of contacts that move as one are noisy where slip begins, and a minimum means
+    nothing there.
+    """
+    last_x, last = 0.0, first
+    for j in range(tab.c.shape[0]):
+        for half in range(2):
+            x = tab.c[j]
+            value = one.margin[j]
+            if half == 0:
+                x = 0.5 * (x + (tab.c[j - 1] if j > 0 else 0.0))
+                value = tab.mid[j, 0] * first
+                for i in range(tab.c.shape[0]):
+                    value += tab.mid[j, i + 1] * one.margin[i]
+            if value < 0.0:
+                return float(last_x + (x - last_x) * last / (last - value))
+            last, last_x = value, x
     return 2.0
 
 
