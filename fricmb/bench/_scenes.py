@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import cast
 
 import fricmb as fm
 from fricmb import models
@@ -18,18 +17,21 @@ _CERTIFIED = "event-driven in 30-digit arithmetic, checked by a second method"
 def stribeck_belt(damping: float = 0.0) -> fm.Scene:
     """The belt with a coefficient that falls with the slip speed."""
     law = fm.laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.05, exponent=1.0)
-    return cast(fm.Scene, models.belt_oscillator(law=law, damping=damping))
+    scene: fm.Scene = models.belt_oscillator(law=law, damping=damping)
+    return scene
 
 
 def two_blocks() -> fm.Scene:
     """Two coupled blocks on a belt, after Galvanetto, Bishop and Briseghella (1995)."""
     laws = [fm.laws.HyperbolicStribeck(mu_s=mu_s, delta=3.0) for mu_s in (1.0, 1.3)]
-    return cast(fm.Scene, models.stick_slip_chain(2, coupling=1.2, laws=laws))
+    scene: fm.Scene = models.stick_slip_chain(2, coupling=1.2, laws=laws)
+    return scene
 
 
 def rough_chain() -> fm.Scene:
     """Twenty blocks whose break-away rises along the chain."""
-    return cast(fm.Scene, models.stick_slip_chain(20, mu_s=[1.2 + 0.02 * i for i in range(20)]))
+    scene: fm.Scene = models.stick_slip_chain(20, mu_s=[1.2 + 0.02 * i for i in range(20)])
+    return scene
 
 
 def stewart() -> fm.Scene:

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 def start_up_times(tries: int = 3) -> dict[str, float]:
     """Seconds, the least of a few tries, with caches as they are."""
-    empty = _process_time([sys.executable, "-c", "pass"], tries)
-    imported = _process_time([sys.executable, "-c", "import fricmb"], tries)
+    empty = _process_time([sys.executable, "-P", "-c", "pass"], tries)
+    imported = _process_time([sys.executable, "-P", "-c", "import fricmb"], tries)
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "fricmb", "run", "brake4dof", "--out", folder]
         subprocess.run(command, check=True, capture_output=True)

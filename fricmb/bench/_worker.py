@@ -118,7 +118,7 @@ class Worker:
 
     def _started(self) -> subprocess.Popen[bytes]:
         if self._process is None:
-            command = [sys.executable, "-c", "from fricmb.bench._worker import _serve; _serve()"]
+            command = [sys.executable, "-P", "-c", "from fricmb.bench._worker import _serve; _serve()"]
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
             self._answers = queue.Queue()
             threading.Thread(target=_listen, args=(self._process.stdout, self._answers), daemon=True).start()

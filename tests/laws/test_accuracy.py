@@ -38,7 +38,7 @@ def disc_scene(law, v=(0.3, 0.0), spin=0.05):
 @pytest.mark.parametrize("spin", [0.05, 0.15, 0.3])
 def test_a_disc_comes_to_rest_sliding_and_spinning(spin):
     """Farkas, Bartels, Unger and Wolf: v/(R omega) -> 0.653 whatever it started with."""
-    sol = fm.simulate(disc_scene(laws.Contensou(mu=0.1, v_reg=1e-12), spin=spin), t_end=14.0, rtol=1e-9, method="bdf")
+    sol = fm.simulate(disc_scene(laws.Contensou(mu=0.1, v_reg=1e-12), spin=spin), t_end=14.0, rtol=1e-12, method="bdf")
     slide, rim = np.hypot(sol.v[0], sol.v[1]), np.abs(sol.v[2])
     size = np.hypot(slide, rim)
     for least, most, distance in ((1e-8, 1e-7, 2e-4), (2e-11, 1e-9, 1e-5)):  # it comes in with a power of the speed
