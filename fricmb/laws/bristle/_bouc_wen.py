@@ -11,9 +11,9 @@ from fricmb.laws._curves import along, norm
 
 @dataclass(frozen=True, kw_only=True)
 class BoucWen(FrictionLaw):
-    """F = -N mu z with z' = (stiffness/mu)(v - |z|^(n-2) z (beta |z.v| + (1 - beta) z.v)), n = exponent.
+    """F = -N mu z with z' = (stiffness/mu)(v - |z|^(n-2) z (beta abs(z.v) + (1 - beta) z.v)).
 
-    z saturates at |z| = 1; ``exponent`` says how sharply.  In two directions the isotropic form of Park, Wen and Ang.
+    n = ``exponent``; z saturates at |z| = 1, and ``exponent`` says how sharply.  In two directions the isotropic form of Park, Wen and Ang.
 
     Parameters
     ----------

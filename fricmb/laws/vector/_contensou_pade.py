@@ -13,7 +13,7 @@ from fricmb.laws._curves import norm
 class ContensouPade(FrictionLaw):
     """Sliding and spinning of a disc by fractions: |F| = mu N v/(v + u), rim force (2/3) mu N u/(u + (8/3) v).
 
-    v the speed of sliding, u = |R omega| that of the rim.  The fractions have the values and slopes of the exact law
+    v the speed of sliding, u = R abs(omega) that of the rim.  The fractions have the values and slopes of the exact law
     (:class:`Contensou`) for v -> 0 and u -> 0; between, near v = u, they fall short by up to 0.36 mu N.
 
     Parameters
