@@ -13,7 +13,8 @@ from fricmb.laws._curves import along, norm
 class BoucWen(FrictionLaw):
     """F = -N mu z with z' = (stiffness/mu)(v - |z|^(n-2) z (beta abs(z.v) + (1 - beta) z.v)).
 
-    n = ``exponent``; z saturates at |z| = 1, and ``exponent`` says how sharply.  In two directions the isotropic form of Park, Wen and Ang.
+    n = ``exponent``; z saturates at |z| = 1, it says how sharply.
+    In two directions the isotropic form of Park, Wen and Ang.
 
     Parameters
     ----------

@@ -17,8 +17,8 @@ class Elliptic(FrictionLaw):
     """Friction of ``law`` along the contact's first direction, ``ratio`` times as much along the second.
 
     Of all forces in the ellipse ``|S^-1 F| <= mu N``, S = diag(1, ratio), slip meets the one of greatest dissipation:
-    ``F = -mu N S (S v)/|S v|``.  It is not opposite to v but for slip along an axis.  In the scaled velocity S v and force
-    S^-1 F the law is the isotropic one and the power the same, so that the same kernels serve: ``r = |S v|``.
+    ``F = -mu N S (S v)/|S v|``.  It is not opposite to v but for slip along an axis.  In the scaled velocity S v and
+    force S^-1 F the law is the isotropic one and the power the same, so that the same kernels serve: ``r = |S v|``.
 
     Parameters
     ----------
