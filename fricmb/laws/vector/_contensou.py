@@ -14,8 +14,8 @@ class Contensou(FrictionLaw):
     """Coulomb friction under every point of a disc of uniform pressure that slides and spins at once.
 
     A contact with this law has three directions, the third the speed R omega of the rim (of a dof that is R times
-    the angle); its force there is the moment over R.  With v the speed of sliding, u = R abs(omega), m = (v/u)^2 < 1 and
-    the complete elliptic integrals K(m), E(m)
+    the angle); its force there is the moment over R.  With v the speed of sliding, u = R abs(omega), m = (v/u)^2 < 1
+    and the complete elliptic integrals K(m), E(m)
 
         |F| = mu N (4/(3 pi)) (u/v) ((1 + m) E - (1 - m) K),
         moment/R = mu N (4/(9 pi)) ((4 - 2 m) E - (1 - m) K),
