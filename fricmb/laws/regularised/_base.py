@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from fricmb.laws._base import FrictionLaw
 from fricmb.laws._curves import norm
@@ -24,3 +24,24 @@ class RegularisedLaw(FrictionLaw):
         r = norm(v)
         push = N * self.define_coefficient(r) / r
         return tuple(-push * component for component in v)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SaturatingLaw(RegularisedLaw):
+    """Fields of the curves that rise over ``v_reg`` to ``mu`` and go on with ``viscous``."""
+
+    positive: ClassVar[tuple[str, ...]] = ("v_reg",)
+
+    mu: Any
+    v_reg: Any
+    viscous: Any = 0.0
+
+    def validate(self) -> None:
+        """Ranges of the fields that may be 0."""
+        self._number("mu", self.mu, minimum=0.0)
+        self._number("viscous", self.viscous, minimum=0.0)
+
+    @classmethod
+    def example(cls) -> Self:
+        """Dry steel, in metres and seconds."""
+        return cls(mu=0.4, v_reg=1e-3)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any
 
-from fricmb.laws.regularised._base import RegularisedLaw
+from fricmb.laws.regularised._base import SaturatingLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class SquareRootRegularised(RegularisedLaw):
+class SquareRootRegularised(SaturatingLaw):
     """mu(r) = mu r/sqrt(r^2 + v_reg^2) + viscous r.
 
     Parameters
@@ -32,24 +32,8 @@ class SquareRootRegularised(RegularisedLaw):
     Journal of Sound and Vibration 389 (2017) 350-363.
     """
 
-    positive: ClassVar[tuple[str, ...]] = ("v_reg",)
-
-    mu: Any
-    v_reg: Any
-    viscous: Any = 0.0
-
     def define_coefficient(self, r: Any) -> Any:
         """Smooth, also in two directions: the length of (v, v_reg) in place of that of v."""
         import sympy
 
         return self.mu * r / sympy.sqrt(r**2 + self.v_reg**2) + self.viscous * r
-
-    def validate(self) -> None:
-        """Ranges of the fields that may be 0."""
-        self._number("mu", self.mu, minimum=0.0)
-        self._number("viscous", self.viscous, minimum=0.0)
-
-    @classmethod
-    def example(cls) -> Self:
-        """Dry steel, in metres and seconds."""
-        return cls(mu=0.4, v_reg=1e-3)

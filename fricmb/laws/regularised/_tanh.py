@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any
 
-from fricmb.laws.regularised._base import RegularisedLaw
+from fricmb.laws.regularised._base import SaturatingLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class TanhRegularised(RegularisedLaw):
+class TanhRegularised(SaturatingLaw):
     """mu(r) = mu tanh(r/v_reg) + viscous r.
 
     Parameters
@@ -32,24 +32,8 @@ class TanhRegularised(RegularisedLaw):
     Dynamics 83 (2016) 1785-1801.
     """
 
-    positive: ClassVar[tuple[str, ...]] = ("v_reg",)
-
-    mu: Any
-    v_reg: Any
-    viscous: Any = 0.0
-
     def define_coefficient(self, r: Any) -> Any:
         """Saturates exponentially."""
         import sympy
 
         return self.mu * sympy.tanh(r / self.v_reg) + self.viscous * r
-
-    def validate(self) -> None:
-        """Ranges of the fields that may be 0."""
-        self._number("mu", self.mu, minimum=0.0)
-        self._number("viscous", self.viscous, minimum=0.0)
-
-    @classmethod
-    def example(cls) -> Self:
-        """Dry steel, in metres and seconds."""
-        return cls(mu=0.4, v_reg=1e-3)
