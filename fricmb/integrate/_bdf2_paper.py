@@ -16,8 +16,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from fricmb.integrate._advance import DONE, FAILURES, FULL
-from fricmb.integrate._collect import Collector, accuracy, one_step
+from fricmb.integrate._advance import Clock
+from fricmb.integrate._collect import Collector, accuracy, one_step, run_loop
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._paper_step import Last, drive_paper
 from fricmb.integrate._problem import (
@@ -65,16 +65,11 @@ class Bdf2Paper(Integrator):
         acc = accuracy(run, Tolerance(rtol=1e-8))
         one = one_step(problem, one_stage(), run.counts)
         code = run.begin()
-        if code == DONE:
-            y = run.y
-            values = np.zeros(2 * problem.n + problem.n_z)
-            last = room(Last(values, np.zeros(1), y.mode.copy(), y.n.copy(), y.mode.copy()))
-            code = FULL
-            while code == FULL:
-                code = drive_paper(
-                    run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end, run.address
-                )
-                run.collect()
-                if progress is not None:
-                    progress(float(y.t[0]))
-        return run.trajectory(None if code == DONE else FAILURES[code])
+        y = run.y
+        values = np.zeros(2 * problem.n + problem.n_z)
+        last = room(Last(values, np.zeros(1), y.mode.copy(), y.n.copy(), y.mode.copy()))
+
+        def go_on(clock: Clock) -> int:
+            return drive_paper(run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end, run.address)
+
+        return run_loop(run, code, go_on, None, progress)
