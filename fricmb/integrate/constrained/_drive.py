@@ -26,42 +26,6 @@ from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix, react
 from fricmb.integrate.constrained._step import Control, end_step, error_of, remember, try_step
 
-#: Blocks of this package, compiled one by one (see ``integrate._room``).
-BLOCKS = (
-    "move",
-    "forces",
-    "call_joint",
-    "add_extended",
-    "add_form",
-    "add_column",
-    "add_row",
-    "add_stiffness",
-    "add_pairs",
-    "add_joints",
-    "add_structure",
-    "add_contacts",
-    "add_slip",
-    "add_load",
-    "add_friction",
-    "friction_residual",
-    "instant_residual",
-    "instant_matrix",
-    "react",
-    "powers",
-    "linearise",
-    "factor_stages",
-    "stage_residual",
-    "newton_change",
-    "iterate_stages",
-    "try_step",
-    "project_positions",
-    "project_velocities",
-    "end_step",
-    "decide",
-    "enumerate_modes",
-    "margins",
-    "change_modes",
-)
 #: Outcomes of a run.
 DONE, FULL, FAIL_STEP, FAIL_NONE, FAIL_SEVERAL, FAIL_MARGIN, FAIL_SINGULAR, FAIL_LOST, FAIL_PROJECT = range(9)
 #: A step ends a try at this part of the span.

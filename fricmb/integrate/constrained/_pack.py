@@ -12,7 +12,7 @@ from fricmb.integrate._lapack import addresses
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._pack import Spread, Table, _table
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
-from fricmb.integrate._room import room
+from fricmb.integrate._room import MECHANISM, room
 from fricmb.integrate.constrained._band import band_addresses, band_sizes
 from fricmb.integrate.constrained._pattern import ordering
 
@@ -181,9 +181,9 @@ def _places(m: Mechanism) -> Place:
 
 def _blocks() -> tuple[str, ...]:
     """Names of this package's blocks, their modules imported."""
-    from fricmb.integrate.constrained import _drive
+    from fricmb.integrate.constrained import _drive  # noqa: F401  (its import makes the blocks known)
 
-    return _drive.BLOCKS
+    return MECHANISM
 
 
 class Moving(NamedTuple):
