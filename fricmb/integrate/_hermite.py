@@ -9,7 +9,7 @@ from fricmb.integrate._instant import State, complete, kinematics, slip_speed, s
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._pack import Packed, packed_of
-from fricmb.integrate._problem import SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
+from fricmb.integrate._problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Ints, Pivots, Problem, Start
 from fricmb.integrate._rows import INSIDE
 from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
 
@@ -67,6 +67,43 @@ def point_along_slip(packed: Packed, s: Scratch, y: State) -> None:
                 y.n[row0 + 1] = y.g[row0 + 1] / r
 
 
+@kernel
+def set_window_around(stops: Floats, s: Scratch, t: float) -> None:
+    """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
+    low, high = -np.inf, np.inf
+    for i in range(stops.shape[0]):
+        if stops[i] <= t:
+            low = max(low, stops[i] + 4e-16 * abs(stops[i]) + 1e-300)
+        else:
+            high = min(high, stops[i] - 4e-16 * abs(stops[i]) - 1e-300)
+    s.window[0] = low
+    s.window[1] = high
+
+
+@kernel
+def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
+    """Put a state into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    row[0] = y.t[0]
+    for i in range(n):
+        row[1 + i] = y.q[i]
+        row[1 + n + i] = y.v[i]
+    for i in range(nz):
+        row[1 + 2 * n + i] = y.z[i]
+    at = 1 + 2 * n + nz
+    for a in range(m):
+        row[at + a] = y.F[a]
+        row[at + m + nc + a] = y.g[a]
+    for c in range(nc):
+        row[at + m + c] = y.N[c]
+        modes[c] = y.mode[c]
+        if y.mode[c] == STICK:
+            for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+                row[at + m + nc + a] = 0.0
+    for i in range(nc + 2):
+        row[at + 2 * m + nc + i] = y.work[i]
+
+
 @entry
 def sample_rows(
     packed: Packed, s: Scratch, y: State, values: Floats, modes: Codes, stops: Floats, index: Ints, t: Floats,
@@ -105,14 +142,7 @@ def sample_rows(
                 force += left[at_F + a] ** 2
             for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
                 y.n[a] = -left[at_F + a] / np.sqrt(force) if force > 0.0 else 0.0
-        low, high = -np.inf, np.inf
-        for i in range(stops.shape[0]):
-            if stops[i] <= left[0]:
-                low = max(low, stops[i] + 4e-16 * abs(stops[i]) + 1e-300)
-            else:
-                high = min(high, stops[i] - 4e-16 * abs(stops[i]) - 1e-300)
-        s.window[0] = low
-        s.window[1] = high
+        set_window_around(stops, s, left[0])
         if t[j] > left[0]:
             point_along_slip(packed, s, y)
             complete(packed, s, y, sizes, pivots, address)
@@ -120,25 +150,7 @@ def sample_rows(
             for a in range(m):
                 y.F[a] = left[at_F + a]
             relative_velocity(packed, s, y)
-        row = out[j]
-        row[0] = t[j]
-        for i in range(n):
-            row[1 + i] = y.q[i]
-            row[1 + n + i] = y.v[i]
-        for i in range(nz):
-            row[1 + 2 * n + i] = y.z[i]
-        at = 1 + 2 * n + nz
-        for a in range(m):
-            row[at + a] = y.F[a]
-            row[at + m + nc + a] = y.g[a]
-        for c in range(nc):
-            row[at + m + c] = y.N[c]
-            out_mode[j, c] = y.mode[c]
-            if y.mode[c] == STICK:
-                for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-                    row[at + m + nc + a] = 0.0
-        for i in range(nc + 2):
-            row[at + 2 * m + nc + i] = y.work[i]
+        write_sample(packed, y, out[j], out_mode[j])
 
 
 class RowTrajectory(Trajectory):
@@ -185,17 +197,20 @@ class RowTrajectory(Trajectory):
         n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
         out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
         modes = np.zeros((len(t), nc), np.int8)
-        packed = packed_of(problem)
         start = Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz))
-        room = state(problem, start)
-        pivots = np.zeros(max(1, m, n), np.int32)
-        sample_rows(
-            packed, scratch(problem), room, self._values, self._mode, packed.breakpoints, index.astype(np.int64), t,
-            out, modes, np.zeros(4, np.int32), pivots, addresses("complete"),
-        )  # fmt: skip
+        self._fill(state(problem, start), index.astype(np.int64), t, out, modes)
         ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
         _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])
         return Samples(
             t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T), friction_loss=friction,
             damping_loss=damping[0], input=supply[0],
+        )  # fmt: skip
+
+    def _fill(self, y: State, index: Ints, t: Floats, out: Floats2, modes: Codes2) -> None:
+        """Rows of values and modes at times within the rows ``index``; ``y`` is room for a state."""
+        packed, problem = packed_of(self.problem), self.problem
+        sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
+        sample_rows(
+            packed, scratch(problem), y, self._values, self._mode, packed.breakpoints, index, t, out, modes, sizes,
+            pivots, addresses("complete"),
         )  # fmt: skip

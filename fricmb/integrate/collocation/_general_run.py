@@ -7,25 +7,25 @@ from functools import lru_cache
 
 import numpy as np
 
-from fricmb.integrate._advance import DONE, FAILURES, FULL
-from fricmb.integrate._collect import Collector, accuracy, clock_of
+from fricmb.integrate._advance import Clock
+from fricmb.integrate._collect import Collector, accuracy, run_loop
 from fricmb.integrate._drive import drive
 from fricmb.integrate._exact_step import Exact
 from fricmb.integrate._factor import Factor
 from fricmb.integrate._field import scratch
 from fricmb.integrate._hermite import RowTrajectory
-from fricmb.integrate._instant import state
+from fricmb.integrate._instant import State
 from fricmb.integrate._integrator import Tolerance
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._onestep import OneStep
 from fricmb.integrate._pack import packed_of
 from fricmb.integrate._plain_ports import plain_ports
 from fricmb.integrate._port_state import port_state
-from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints, Problem, Start
+from fricmb.integrate._problem import LAW_CONSTANT, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate._room import CORE, PLACES, room
 from fricmb.integrate._stages import Stages
 from fricmb.integrate._tableau import radau
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
 from fricmb.integrate.collocation._general_attempt import exact_attempt
 from fricmb.integrate.collocation._general_prepare import exact_of
 from fricmb.integrate.collocation._general_sample import sample_exact
@@ -90,24 +90,13 @@ class ExactRun(RowTrajectory):
         super().__init__(problem, values, kind, mode, transitions, counters, end, failure)
         self._nodes, self._exact_up_to = exact
 
-    def _sample(self, t: Floats, index: Ints) -> Samples:
-        problem = self.problem
-        n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
-        out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
-        modes = np.zeros((len(t), nc), np.int8)
-        packed = packed_of(problem)
-        y = state(problem, Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz)))
+    def _fill(self, y: State, index: Ints, t: Floats, out: Floats2, modes: Codes2) -> None:
+        packed, problem = packed_of(self.problem), self.problem
         exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
+        sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         sample_exact(
-            packed, scratch(problem), y, exact, self._values, self._mode, packed.breakpoints,
-            index.astype(np.int64), t, out, modes, np.zeros(3, np.int32),
-            np.zeros(max(1, m, n), np.int32), addresses("complete"),
-        )  # fmt: skip
-        ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
-        _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])
-        return Samples(
-            t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T), friction_loss=friction,
-            damping_loss=damping[0], input=supply[0],
+            packed, scratch(problem), y, exact, self._values, self._mode, packed.breakpoints, index, t, out, modes,
+            sizes, pivots, addresses("complete"),
         )  # fmt: skip
 
 
@@ -125,18 +114,13 @@ def run_general(
     extra = 1 + one.exact.P.size + s * (problem.n_z + problem.n_c + 2)
     run.widen(extra)
     acc = accuracy(run, tolerance)
-    code = run.begin()
-    if code == DONE:
-        clock = clock_of(run)
-        code = FULL
-        while code == FULL and not run.is_full(memory):
-            code = drive(
-                run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
-            )
-            run.collect()
-            if progress is not None:
-                progress(float(run.y.t[0]))
-    rows = run.trajectory(None if code in (DONE, FULL) else FAILURES[code])
+
+    def go_on(clock: Clock) -> int:
+        return drive(
+            run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
+        )
+
+    rows = run_loop(run, run.begin(), go_on, memory, progress)
     return ExactRun(
         problem,
         rows._values,

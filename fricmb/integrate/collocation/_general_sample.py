@@ -6,27 +6,14 @@ import numpy as np
 
 from fricmb.integrate._exact_step import Exact
 from fricmb.integrate._field import Scratch, set_state, set_time
-from fricmb.integrate._hermite import point_along_slip, relative_velocity
+from fricmb.integrate._hermite import point_along_slip, relative_velocity, set_window_around, write_sample
 from fricmb.integrate._instant import State, complete
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._pack import Packed
-from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2, Ints, Pivots
+from fricmb.integrate._problem import Codes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.collocation._general_blocks import load_at_start, start_blocks
 from fricmb.integrate.collocation._general_dense import gains_at, input_series
 from fricmb.integrate.collocation._layout import MONOMIAL, WITH_START
-
-
-@kernel
-def set_window_around(stops: Floats, s: Scratch, t: float) -> None:
-    """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
-    low, high = -np.inf, np.inf
-    for i in range(stops.shape[0]):
-        if stops[i] <= t:
-            low = max(low, stops[i] + 4e-16 * abs(stops[i]) + 1e-300)
-        else:
-            high = min(high, stops[i] - 4e-16 * abs(stops[i]) - 1e-300)
-    s.window[0] = low
-    s.window[1] = high
 
 
 @kernel
@@ -163,22 +150,4 @@ def sample_exact(
                 y.F[a] = left[at_F + a]
             relative_velocity(packed, s, y)
         opened = k if inside else -1
-        row = out[j]
-        row[0] = t[j]
-        for i in range(n):
-            row[1 + i] = y.q[i]
-            row[1 + n + i] = y.v[i]
-        for i in range(nz):
-            row[1 + 2 * n + i] = y.z[i]
-        o = 1 + 2 * n + nz
-        for a in range(m):
-            row[o + a] = y.F[a]
-            row[o + m + nc + a] = y.g[a]
-        for c in range(nc):
-            row[o + m + c] = y.N[c]
-            out_mode[j, c] = y.mode[c]
-            if y.mode[c] == STICK:
-                for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-                    row[o + m + nc + a] = 0.0
-        for i in range(width):
-            row[o + 2 * m + nc + i] = y.work[i]
+        write_sample(packed, y, out[j], out_mode[j])
