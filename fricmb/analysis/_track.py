@@ -114,12 +114,17 @@ def _crossing(solve: Solve, span: tuple[float, float], ends: list[Pairs], j: int
     below, above = (complex(pairs[0][j]) for pairs in ends)
     rises = above.real > limit
     quiet, loud = (below, above) if rises else (above, below)
-    if quiet.real < -limit:
+    states = ends if rises else ends[::-1]
+    partner = complex(-loud.real, loud.imag)
+    other = int(np.argmin(np.abs(states[1][0] - partner)))
+    meets = quiet.real >= -limit and abs(states[1][0][other] - partner) <= limit
+    if not meets and quiet.real > 0.0:  # a root a hair beyond the span
+        share = quiet.real / (quiet.real - loud.real)
+        first, last = span if rises else span[::-1]
+        value, there = first + share * (last - first), quiet
+    elif not meets:
         value, there = _root(solve, span, ((below, below), (above, above)), _growth)
     else:
-        partner = complex(-loud.real, loud.imag)
-        states = ends if rises else ends[::-1]
-        other = int(np.argmin(np.abs(states[1][0] - partner)))
         calm = (complex(states[0][0][j]), complex(states[0][0][other]))
         pairs = (calm, (loud, partner)) if rises else ((loud, partner), calm)
         value, there = _root(solve, span, pairs, _split)

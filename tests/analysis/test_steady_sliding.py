@@ -31,7 +31,9 @@ def test_equilibrium_in_closed_form():
     assert steady.relative_velocity("lining") == pytest.approx([1.0])
 
 
-@pytest.mark.parametrize("values", [np.linspace(0, 1, 21), [0.0, 1.0], [0.7, 0.8], np.linspace(1, 0, 6)])
+@pytest.mark.parametrize(
+    "values", [np.linspace(0, 1, 21), [0.0, 1.0], [0.7, 0.8], [0.5, 0.75, 1.0], np.linspace(1, 0, 6)]
+)
 def test_flutter_of_two_modes(values):
     (critical,) = complex_eigenvalues(two_modes(), over="lining.law.mu_k", values=values).critical
     assert critical.value == pytest.approx(0.75, abs=1e-12)
@@ -244,3 +246,15 @@ def driven_in_time():
     import sympy
 
     return fm.Scene("driven", [*scene.parts, fm.Force("push", scene["mass"], axis="x", value=sympy.sin(fm.t))])
+
+
+@pytest.mark.parametrize("n", [7, 8])
+def test_a_critical_value_on_the_grid_is_found_as_well_as_one_between(n):
+    """The slope of friction over a slow belt falls to 0 at 0.1: a value of the first grid, not of the second."""
+    law = fm.laws.Cubic(mu_s=0.6, mu_m=0.4, v_m=0.1)
+    scene = fm.models.belt_oscillator(law=law)
+    found = fm.analysis.complex_eigenvalues(scene, over="belt.velocity.x", values=np.linspace(0.05, 0.2, n))
+    (critical,) = found.critical
+    assert critical.value == pytest.approx(0.1, rel=1e-12)
+    assert critical.frequency == pytest.approx(1.0, rel=1e-12)
+    assert not critical.unstable_above
