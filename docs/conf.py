@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 import warnings
 from importlib.metadata import version as installed_version
 
@@ -9,6 +10,8 @@ project = "fricmb"
 author = "The fricmb developers"
 copyright = "2026, The fricmb developers"
 release = version = installed_version("fricmb")
+
+sys.path.insert(0, os.path.dirname(__file__))  # what the pages are made with: _pages, _pictures
 
 extensions = [
     "myst_nb",
@@ -18,7 +21,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "reference/_*.md"]
 KINDS = "ipynb", "py", "md5", "json", "zip"
 exclude_patterns += [f"gallery/{deep}*.{kind}" for deep in ("", "**/") for kind in KINDS]
 
@@ -40,7 +43,8 @@ numpydoc_xref_param_type = False
 
 html_theme = "furo"
 html_title = f"fricmb {release}"
-html_static_path = []
+html_static_path = ["static"]
+html_css_files = ["pages.css"]
 
 sphinx_gallery_conf = {
     "examples_dirs": ["../examples"],
@@ -82,6 +86,24 @@ def benchmark_pages(app):
         (here / "reference" / f"_{name}.html").write_text(html, encoding="utf-8")
 
 
+def reference_pages(app):
+    """The parts of the reference that come out of the code."""
+    from pathlib import Path
+
+    import _pages
+    import _pictures
+
+    here = Path(app.srcdir) / "reference"
+    for name, text in {
+        "command_line": _pages.command_line(),
+        "models": _pages.model_pages(lambda model: _pictures.write(model, here)),
+        "model_parameters": _pages.model_parameters(),
+        "law_parameters": _pages.law_parameters(),
+    }.items():
+        (here / f"_{name}.md").write_text(text, encoding="utf-8")
+
+
 def setup(app):
+    app.connect("builder-inited", reference_pages)
     app.connect("builder-inited", benchmark_pages)
     app.connect("autodoc-process-docstring", keep_bars, priority=400)

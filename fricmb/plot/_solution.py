@@ -55,7 +55,9 @@ class SolutionPlots(SignalPlots):
             count = len(members)
             for i, name in enumerate(members):
                 panel.plot(self.curves.t, self.curves.velocity(name), label=name, **line(i, count))
-            finish(panel, x="", y=f"velocity [{self.units.velocity}]", legend=count <= NAMED_CURVES)
+            turns = all(map(_is_angle, members))
+            label = f"angular velocity [{self.units.angular_velocity}]" if turns else f"velocity [{self.units.velocity}]"
+            finish(panel, x="", y=label, legend=count <= NAMED_CURVES)
             if count > NAMED_CURVES:
                 remark(panel, f"{members[0]} (dark) to {members[-1]} (light)")
         axes[-1].set_xlabel(self._time)
@@ -72,7 +74,9 @@ class SolutionPlots(SignalPlots):
         (panel,) = panels(1, ax, title=self._name, height=5.0)
         if not is_contact:
             panel.plot(g[0], sol.velocity(name), color=BLUE, linewidth=0.6)
-            finish(panel, x=f"{name} [{unit.length}]", y=f"velocity of {name} [{unit.velocity}]")
+            angle = _is_angle(name)
+            x, v = ("rad", unit.angular_velocity) if angle else (unit.length, unit.velocity)
+            finish(panel, x=f"{name} [{x}]", y=f"velocity of {name} [{v}]")
         elif len(g) == 2:
             panel.plot(*g, color=BLUE, linewidth=0.6)
             panel.plot(0, 0, "+", color=ORANGE, markersize=9, markeredgewidth=1.5, label="stick")
@@ -150,3 +154,8 @@ class SolutionPlots(SignalPlots):
     @property
     def _time(self) -> str:
         return f"time [{self.units.time}]"
+
+
+def _is_angle(name: str) -> bool:
+    """Whether a dof or a relative motion is a rotation."""
+    return name.endswith(".angle")

@@ -22,6 +22,11 @@ class Units:
         return "1" if self.dimensionless else f"{self.length}/{self.time}"
 
     @property
+    def angular_velocity(self) -> str:
+        """Unit of angular velocity."""
+        return "1" if self.dimensionless else f"rad/{self.time}"
+
+    @property
     def energy(self) -> str:
         """Unit of energy."""
         return "1" if self.dimensionless else f"{self.force} {self.length}"

@@ -109,3 +109,12 @@ def test_units_stand_on_the_axes(puck):
     assert plots.energy().axes[0].get_ylabel() == "energy [N m]"
     plain = SolutionPlots(puck, Units(time="1", length="1", force="1"))
     assert plain.velocities().axes[0].get_ylabel() == "velocity [1]"
+
+
+def test_angles_have_units_of_their_own():
+    sol = fm.simulate(fm.models.dry_pendulum(), t_end=0.5, rtol=1e-4)
+    plots = fm.plot.SolutionPlots(sol, fm.plot.Units(time="s", length="m", force="N"))
+    labels = [ax.get_ylabel() for ax in plots.velocities(["arm.x", "arm.angle"]).axes]
+    assert labels == ["velocity [m/s]", "angular velocity [rad/s]"]
+    (ax,) = plots.phase("arm.angle").axes
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("arm.angle [rad]", "velocity of arm.angle [rad/s]")
