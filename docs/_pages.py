@@ -25,10 +25,31 @@ DIMENSIONS = {
     "v0": "length/time", "u0": "length/time", "table": "length/time", "rotor_velocity": "modal",
     "frequency": "rad/time", "spin": "rad/time",
 }  # fmt: skip
-NUMBERS = (
-    "mu mu_s mu_k delta Omega1 Omega2 mass_ratio ratio pad_damping rotor_damping damping_ratio split modal_mass case n"
-    " n_pad_modes n_rotor_modes n_contacts nodal_diameters law laws pressure modes"
-).split()
+NUMBERS = [
+    "mu",
+    "mu_s",
+    "mu_k",
+    "delta",
+    "Omega1",
+    "Omega2",
+    "mass_ratio",
+    "ratio",
+    "pad_damping",
+    "rotor_damping",
+    "damping_ratio",
+    "split",
+    "modal_mass",
+    "case",
+    "n",
+    "n_pad_modes",
+    "n_rotor_modes",
+    "n_contacts",
+    "nodal_diameters",
+    "law",
+    "laws",
+    "pressure",
+    "modes",
+]
 DIMENSIONS |= dict.fromkeys(NUMBERS, "")
 # Where a model means something else by a name.
 OTHERWISE = {
@@ -45,10 +66,12 @@ OTHERWISE = {
 }
 # The dimensions of parameters of laws; what is not named is a number without one.
 LAW_DIMENSIONS = {
-    **dict.fromkeys("v_s v_t v_reg v_0 v_1 v_m v_w v_band".split(), "length/time"),
-    **dict.fromkeys("sigma0 stiffness".split(), "1/length"),
-    **dict.fromkeys("sigma1 sigma2 viscous damping delta decay g2 g3 g5 g6".split(), "time/length"),
-    **dict.fromkeys("distance L".split(), "length"),
+    **dict.fromkeys(["v_s", "v_t", "v_reg", "v_0", "v_1", "v_m", "v_w", "v_band"], "length/time"),
+    **dict.fromkeys(["sigma0", "stiffness"], "1/length"),
+    **dict.fromkeys(
+        ["sigma1", "sigma2", "viscous", "damping", "delta", "decay", "g2", "g3", "g5", "g6"], "time/length"
+    ),
+    **dict.fromkeys(["distance", "L"], "length"),
     "tau_dwell": "time",
     "attraction": "1/time",
     "N_0": "force",

@@ -56,8 +56,8 @@ class SolutionPlots(SignalPlots):
             for i, name in enumerate(members):
                 panel.plot(self.curves.t, self.curves.velocity(name), label=name, **line(i, count))
             turns = all(map(_is_angle, members))
-            label = f"angular velocity [{self.units.angular_velocity}]" if turns else f"velocity [{self.units.velocity}]"
-            finish(panel, x="", y=label, legend=count <= NAMED_CURVES)
+            what, unit = ("angular velocity", self.units.angular_velocity) if turns else ("velocity", self.units.velocity)
+            finish(panel, x="", y=f"{what} [{unit}]", legend=count <= NAMED_CURVES)
             if count > NAMED_CURVES:
                 remark(panel, f"{members[0]} (dark) to {members[-1]} (light)")
         axes[-1].set_xlabel(self._time)
