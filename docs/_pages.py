@@ -26,30 +26,10 @@ DIMENSIONS = {
     "frequency": "rad/time", "spin": "rad/time",
 }  # fmt: skip
 NUMBERS = [
-    "mu",
-    "mu_s",
-    "mu_k",
-    "delta",
-    "Omega1",
-    "Omega2",
-    "mass_ratio",
-    "ratio",
-    "pad_damping",
-    "rotor_damping",
-    "damping_ratio",
-    "split",
-    "modal_mass",
-    "case",
-    "n",
-    "n_pad_modes",
-    "n_rotor_modes",
-    "n_contacts",
-    "nodal_diameters",
-    "law",
-    "laws",
-    "pressure",
-    "modes",
-]
+    "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",
+    "damping_ratio", "split", "modal_mass", "case", "n", "n_pad_modes", "n_rotor_modes", "n_contacts",
+    "nodal_diameters", "law", "laws", "pressure", "modes",
+]  # fmt: skip
 DIMENSIONS |= dict.fromkeys(NUMBERS, "")
 # Where a model means something else by a name.
 OTHERWISE = {

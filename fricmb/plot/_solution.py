@@ -55,9 +55,7 @@ class SolutionPlots(SignalPlots):
             count = len(members)
             for i, name in enumerate(members):
                 panel.plot(self.curves.t, self.curves.velocity(name), label=name, **line(i, count))
-            turns = all(map(_is_angle, members))
-            what, unit = ("angular velocity", self.units.angular_velocity) if turns else ("velocity", self.units.velocity)
-            finish(panel, x="", y=f"{what} [{unit}]", legend=count <= NAMED_CURVES)
+            finish(panel, x="", y=self._velocity(members), legend=count <= NAMED_CURVES)
             if count > NAMED_CURVES:
                 remark(panel, f"{members[0]} (dark) to {members[-1]} (light)")
         axes[-1].set_xlabel(self._time)
@@ -150,6 +148,12 @@ class SolutionPlots(SignalPlots):
             finish(axes[1], x="", y="residual, relative")
         axes[-1].set_xlabel(self._time)
         return figure_of(axes)
+
+    def _velocity(self, names: list[str]) -> str:
+        """Label of an axis that the velocities of these share."""
+        if all(map(_is_angle, names)):
+            return f"angular velocity [{self.units.angular_velocity}]"
+        return f"velocity [{self.units.velocity}]"
 
     @property
     def _time(self) -> str:
