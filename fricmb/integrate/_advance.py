@@ -11,11 +11,12 @@ from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import INFINITE, State
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._modes import Rest
-from fricmb.integrate._onestep import Accuracy, OneStep, add_work, attempt, finish, ladder, step_error, update_scales
+from fricmb.integrate._onestep import Accuracy, OneStep, add_work, attempt, finish, ladder, update_scales
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import SLIP, Floats, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate._rows import INSIDE, STEP, Rows, put, record
+from fricmb.integrate._step_error import step_error
 from fricmb.integrate._transitions import EPS, Before, copy_state, locate, swap_state, transition
 from fricmb.integrate._triggers import find_trigger
 

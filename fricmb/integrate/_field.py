@@ -83,12 +83,18 @@ def structure_force(structure: Structure, elements: Table, spread: Spread, s: Sc
     """All forces on the dofs at X but those of the contacts, into f (n,)."""
     n = f.shape[0]
     nu = s.ddu.shape[0]
-    K, C = structure.K, structure.C
+    K, C, tie = structure.K, structure.C, structure.tie
     q, v, u, du = s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n], s.X[1 + 2 * n : 1 + 2 * n + nu], s.X[1 + 2 * n + nu :]
     for i in range(n):
         value = structure.f[i]
-        for j in range(n):
-            value -= K[i, j] * q[j] + C[i, j] * v[j]
+        if tie.shape[0] == 0:
+            for j in range(n):
+                value -= K[i, j] * q[j] + C[i, j] * v[j]
+        else:
+            # stiff springs between dofs by the difference of these: what they do to both is equal to the last digit
+            for j in range(n):
+                value -= K[i, j] * (q[j] - tie[i, j] * q[i]) + C[i, j] * v[j]
+            value -= structure.alone[i] * q[i]
         for j in range(nu):
             value -= structure.Ku[i, j] * u[j] + structure.Cu[i, j] * du[j]
             value += structure.B[i, j] * u[j]

@@ -156,55 +156,6 @@ def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
             one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, packed.ports.noise[k]) / moved, 1e290)
 
 
-@kernel
-def grain(packed: Packed, y: State, w: PortState, acc: Accuracy, h: float, i: int) -> float:
-    """Round-off of velocity i: friction that holds a body against its load leaves the difference of the two over h.
-
-    A short step still carries what a long one before it has left.
-    """
-    # of all contacts: stuck ones are solved for together, and a joint that carries nothing gets the others' round-off
-    push = 0.0
-    for a in range(y.F.shape[0]):
-        push = max(push, abs(y.F[a]))
-        for j in range(w.F.shape[0]):
-            push = max(push, abs(w.F[j, a]))
-    acc.grain[i] = max(acc.grain[i], 1e-14 * h * packed.structure.Minv[i, i] * push)
-    return float(acc.grain[i])
-
-
-@block
-def step_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> float:
-    """Largest scaled error: the last Legendre coefficients of velocity, position, states, against tolerance."""
-    st, tab = one.st, one.tab
-    n_s = tab.c.shape[0]
-    worst = 0.0
-    top_v = widest(acc.v)
-    top_q = widest(acc.q)
-    for i in range(y.q.shape[0]):
-        e_v = tab.top[0, 0] * y.v[i]
-        e_q = tab.top[0, 0] * y.q[i]
-        size_v = max(acc.v[i], abs(y.v[i]))
-        size_q = max(acc.q[i], abs(y.q[i]))
-        for j in range(n_s):
-            e_v += tab.top[0, j + 1] * st.V[j, i]
-            e_q += tab.top[0, j + 1] * st.Q[j, i]
-            size_v = max(size_v, abs(st.V[j, i]))
-            size_q = max(size_q, abs(st.Q[j, i]))
-        size_v = max(size_v, acc.floor_v[i], 1e-10 * top_v, grain(packed, y, one.w, acc, h, i) / acc.rtol[0], 1e-290)
-        # a position that has only begun to move is measured by what its velocity brings within the step
-        size_q = max(size_q, acc.floor_q[i], 1e-10 * top_q, h * size_v)
-        worst = max(worst, abs(e_v) / size_v, abs(e_q) / size_q)
-    state_noise(packed, one, acc, h)
-    for a in range(y.z.shape[0]):
-        e_z = tab.top[0, 0] * y.z[a]
-        size_z = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
-        for j in range(n_s):
-            e_z += tab.top[0, j + 1] * one.w.z[j, a]
-            size_z = max(size_z, abs(one.w.z[j, a]))
-        worst = max(worst, abs(e_z) / size_z)
-    return float(worst / acc.rtol[0])
-
-
 @block
 def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
     """Put the end of the step into y, with forces and accelerations."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import weakref
 from typing import NamedTuple
 
@@ -25,7 +26,10 @@ class Table(NamedTuple):
 
 
 class Structure(NamedTuple):
-    """Linear part; ``Kd``, ``Cd``, ``fd`` are the rows of the drivers, ``Ka`` the antisymmetric part of K."""
+    """Linear part; ``Kd``, ``Cd``, ``fd`` are the rows of the drivers, ``Ka`` the antisymmetric part of K.
+
+    ``tie`` (n, n), ``alone`` (n,): K q = sum_j K_ij (q_j - tie_ij q_i) + alone_i q_i, see :func:`_ties`.
+    """
 
     M: Floats2
     Minv: Floats2
@@ -39,6 +43,8 @@ class Structure(NamedTuple):
     Cd: Floats2
     fd: Floats
     Ka: Floats2
+    tie: Floats2
+    alone: Floats
 
 
 class Ports(NamedTuple):
@@ -96,6 +102,28 @@ def _softness(D: Floats) -> float:
     return 1e-7  # squared in two iterations below round-off; shares of a load differ by round-off over it
 
 
+#: Ratio of frequencies from which on forces of stiff springs are taken from differences of positions.
+SPREAD = 3e3
+
+
+def _ties(K: Floats2, omega: Floats) -> tuple[Floats2, Floats]:
+    """Which entries of K (n, n) are springs between two dofs, and what of each row is none; (0, 0) for soft structures.
+
+    The forces of a spring on its two ends are opposite to the last digit only where both come from q_j - q_i; the
+    round-off of K q on large positions would push the whole by as much as a soft spring does.
+    """
+    moving = omega[omega > 0.0]
+    # a frequency of 0 is a rigid motion, or one that is lost in round-off beside the largest
+    if len(omega) < 2 or (len(moving) == len(omega) and moving.max() < SPREAD * moving.min()):
+        return np.zeros((0, 0)), np.zeros(0)
+    own = np.diag(K)
+    spring = (K < 0.0) & (np.minimum(own[:, None], own[None, :]) >= -K)
+    np.fill_diagonal(spring, val=False)
+    alone = np.array([math.fsum([own[i], *line[ties]]) for i, (line, ties) in enumerate(zip(K, spring, strict=True))])
+    np.fill_diagonal(spring, val=True)
+    return spring.astype(float), alone
+
+
 def _table(templates: Templates) -> Table:
     ints = [templates.address, templates.p_start, templates.x_start, templates.form_start, templates.form_index]
     address, p_start, x_start, form_start, form_index = (np.ascontiguousarray(x, dtype=np.int64) for x in ints)
@@ -127,6 +155,7 @@ def _pack(problem: Problem) -> Packed:
     structure = Structure(
         solid(linear.M), Minv, K, solid(Cx[:n, :n]), solid(Kx[:n, n:]), solid(Cx[:n, n:]), solid(linear.fx[:n]),
         solid(linear.B), solid(Kx[n:]), solid(Cx[n:]), solid(linear.fx[n:]), solid(0.5 * (K - K.T)),
+        *_ties(K, np.asarray(problem.omega, float)),
     )  # fmt: skip
     varies = contacts.normal != NORMAL_CONSTANT
     var = np.where(varies, np.cumsum(varies) - 1, -1).astype(np.int64)

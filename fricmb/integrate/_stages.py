@@ -124,6 +124,25 @@ def structure_correction(tab: Tableau, fac: Factor, st: Stages) -> None:
                 dV[i, a] -= (T[i, x] * value).real
 
 
+#: Forces of the structure beside inertia over a step from which on one solution with the inverses is not enough, and
+#: how often it is refined then.
+STIFF, REFINEMENTS = 1e4, 4
+
+
+@kernel
+def is_stiff(packed: Packed, fac: Factor, hA: Floats2) -> bool:
+    """Whether rounding (of M + sigma C + sigma^2 K, of starts far from stiff motion) takes digits from soft motion."""
+    h = 0.0
+    for j in range(hA.shape[0]):
+        h += hA[hA.shape[0] - 1, j]
+    M, K, C = packed.structure.M, fac.K, fac.C
+    for i in range(K.shape[0]):
+        for j in range(K.shape[0]):
+            if h * (abs(C[i, j]) + h * abs(K[i, j])) > STIFF * M[i, i]:
+                return True
+    return False
+
+
 @block
 def solve_stages(
     packed: Packed,
@@ -147,6 +166,7 @@ def solve_stages(
     m = ports.row[-1]
     mi = w.Fin.shape[1]
     linear = packed.elements.address.shape[0] == 0 and mi == m
+    once = linear and not is_stiff(packed, fac, st.hA)
     last = np.inf
     P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
     w.G[:, :] = fac.G[fac.slot[0]]
@@ -182,7 +202,7 @@ def solve_stages(
                 change = max(change, abs(value) / scale[a])
         if not change < np.inf:
             return -1
-        if linear:
+        if once or (linear and (iteration == REFINEMENTS or change > 0.1 * last)):
             break
         rate = change / last
         if change < 1e-3 or (iteration > 0 and rate < 0.9 and change * rate / (1.0 - rate) < 0.1):

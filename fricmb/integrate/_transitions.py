@@ -10,7 +10,7 @@ from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import State, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._modes import Rest, find_open, mark_rest, settle
-from fricmb.integrate._onestep import Accuracy, OneStep, attempt, finish, step_error
+from fricmb.integrate._onestep import Accuracy, OneStep, attempt, finish
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import (
     EVENT_CLOSE,
@@ -28,6 +28,7 @@ from fricmb.integrate._problem import (
 )
 from fricmb.integrate._room import block
 from fricmb.integrate._rows import AFTER, BEFORE, Rows, record, record_event
+from fricmb.integrate._step_error import step_error
 from fricmb.integrate._triggers import find_trigger, margin
 
 EPS = 2.220446049250313e-16

@@ -136,7 +136,7 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     rows = contacts.csr("W").transposed()
     Wu = contacts.csr("Wu")
     push = inverse[rows.index] * rows.value
-    compliance = np.bincount(rows.rows, rows.value * push, m)
+    compliance = np.bincount(rows.rows, rows.value * push, m).astype(float)
     owner = np.full(n, -1, dtype=np.int64)
     owner[rows.index] = rows.rows
     plain = (np.diff(rows.start) == 1) & (np.diff(Wu.start) == 0)
