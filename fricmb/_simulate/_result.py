@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 from fricmb._simulate._arguments import Span
+from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
 from fricmb.errors import IntegrationError
@@ -20,9 +21,10 @@ POWER, SPEED = 1e-9, 1e-12
 
 
 def make_solution(
-    mechanics: SceneMechanics, trajectory: Trajectory, span: Span, method: str, why: str, begin: float, compile_s: float
-) -> Solution:
-    """The solution of a run; ``begin`` is when the call began (perf_counter).
+    mechanics: SceneMechanics, trajectory: Trajectory, span: Span, method: str, why: str, begin: float,
+    compile_s: float, rtol: float | None,
+) -> Solution:  # fmt: skip
+    """The solution of a run; ``begin`` is when the call began (perf_counter); ``rtol`` None: fixed steps.
 
     Raises
     ------
@@ -42,10 +44,11 @@ def make_solution(
             sol = Solution(names=mechanics.names, run=run, stats=Stats(method=method), times=times)
         except IntegrationError as error:
             raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
-        check_friction(mechanics, trajectory, sol.record.samples)
+        check_friction(mechanics, trajectory, sol.record.samples, rtol or 0.0)
+        said = (*notes, *ledger_note(sol, rtol))
         wall_s = time.perf_counter() - begin
         sol.stats = Stats(
-            method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, notes=notes, **counts
+            method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, notes=said, **counts
         )
         return sol
 
@@ -77,10 +80,11 @@ class _Unsound(Exception):
         self.end = end
 
 
-def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: Samples) -> None:
+def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: Samples, rtol: float) -> None:
     """Refuse friction that drives, which is what a coefficient does that turns negative.
 
-    The built-in integrators stop there by themselves; this is for others.
+    The built-in integrators stop there by themselves; this is for others.  Between steps slip that has only begun may
+    show the wrong sign by as much as the tolerance allows.
     """
     run = [i for i, _ in trajectory.runs] if isinstance(trajectory, JoinedRun) else None
     varies = mechanics.laws(run) == LAW_COEFFICIENT
@@ -93,7 +97,7 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: S
 
     given = power(samples)
     force, speed = np.abs(samples.F).max(initial=0.0), np.abs(samples.v).max(initial=0.0)
-    limit = np.where(varies, POWER * np.abs(given).max(axis=1) + SPEED * speed * force, np.inf)[:, None]
+    limit = np.where(varies, max(POWER, rtol) * np.abs(given).max(axis=1) + SPEED * speed * force, np.inf)[:, None]
     wrong = given > limit
     if not wrong.any():
         return

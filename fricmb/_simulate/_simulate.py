@@ -103,8 +103,11 @@ def simulate(
         fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
         keep = check_keep(dense, chunk, on_chunk, span)
 
+        accuracy = rtol if chosen.adaptive else None
+
         def finish(trajectory: Trajectory, part: Span) -> Solution:
-            return make_solution(chosen.mechanics, trajectory, part, chosen.name, chosen.why, begin, watch.seconds)
+            how = (chosen.name, chosen.why, begin, watch.seconds, accuracy)
+            return make_solution(chosen.mechanics, trajectory, part, *how)
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from fricmb.integrate._problem import NORMAL_LAW, Floats, Problem, Start, Templa
 from fricmb.integrate._trajectory import Samples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._evaluate import arguments, evaluate
+from fricmb.system._stored import Stored, stored_of
 from fricmb.system._structure import Store
 from fricmb.system._tables import Row
 
@@ -80,16 +82,24 @@ class System:
 
     def potential(self, samples: Samples) -> Floats:
         """Stored energy (n_t,): springs, normal-force laws, and forces that are constant or linear in coordinates."""
-        total = np.zeros(samples.t.size)
-        for _, value in self._each_potential(samples):
-            total += value
+        total = self._linear.energy(samples.q, self.signals(samples.t)[0])
+        if (
+            any(store.nonlinear is not None for store in self.stores)
+            or (self.problem.contacts.normal == NORMAL_LAW).any()
+        ):
+            for _, value in self._each_potential(samples, linear=False):
+                total += value
         return total
+
+    @cached_property
+    def _linear(self) -> Stored:
+        return stored_of(self.stores, self.problem.n, self.problem.n_u)
 
     def potentials(self, samples: Samples) -> dict[str, Floats]:
         """Stored energy of every element and of every contact with a normal-force law, by name."""
         return dict(self._each_potential(samples))
 
-    def _each_potential(self, samples: Samples) -> Iterator[tuple[str, Floats]]:
+    def _each_potential(self, samples: Samples, *, linear: bool = True) -> Iterator[tuple[str, Floats]]:
         u = self.signals(samples.t)
         contacts = self.problem.contacts
         pressed = np.flatnonzero(contacts.normal == NORMAL_LAW)
@@ -97,18 +107,20 @@ class System:
         if pressed.size or len(self.problem.elements.table.address):
             X = np.concatenate([samples.t[None], samples.q, samples.v, u[0], u[1]])
         for store in self.stores:
-            if store.K or store.f or store.constant or store.nonlinear is not None:
-                yield store.name, self._stored(store, samples.q, u[0], X)
+            if store.nonlinear is not None or (linear and (store.K or store.f or store.constant)):
+                yield store.name, self._stored(store, samples.q, u[0], X, linear)
         for k in pressed:
             yield self.contact_names[k], _value(contacts.normal_table, int(k), X, 5)[3]
 
-    def _stored(self, store: Store, q: Floats, u: Floats, X: Floats) -> Floats:
-        value = np.full(q.shape[1], store.constant)
-        x = {i: _along(store.rows[i], q, u) for i in {k for i, j, _ in (*store.K, *store.f) for k in (i, j)}}
-        for i, j, k in store.K:
-            value += 0.5 * k * x[i] * x[j]
-        for i, _, f in store.f:
-            value -= f * x[i]
+    def _stored(self, store: Store, q: Floats, u: Floats, X: Floats, linear: bool) -> Floats:
+        value = np.zeros(q.shape[1])
+        if linear:
+            value += store.constant
+            x = {i: _along(store.rows[i], q, u) for i in {k for i, j, _ in (*store.K, *store.f) for k in (i, j)}}
+            for i, j, k in store.K:
+                value += 0.5 * k * x[i] * x[j]
+            for i, _, f in store.f:
+                value -= f * x[i]
         if store.nonlinear is not None:
             elements = self.problem.elements
             n_f = int(elements.f_start[store.nonlinear + 1] - elements.f_start[store.nonlinear])

@@ -62,7 +62,7 @@ def together(scene, t_end=12.0, **options):
         chosen.problem, mechanics.start, t_end, tolerance=check_tolerance(1e-10, None, mechanics.start.q.size)
     )
     span = Span(t_start=0.0, t_end=t_end, t_eval=GRID)
-    return make_solution(mechanics, trajectory, span, "bdf", "", 0.0, 0.0)
+    return make_solution(mechanics, trajectory, span, "bdf", "", 0.0, 0.0, 1e-6)
 
 
 @pytest.fixture(scope="module")

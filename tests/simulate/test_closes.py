@@ -1,0 +1,49 @@
+"""The check of every run: its energy ledger closes, or its notes say that it does not."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from fricmb import models
+from fricmb.bench import SCENES
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf", "taylor"])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-10])
+def test_runs_to_tolerance_have_no_note(method, rtol):
+    sol = fm.simulate(models.belt_oscillator(), t_end=60.0, rtol=rtol, method=method)
+    assert sol.stats.notes == ()
+    assert np.abs(sol.energy.residual).max() < 100.0 * rtol
+
+
+def test_a_step_that_is_too_large_is_said():
+    scene = models.belt_oscillator()
+    fine = fm.simulate(scene, t_end=60.0, step=1e-3, method="bdf2-paper")
+    assert fine.stats.notes == ()
+    coarse = fm.simulate(scene, t_end=60.0, step=1.5, method="bdf2-paper")
+    (note,) = coarse.stats.notes
+    assert note.startswith("the energy ledger does not close: ")
+    assert float(note.split(": ")[1].split()[0]) > 0.02
+    assert note in coarse.summary()
+
+
+def test_a_large_energy_hides_little():
+    """The brake's disc holds 50 000 and the pad exchanges 300 with it."""
+    coarse = fm.simulate(models.brake4dof("2"), t_end=700.0, step=1.0, method="bdf2-paper")
+    assert len(coarse.events) < 10  # 213
+    assert np.abs(coarse.energy.residual).max() < 0.01
+    assert len(coarse.stats.notes) == 1
+    assert fm.simulate(models.brake4dof("2"), t_end=700.0, step=1e-2, method="bdf2-paper").stats.notes == ()
+
+
+def test_few_times_are_enough():
+    scene = models.belt_oscillator()
+    for times in ([60.0], [59.0, 60.0], np.linspace(0.0, 60.0, 7)):
+        assert fm.simulate(scene, t_end=60.0, t_eval=times, method="radau").stats.notes == ()
+
+
+def test_slip_that_has_only_begun_is_no_negative_friction():
+    """Between two rows of a coarse run the slip speed may show the wrong sign, within the tolerance."""
+    case = next(case for case in SCENES if case.name == "two_blocks")
+    sol = fm.simulate(case.build(), t_end=case.t_end, t_eval=case.reference().t, rtol=1e-3, method="bdf")
+    assert len(sol.events) == 41
