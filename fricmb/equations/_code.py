@@ -188,10 +188,20 @@ def read_arguments(
 
 def module(title: str, lines: Sequence[str]) -> str:
     """A generated module around the statements of its kernel."""
+    from fricmb.integrate._straight import is_straight
+
+    head = f'"""{title}: derived by fricmb, do not edit."""\n\n'
+    statements = "\n".join(lines)
+    if lines and is_straight(statements):
+        return (
+            f"{head}from fricmb.integrate._call import template\n"
+            f'from fricmb.integrate._straight import straight\n\nstatements = straight("""\n{statements}\n""")\n\n\n'
+            "@template\ndef kernel(x, p, out):\n    statements(x, p, out)\n"
+        )
     text = "\n    ".join(lines) or "pass"
     used = [f for f in _FUNCTIONS if any(f"{f}(" in line for line in lines)]
     imports = f"from math import {', '.join(used)}\n\n" if used else ""
     return (
-        f'"""{title}: derived by fricmb, do not edit."""\n\n{imports}'
+        f"{head}{imports}"
         f"from fricmb.integrate._call import template\n\n\n@template\ndef kernel(x, p, out):\n    {text}\n"
     )

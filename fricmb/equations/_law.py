@@ -104,6 +104,5 @@ def derive_smooth(
     cut = [f"x{i} = min(max(x[{i}], {-FASTEST!r}), {FASTEST!r})" for i in range(len(v))]
     taken = tuple(f"x{i} =" for i in range(len(v)))
     lines = [*(line for line in reads if not line.startswith(taken)), *cut]
-    plain = [expression.xreplace(rename) for expression in values]
-    lines += Tape([rename[a] for a in arguments]).outputs(plain, len(arguments))
+    lines += Tape(arguments, rename).outputs(values, len(arguments))
     return facts, _code.module(title, lines)

@@ -6,7 +6,8 @@ branches (Max, Piecewise) grows much faster; and it computes no subexpression tw
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import sympy
@@ -24,12 +25,17 @@ _FLAT = (sympy.sign, sympy.Heaviside, sympy.floor, sympy.ceiling, sympy.DiracDel
 
 
 class Tape:
-    """Statements for values and for their derivatives with respect to the arguments."""
+    """Statements for values and for their derivatives with respect to the arguments.
 
-    def __init__(self, arguments: Sequence[Any]) -> None:
+    ``names``: what symbols are called in the statements (to replace them in an expression would have SymPy look at
+    every Max and Min of it again).
+    """
+
+    def __init__(self, arguments: Sequence[Any], names: Mapping[Any, Any] = MappingProxyType({})) -> None:
         self.lines: list[str] = []
-        self._names: dict[Any, str] = {}
-        self._slopes: dict[str, dict[int, str]] = {str(symbol): {i: "1.0"} for i, symbol in enumerate(arguments)}
+        self._names: dict[Any, str] = {symbol: str(name) for symbol, name in names.items()}
+        called = [str(names.get(symbol, symbol)) for symbol in arguments]
+        self._slopes: dict[str, dict[int, str]] = {name: {i: "1.0"} for i, name in enumerate(called)}
 
     def outputs(self, expressions: Sequence[Any], n: int) -> list[str]:
         """Statements that put values, then derivatives row by row, into ``out``."""

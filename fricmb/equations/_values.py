@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fricmb import laws
-from fricmb.values import Declaration, Parameter, is_expression, value_of
+from fricmb.values import Declaration, Parameter, held, is_expression, is_foreign, value_of
 
 _LAWS = "fricmb.laws"
 
@@ -96,8 +96,23 @@ def _structure(declaration: Declaration) -> tuple[Any, ...]:
     own = () if _is_ours(type(declaration)) else names
     fixed = tuple((n, repr(getattr(declaration, n))) for n in own if _plain(getattr(declaration, n)) and n != "name")
     options = tuple(sorted((n, repr(value)) for n, value in declaration.options().items() if _plain(value)))
-    inner = tuple(structure(held) for held in _inner(declaration))
-    return (type(declaration), shapes, options, fixed, *inner)
+    inner = tuple(structure(law) for law in _inner(declaration))
+    return (type(declaration), shapes, options, fixed, foreign(declaration), *inner)
+
+
+def foreign(declaration: Declaration) -> tuple[Any, ...]:
+    """Functions, arrays and objects of anybody else's in the fields of a declaration, as keys.
+
+    A type of this package makes no formula of arrays or expressions; of functions it might.
+    """
+    taken = {path.split(".")[0] for path, _ in _symbolic_slots(declaration)}
+    ours = _is_ours(type(declaration))
+    found = []
+    for field in dataclasses.fields(declaration):  # type: ignore[arg-type]
+        value = getattr(declaration, field.name)
+        if field.name not in taken and is_foreign(value) and (callable(value) or not ours):
+            found.append((field.name, held(value)))
+    return tuple(found)
 
 
 def _inner(declaration: Declaration) -> list[Declaration]:
@@ -127,10 +142,15 @@ def _belongs(kind: type) -> bool:
 
 
 def fingerprint(declaration: Declaration) -> str | None:
-    """Fingerprint of the source of a declaration and of those inside it; None where one is anybody else's."""
+    """Fingerprint of the source of a declaration and of those inside it.
+
+    None where one is anybody else's, or holds what is: then its source does not say all.
+    """
     kind: Any = type(declaration)
-    held = [source_fingerprint(kind), *(fingerprint(inner) for inner in _inner(declaration))]
-    return None if None in held else "".join(map(str, held))
+    if foreign(declaration):
+        return None
+    marks = [source_fingerprint(kind), *(fingerprint(inner) for inner in _inner(declaration))]
+    return None if None in marks else "".join(map(str, marks))
 
 
 @cache

@@ -28,8 +28,8 @@ def field_value(law: Any, name: str, annotation: Any) -> Any:
         if text in ("float", "int"):
             law._refuse(name, value, "a finite number")
         return value
-    if isinstance(value, str) and "float" not in text:
-        return value
+    if (isinstance(value, str) or callable(value)) and "float" not in text:
+        return value  # an option: it selects a formula
     return law._number(name, value)
 
 

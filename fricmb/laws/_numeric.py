@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from functools import reduce
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.errors import LawError
-from fricmb.values import Symbolic, symbolic
+from fricmb.values import Declaration, Symbolic, held, symbolic
 
 _Functions = dict[tuple[Any, ...], Callable[..., Any]]
 _functions: WeakKeyDictionary[type, _Functions] = WeakKeyDictionary()
@@ -52,8 +53,11 @@ def _vector(law: Any, method: str, value: Any, n: int) -> tuple[Any, ...]:
 
 
 def _shape(law: Any) -> tuple[Any, ...]:
-    options = tuple(sorted((k, repr(v)) for k, v in law.options().items()))
-    return options, tuple((path, np.shape(value)) for path, value in law.numeric_slots().items())
+    """What selects the formulas beside the type: options, lengths of tuples, and the same of a law inside."""
+    options = tuple((name, held(value)) for name, value in law.options().items())
+    shapes = tuple((path, np.shape(value)) for path, value in law.numeric_slots().items())
+    inner = [getattr(law, field.name) for field in fields(law)]
+    return options, shapes, *((type(i), _shape(i)) for i in inner if isinstance(i, Declaration))
 
 
 def _make(law: Any, what: str, d: int) -> Callable[..., Any]:

@@ -1,16 +1,20 @@
 """Values of declarations: numbers, named parameters, expressions, and how they are checked, listed and replaced."""
 
 from fricmb.values._declaration import Declaration
+from fricmb.values._held import Held, held, is_foreign
 from fricmb.values._numbers import Number, is_expression, is_plain, is_sparse, parameters_in, value_of
 from fricmb.values._parameter import Parameter, parameter
 from fricmb.values._standin import Symbolic, symbolic
 
 __all__ = [
     "Declaration",
+    "Held",
     "Number",
     "Parameter",
     "Symbolic",
+    "held",
     "is_expression",
+    "is_foreign",
     "is_plain",
     "is_sparse",
     "parameter",

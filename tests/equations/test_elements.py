@@ -175,3 +175,43 @@ def test_a_function_that_cannot_be_compiled_is_named():
 
     with pytest.raises(fm.SceneError, match="besselj"):
         element_template(Strange("strange", PAD, k=1.0), driven=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaped(fm.Element):
+    """A potential given as a function."""
+
+    a: fm.Body
+    shape: Any
+
+    def local_coordinates(self):
+        return (self.a.motion("x"),)
+
+    def define_potential(self, x):
+        return self.shape(x[0])
+
+
+def test_functions_in_fields_select_templates():
+    body = fm.Body("b", mass=1.0)
+    quartic, cosh = (Shaped(name="e", a=body, shape=f) for f in (lambda x: x**4, sympy.cosh))
+    first, second = (element_template(e, driven=False) for e in (quartic, cosh))
+    assert first.key != second.key
+    other = Shaped(name="other", a=fm.Body("c", mass=2.0), shape=sympy.cosh)
+    assert element_template(other, driven=False) is second
+
+
+def test_arrays_in_fields_select_templates():
+    body = fm.Body("b", mass=1.0)
+    a, b, c = (Shaped(name="e", a=body, shape=Table(k)) for k in ((1.0, 2.0), (1.0, 3.0), (1.0, 2.0)))
+    assert element_template(a, driven=False).key != element_template(b, driven=False).key
+    assert element_template(a, driven=False).key == element_template(c, driven=False).key
+
+
+class Table:
+    """An object that is called, with an array inside."""
+
+    def __init__(self, coefficients):
+        self.coefficients = np.array(coefficients)
+
+    def __call__(self, x):
+        return sum(float(c) * x ** (i + 2) for i, c in enumerate(self.coefficients))

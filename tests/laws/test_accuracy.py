@@ -186,3 +186,34 @@ def test_leine_belt_has_its_period(delta, period):
     sol = fm.simulate(scene, t_end=50.0, rtol=1e-10)
     starts = [event.t for event in sol.events if event.kind == "slip"]
     np.testing.assert_allclose(np.diff(starts), period, atol=1e-8)
+
+
+@pytest.mark.parametrize("evolution", ["aging", "slip"])
+@pytest.mark.parametrize(("ratio", "grows"), [(0.9, True), (1.1, False)])
+def test_a_slider_with_rate_and_state_loses_its_stability(evolution, ratio, grows):
+    """Ruina (1983): steady sliding at V is unstable below k_c = N (b - a)/L (1 + m V^2/(N a L))."""
+    N, m, V, a, b, L = 10.0, 1e-3, 0.1, 0.01, 0.03, 0.01
+    law = laws.RateAndState(mu_0=0.6, a=a, b=b, L=L, v_0=0.1, evolution=evolution)
+    stiffness = ratio * N * (b - a) / L * (1.0 + m * V**2 / (N * a * L))
+    mass, hook = fm.Body("mass", mass=m, velocity={"x": V}), fm.Driven("hook", velocity={"x": V})
+    spring = fm.Spring("k", mass, hook, axis="x", stiffness=stiffness, length=N * 0.6 / stiffness * (1.0 + 1e-4))
+    scene = fm.Scene("slider", [mass, hook, spring, fm.Contact("sole", mass, law=law, normal_force=N)])
+    sol = fm.simulate(scene, t_end=6.0, rtol=1e-8, t_eval=np.linspace(0.0, 6.0, 601))
+    swing = np.abs(sol.velocity("mass.x") - V)
+    assert (swing[400:].max() > 1.5 * swing[100:300].max()) == grows
+    assert grows or swing[400:].max() < 0.7 * swing[100:300].max()
+
+
+@pytest.mark.parametrize("evolution", ["aging", "slip"])
+def test_rate_and_state_sticks_and_slips_on_a_belt(evolution):
+    """From a start far from steady state, through creep as slow as 1e-9, to the next slip."""
+    law = laws.RateAndState(mu_0=0.6, a=0.01, b=0.015, L=1e-5, v_0=1e-6, evolution=evolution)
+    block, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.1})
+    spring = fm.Spring("k", block, axis="x", stiffness=100.0)
+    scene = fm.Scene("belt", [block, belt, spring, fm.Contact("sole", block, belt, law=law, normal_force=10.0)])
+    sol = fm.simulate(scene, t_end=2.0, rtol=1e-6)
+    creep = np.abs(sol.relative_velocity("sole")[0])
+    assert creep.min() < 1e-8
+    assert creep[sol.t > 0.6].max() > 0.05
+    assert sol.stats.n_steps < 3000
+    assert np.abs(sol.energy.residual).max() < 1e-6

@@ -4,13 +4,15 @@ import pickle
 import subprocess
 import sys
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 import sympy
 
 import fricmb as fm
+from fricmb import laws
+from fricmb.equations._templates import law_template
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -245,3 +247,46 @@ def test_redefined_classes_do_not_share_formulas():
 
     assert define(1).coefficient(0.0) == 0.5
     assert define(2).coefficient(0.0) == 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaped(fm.FrictionLaw):
+    """A field that holds a function."""
+
+    mu_s: float
+    shape: Any
+
+    def define_coefficient(self, r):
+        return self.mu_s * self.shape(r)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slow(fm.FrictionLaw):
+    mu_s: float
+
+    def define_coefficient(self, r):
+        return self.mu_s / (1 + r)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fast(fm.FrictionLaw):
+    mu_s: float
+
+    def define_coefficient(self, r):
+        return self.mu_s / (1 + 3 * r)
+
+
+def test_functions_in_fields_select_formulas():
+    slow, fast = Shaped(mu_s=1.0, shape=lambda r: 1 / (1 + r)), Shaped(mu_s=1.0, shape=lambda r: 1 / (1 + 3 * r))
+    assert (slow.coefficient(1.0), fast.coefficient(1.0)) == (0.5, 0.25)
+    assert law_template(slow, 1).key != law_template(fast, 1).key
+    again = Shaped(mu_s=2.0, shape=slow.shape)
+    assert law_template(again, 1) is law_template(slow, 1)
+    assert law_template(slow, 1).key == law_template(Shaped(mu_s=1.0, shape=lambda r: 1 / (1 + r)), 1).key
+
+
+def test_laws_inside_a_law_do_not_share_its_formulas():
+    slow, fast = (laws.Regularised(law=law(mu_s=1.0), v_reg=1e-3) for law in (Slow, Fast))
+    assert slow.coefficient(1.0) == pytest.approx(0.5, rel=1e-12)
+    assert fast.coefficient(1.0) == pytest.approx(0.25, rel=1e-12)
+    assert law_template(slow, 1).key != law_template(fast, 1).key

@@ -7,17 +7,6 @@ import fricmb as fm
 from fricmb import laws
 
 CASES = [(name, d) for name in laws.names for d in getattr(laws, name).example().dimensions]
-#: Kernels of many branches take seconds to compile.
-HEAVY = {"ElastoPlastic", "GeneralisedMaxwellSlip", "Gonthier", "Iwan", "Karnopp", "Leuven", "RateAndState"}
-
-
-def marks(name):
-    """Marks of a law's runs."""
-    if name == "RateAndState":
-        return pytest.mark.xfail(run=False, reason="a start far from steady state takes steps without end")
-    return pytest.mark.slow if name in HEAVY else ()
-
-
 def scene_of(law, d):
     """1: a block on a belt; 2: a swinging puck; 3: a disc that slides and spins."""
     if d == 3:
@@ -36,9 +25,7 @@ def scene_of(law, d):
     return fm.Scene("belt", [block, belt, spring, fm.Contact("sole", block, belt, law=law, normal_force=10.0)])
 
 
-@pytest.mark.parametrize(
-    ("name", "d"), [pytest.param(*case, marks=marks(case[0])) for case in CASES]
-)
+@pytest.mark.parametrize(("name", "d"), CASES)
 def test_law_runs_and_its_energy_balances(name, d):
     sol = fm.simulate(scene_of(getattr(laws, name).example(), d), t_end=0.5, rtol=1e-6, method="bdf")
     assert np.abs(sol.energy.residual).max() < 1e-4
