@@ -64,6 +64,17 @@ _BRAKES = tuple(
     )
     for case in ("1", "2", "5")
 )  # fmt: skip
+_HELD = tuple(
+    SceneCase(
+        name=f"brake2_{name}", title=f"brake, case 2, {what}", build=partial(models.brake4dof, "2", **arguments),
+        reference=partial(shipped, f"brake2_{name}"), steps=_FINE,
+        source="Taylor series in 34 digits, checked by collocation in long double",
+    )
+    for name, what, arguments in (
+        ("static", "static friction 20", {"mu_s_N": 20.0}),
+        ("stribeck", "Stribeck from 18 to 12", {"law": fm.laws.Stribeck(mu_s=1.2, mu_k=0.8, v_s=1.0)}),
+    )
+)  # fmt: skip
 _BELTS = (
     SceneCase(
         name="belt", title="mass on a belt, mu_s > mu_k", build=models.belt_oscillator,
@@ -140,4 +151,4 @@ _MANY = (
     ),
 )  # fmt: skip
 
-SCENES: tuple[SceneCase, ...] = (*_BRAKES, *_BELTS, *_OSCILLATORS, *_PLANES, *_MANY)
+SCENES: tuple[SceneCase, ...] = (*_BRAKES, *_HELD, *_BELTS, *_OSCILLATORS, *_PLANES, *_MANY)

@@ -43,4 +43,5 @@ def test_kernels_do_what_their_statements_say(name):
 )
 def test_other_statements_are_left_to_numba(text):
     assert not is_straight(text)
-    assert is_straight("y = max(x[0], -p[1])**3 if x[2] > 0.0 and not x[1] <= 2.0 else sin(hypot(x[0], 1.0))\nout[0] = y")
+    text = "y = max(x[0], -p[1])**3 if x[2] > 0.0 and not x[1] <= 2.0 else sin(hypot(x[0], 1.0))\nout[0] = y"
+    assert is_straight(text)

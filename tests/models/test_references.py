@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
+from fricmb.bench._reference import KINDS, shipped
 
 _spec = importlib.util.spec_from_file_location("reference", Path(__file__).parents[1] / "reference.py")
 reference = importlib.util.module_from_spec(_spec)
@@ -40,6 +41,23 @@ def test_brake(case, transitions, rtol, bound):
         assert worst(sol.events.t - ref["t_event"]) < 1e-4
         assert worst(sol.energy.residual) < 1e-6
     assert np.diff(sol.energy.friction_loss).min() > -1e-9
+
+
+STATIC = {"mu_s_N": 20.0}
+FALLING = {"law": fm.laws.Stribeck(mu_s=18 / 15, mu_k=12 / 15, v_s=1.0)}
+
+
+@pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
+@pytest.mark.parametrize(("name", "arguments"), [("brake2_static", STATIC), ("brake2_stribeck", FALLING)])
+def test_brake_with_more_friction_at_rest(name, arguments, method):
+    """Case 2 with break-away at 20 over slip at 15, and with friction that falls from 18 to 12."""
+    ref = shipped(name)
+    sol = fm.simulate(fm.models.brake4dof("2", **arguments), t_end=700.0, rtol=1e-8, t_eval=ref.t, method=method)
+    for got, true, size in zip((sol.q, sol.v), (ref.q, ref.v), ref.scales, strict=True):
+        assert (np.abs(got - true).max(axis=1) / size).max() < 1e-5
+    assert [event.kind for event in sol.events] == [KINDS[k] for k in ref.transitions.kind]
+    assert worst(sol.events.t - ref.transitions.t) < 1e-4
+    assert worst(sol.energy.residual) < 1e-6
 
 
 STRIBECK = fm.laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.05, exponent=1.0)
