@@ -1,0 +1,89 @@
+"""Every message that fricmb raises on purpose stands on the page of errors, and the page holds no other."""
+
+import ast
+import functools
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+import fricmb as fm
+from fricmb import errors
+from fricmb.analysis import AnalysisError
+from fricmb.integrate.collocation import _collocation
+from fricmb.integrate.taylor import _taylor
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "reference" / "errors.md").read_text(encoding="utf-8")
+#: What is raised with a message of its own.
+RAISED = {"SceneError", "LawError", "AnalysisError", "FricmbError", "IntegrationError", "no_start"}
+
+
+def text_of(node):
+    """The message with ... for what is put in; None if it is put together elsewhere."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return node.value
+    if isinstance(node, ast.JoinedStr):
+        parts = (part.value if isinstance(part, ast.Constant) else "..." for part in node.values)
+        return "".join(map(str, parts))
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return (text_of(node.left) or "...") + (text_of(node.right) or "...")
+    return None
+
+
+def raised(path):
+    """Messages of the raise statements of a file."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not (isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call)):
+            continue
+        name = getattr(node.exc.func, "id", getattr(node.exc.func, "attr", ""))
+        if name in RAISED:
+            texts = map(text_of, node.exc.args)
+            yield from (text for text in texts if text and re.search(r"[a-z]{2}", text.replace("...", "")))
+
+
+def reasons():
+    """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
+    from fricmb.integrate._advance import FAILURES
+    from fricmb.integrate.constrained import _messages
+
+    for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
+        yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
+    for node in ast.walk(ast.parse(inspect.getsource(_messages.failure_text))):
+        if isinstance(node, ast.Return):
+            yield text_of(node.value)
+
+
+@functools.cache
+def messages():
+    files = sorted([*(ROOT / "fricmb").rglob("*.py"), *(ROOT / "models").rglob("*.py")])
+    return sorted({text for path in files for text in raised(path)} | set(reasons()))
+
+
+def entries():
+    """The first column of the tables, but for that of the classes."""
+    return re.findall(r"^\| `([^`]+)` \|", PAGE.partition("## Names and values")[2], re.MULTILINE)
+
+
+def matches(entry, message):
+    """Whether all words of an entry stand in a message, in order, ... being anything."""
+    return re.search(".*".join(map(re.escape, entry.split("..."))), message, re.DOTALL) is not None
+
+
+def test_every_message_has_an_entry():
+    missing = [text for text in messages() if not any(matches(entry, text) for entry in entries())]
+    assert not missing, "\n".join(missing)
+
+
+@pytest.mark.parametrize("entry", entries())
+def test_every_entry_is_a_message(entry):
+    # those of _refuse, unknown_name and no_start
+    spoken = ["...: ... must be ..., got ...", "unknown ...; did you mean ...?", "No consistent initial values at t = ..."]
+    assert any(matches(entry, text) for text in [*messages(), *spoken])
+
+
+def test_every_class_is_on_the_page():
+    classes = [held for held in vars(errors).values() if isinstance(held, type) and issubclass(held, Exception)]
+    for held in [*classes, AnalysisError, fm.testing.ConformanceError]:
+        assert held.__name__ in PAGE
