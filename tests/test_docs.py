@@ -1,30 +1,88 @@
-"""The code in the README and in the pages of the documentation runs, page by page, as it stands."""
+"""The README and the pages of the documentation: their code and commands run, and people can read them."""
 
 import os
 import re
+import shlex
 import sys
 import types
 from pathlib import Path
 
 import pytest
 
+from fricmb.cli import main
+
 ROOT = Path(__file__).parents[1]
 # What is fenced as python, and the cells of pages that are notebooks (without their options).
-BLOCK = re.compile(r"^```(?:python|\{code-cell\} python)\n(?::.*\n)*(.*?)^```", re.MULTILINE | re.DOTALL)
-EVERYTHING = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
-PAGES = [page for page in EVERYTHING if BLOCK.search(page.read_text())]
+BLOCK = re.compile(
+    r"^```(?:python|\{code-cell\} python)\n(?:---\n.*?^---\n|(?::.*\n)*)(.*?)^```", re.MULTILINE | re.DOTALL
+)
+COMMAND = re.compile(r"^    (fricmb .*)$", re.MULTILINE)
+FENCE = re.compile(r"^(`{3,}|:{3,}).*?^\1$", re.MULTILINE | re.DOTALL)
+# Pages that sphinx makes are looked at where they are made; changes and decisions grow by the line.
+PAGES = sorted(
+    page
+    for page in (ROOT / "docs").rglob("*.md")
+    if not page.name.startswith("_") and not {"gallery", "generated", "_build"} & set(page.parts)
+)
+EVERYTHING = (ROOT / "README.md", *PAGES)
+CODED = [page for page in EVERYTHING if BLOCK.search(page.read_text(encoding="utf-8"))]
+#: More than that takes a reader over ten minutes.
+WORDS = 2000
+#: Commands that need a package from elsewhere (tests/test_template.py runs them), or are no command but its form.
+ELSEWHERE = ("fricmb law Valley", "fricmb COMMAND")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
+def name(path):
+    return str(path.relative_to(ROOT))
+
+
+@pytest.mark.parametrize("page", CODED, ids=name)
 def test_code_on_the_page_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(os.environ, "MPLBACKEND", "Agg")
     file = tmp_path / f"{page.stem}.py"
-    file.write_text("\n".join(BLOCK.findall(page.read_text())))
+    file.write_text("\n".join(BLOCK.findall(page.read_text(encoding="utf-8"))))
     # a module that can be imported, as the one that readers paste it into: its classes can be pickled
     module = types.ModuleType("page")
     monkeypatch.setitem(sys.modules, "page", module)
     exec(compile(file.read_text(), str(file), "exec"), module.__dict__)
+
+
+def commands():
+    for page in PAGES:
+        for command in COMMAND.findall(page.read_text(encoding="utf-8")):
+            if not command.startswith(ELSEWHERE):
+                yield pytest.param(page, command, id=f"{name(page)}: {command}")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("page", "command"), list(commands()))
+def test_command_on_the_page_runs(page, command, tmp_path, monkeypatch, capsys):
+    """As typed; a Python file that it names is what the page says up to there."""
+    monkeypatch.chdir(tmp_path)
+    arguments = shlex.split(command)[1:]
+    for file in (word for word in arguments if word.endswith(".py")):
+        text = page.read_text(encoding="utf-8").partition(command)[0]
+        (tmp_path / file).write_text("\n".join(BLOCK.findall(text)))
+    assert main(arguments) == 0, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_page_is_read_in_ten_minutes(page):
+    words = [word for word in FENCE.sub("", page.read_text(encoding="utf-8")).split() if word.strip("|-")]
+    assert len(words) <= WORDS
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_pictures_say_what_they_show(page):
+    text = page.read_text(encoding="utf-8")
+    for alt, target in re.findall(r"!\[([^\]]*)\]\(([^)]*)\)", text):
+        assert len(alt.split()) >= 3, f"{target} has no text that stands for it"
+    for directive in re.findall(r"^```\{(?:image|figure)\}(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        assert ":alt:" in directive
+    for cell in re.findall(r"^```\{code-cell\} python\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        if re.search(r"plot\.|subplots", cell):
+            assert re.search(r"^    alt: ", cell, re.MULTILINE), cell
 
 
 def test_readme_has_exactly_two_set_up_commands():
