@@ -65,7 +65,7 @@ print({f"thrown {beside:g} beside": "sticks" if stuck else "turns" for beside, s
 assert held == {0.0: True, 1e-6: False}
 
 # %%
-# **Start.**  Under a push that grows, slip starts at the instant at which the push reaches break-away.  Where break-away
+# **Start.**  Under a push that grows, slip starts at the instant at which the push reaches break-away.  Where that
 # is above friction in slip, speed grows like the time; where they are equal, like its square, and at the very
 # start the force has no direction but that of the load.
 
