@@ -118,6 +118,8 @@ def documented(held) -> dict[str, str]:
 
 def unit(model, name: str) -> str:
     """SI where the model has them, else the dimension: such a model takes any consistent units."""
+    if name not in DIMENSIONS:
+        raise KeyError(f"DIMENSIONS in docs/_pages.py has no {name!r}, an argument of the model {model.name}")
     dimension = OTHERWISE.get((model.name, name), DIMENSIONS[name])
     if not dimension or model.units.time == "1":
         return dimension

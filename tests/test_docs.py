@@ -88,3 +88,21 @@ def test_pictures_say_what_they_show(page):
 def test_readme_has_exactly_two_set_up_commands():
     indented = re.findall(r"^    (\S.*)$", (ROOT / "README.md").read_text().partition("## A scene")[0], re.MULTILINE)
     assert indented == ["pip install . && fricmb run brake4dof", 'pip install ".[test]" && pytest']
+
+
+def test_reference_names_all_that_is_public():
+    """But for constants, and what stands on the page of errors or is told in words (integrators, compiled_force)."""
+    import fricmb as fm
+
+    pages = [ROOT / "docs" / "reference" / f"{page}.md" for page in ("api", "laws", "models")]
+    listed = set(re.findall(r"^   ([\w.]+)$", "\n".join(page.read_text(encoding="utf-8") for page in pages), re.MULTILINE))
+    missing = []
+    for package in ("", "analysis.", "testing.", "plot.", "normal.", "laws."):
+        held = getattr(fm, package[:-1]) if package else fm
+        for public in held.__all__:
+            thing = getattr(held, public)
+            if isinstance(thing, type | types.FunctionType) and package + public not in listed:
+                missing.append(package + public)
+    errors = {"FricmbError", "IntegrationError", "LawError", "SceneError", "analysis.AnalysisError"}
+    words = {"testing.ConformanceError", "analysis.compiled_force", "plot.finish", "laws.FrictionLaw", "laws.symbolic"}
+    assert sorted(set(missing) - errors - words - {"laws.RegularisedLaw", "laws.Law"}) == []
