@@ -95,7 +95,8 @@ def test_reference_names_all_that_is_public():
     import fricmb as fm
 
     pages = [ROOT / "docs" / "reference" / f"{page}.md" for page in ("api", "laws", "models")]
-    listed = set(re.findall(r"^   ([\w.]+)$", "\n".join(page.read_text(encoding="utf-8") for page in pages), re.MULTILINE))
+    text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+    listed = set(re.findall(r"^   ([\w.]+)$", text, re.MULTILINE))
     missing = []
     for package in ("", "analysis.", "testing.", "plot.", "normal.", "laws."):
         held = getattr(fm, package[:-1]) if package else fm
