@@ -151,7 +151,7 @@ class Bdf(Integrator):
         multi = one_step(problem, one_stage(), run.counts)
         code = run.begin()
         jacobian_at(run.packed, run.scratch, run.y, multi.fac)
-        spectral = spectrum(multi.fac.K, multi.fac.C, run.packed.structure.Minv)
+        spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
         hist = history(problem, t_end - start.t, spectral, cost(problem, stages) / cost(problem, 1))
         if np.any(problem.contacts.law == LAW_SMOOTH):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fricmb.integrate import _band  # noqa: F401  (makes its blocks known)
 from fricmb.integrate._advance import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL, Clock
 from fricmb.integrate._exact_step import no_exact
 from fricmb.integrate._factor import factor
@@ -13,21 +14,22 @@ from fricmb.integrate._field import scratch
 from fricmb.integrate._hermite import RowTrajectory
 from fricmb.integrate._instant import state
 from fricmb.integrate._integrator import Tolerance
-from fricmb.integrate._lapack import addresses
 from fricmb.integrate._modes import rest
 from fricmb.integrate._onestep import Accuracy, OneStep
 from fricmb.integrate._pack import packed_of
 from fricmb.integrate._port_state import port_state
 from fricmb.integrate._problem import Ints, Problem, Start
-from fricmb.integrate._room import CORE, room
-from fricmb.integrate._rows import rows
+from fricmb.integrate._room import room
+from fricmb.integrate._rows import rows, widths
 from fricmb.integrate._stages import stages
 from fricmb.integrate._start import begin, natural_scales
+from fricmb.integrate._storage import places_of
 from fricmb.integrate._tableau import Tableau
 from fricmb.integrate._trajectory import Counters, Transitions
 from fricmb.integrate._transitions import Before
 
-CHUNK = 4096
+#: Rows that a kernel fills before they are taken out: so many, or so many bytes.
+CHUNK, CHUNK_BYTES = 4096, 3e7
 
 
 #: Part of a scene's natural velocities and positions that counts as noise.
@@ -68,11 +70,13 @@ class Collector:
         self.scratch = scratch(problem)
         self.y = state(problem, start)
         self.end = state(problem, start)
+        self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
         self.rest = rest(problem, self.packed)
         self.old = room(Before(np.zeros(problem.n_c, np.int8), np.zeros(problem.m)))
-        self.rows = rows(problem, CHUNK)
+        self.rows = rows(problem, self.chunk)
         self.counts = np.zeros(8, np.int64)
-        self.address = addresses(*CORE, "step_error", *further) if places is None else places
+        half = int(self.packed.structure.half[0])
+        self.address = places_of(half, "step_error", *further) if places is None else places
         self.natural_v, self.natural_q = natural_scales(problem, self.packed, self.scratch, start.t, t_end - start.t)
         self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
@@ -92,7 +96,7 @@ class Collector:
 
     def widen(self, columns: int) -> None:
         """Give rows further columns."""
-        self.rows = rows(self.problem, CHUNK, columns)
+        self.rows = rows(self.problem, self.chunk, columns)
 
     def collect(self) -> None:
         """Empty the room for rows."""

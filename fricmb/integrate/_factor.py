@@ -18,9 +18,9 @@ from fricmb.integrate._field import (
 )
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._lapack import solve_complex
-from fricmb.integrate._pack import Packed
+from fricmb.integrate._pack import Packed, packed_of
 from fricmb.integrate._port_state import PortState
-from fricmb.integrate._problem import Floats, Floats2, Floats3, Ints, Problem
+from fricmb.integrate._problem import Floats, Floats2, Floats3, Ints, Pivots, Problem
 from fricmb.integrate._room import block, room
 from fricmb.integrate._tableau import Complexes, Complexes2, Complexes3, Tableau
 
@@ -28,9 +28,12 @@ from fricmb.integrate._tableau import Complexes, Complexes2, Complexes3, Tableau
 class Factor(NamedTuple):
     """What depends on the step size alone, for several step sizes (slots, k).
 
-    ``Sinv`` (k l, n, n); ``P`` (k, s n, s m_i) response of V to port inputs, ``G`` (k, s m_i, s m_i) of their outputs.
-    ``made`` (k,) step sizes of the slots (0: none); ``slot`` (2,) the present one and the one filled last.
-    ``Nq``, ``Nv`` (n_v, n) gradients of varying normal forces; ``K``, ``C`` (n, n) the Jacobian they were made with.
+    ``Sinv`` (k l, n, n) inverses, or (k l, n, 3 half + 1) factors in LAPACK's form of a band with their ``pivots``
+    (k l n,) and ``sizes`` [n, half, half, 3 half + 1, 1, info, 'N'].  ``P`` (k, s n, s m_i) response of V to
+    port inputs, ``G`` (k, s m_i, s m_i) of their outputs.  ``made`` (k,) step sizes of the slots (0: none); ``slot``
+    (2,) the present one and the one filled last.
+    ``Nq``, ``Nv`` (n_v, n) gradients of varying normal forces; ``K``, ``C`` the Jacobian they were made with, on the
+    structure's pattern.
     """
 
     Sinv: Complexes3
@@ -38,12 +41,15 @@ class Factor(NamedTuple):
     G: Floats3
     made: Floats
     slot: Ints
-    K: Floats2
-    C: Floats2
+    K: Floats
+    C: Floats
     Nq: Floats2
     Nv: Floats2
     S: Complexes2
     X: Complexes3
+    pivots: Pivots
+    sizes: Pivots
+    line: Complexes
 
 
 #: Most step sizes whose factors are kept, and bytes for them: a ladder of steps comes back to the same ones.
@@ -55,13 +61,17 @@ def factor(problem: Problem, tableau: Tableau) -> Factor:
     n, s, levels = problem.n, len(tableau.c), len(tableau.lam)
     nv = int(np.sum(problem.contacts.normal != 0))
     mi = problem.m + nv
-    square, wide = (n, n), (levels, mi, n)
-    each = 16.0 * levels * n * n + 8.0 * s * s * mi * (n + mi)
+    structure = packed_of(problem).structure
+    half, entries = int(structure.half[0]), len(structure.column)
+    width = n if half < 0 else 3 * half + 1
+    each = 16.0 * levels * n * width + 8.0 * s * s * mi * (n + mi)
     k = 2 if changes(problem) else int(np.clip(SLOT_BYTES / max(each, 1.0), 2, SLOTS))
     return room(Factor(
-        np.zeros((k * levels, n, n), complex), np.zeros((k, s * n, s * mi)), np.zeros((k, s * mi, s * mi)),
-        np.zeros(k), np.zeros(2, np.int64), np.zeros(square), np.zeros(square), np.zeros((nv, n)), np.zeros((nv, n)),
-        np.zeros(square, complex), np.zeros(wide, complex),
+        np.zeros((k * levels, n, width), complex), np.zeros((k, s * n, s * mi)), np.zeros((k, s * mi, s * mi)),
+        np.zeros(k), np.zeros(2, np.int64), np.zeros(entries), np.zeros(entries), np.zeros((nv, n)), np.zeros((nv, n)),
+        np.zeros((n, n) if half < 0 else (0, 0), complex), np.zeros((levels, mi, n), complex),
+        np.zeros(0 if half < 0 else k * levels * n, np.int32),
+        np.array([n, half, half, 3 * half + 1, 1, 0, ord("N")], np.int32), np.zeros(n, complex),
     ))  # fmt: skip
 
 
@@ -121,9 +131,10 @@ def forget(fac: Factor) -> None:
 @block
 def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState, address: Ints) -> bool:
     """Fill the present slot for h from the Jacobian.  False where the matrix is singular."""
-    M, K, C, S, X = packed.structure.M, fac.K, fac.C, fac.S, fac.X
+    start, index, M = packed.structure.first, packed.structure.column, packed.structure.M
+    K, C, S, X = fac.K, fac.C, fac.S, fac.X
     W, Wn, var = packed.ports.W, packed.ports.Wn, packed.ports.var
-    n = K.shape[0]
+    n = S.shape[0]
     m = W.shape[1]
     levels = tab.lam.shape[0]
     X[:, :, :] = 0.0
@@ -132,9 +143,12 @@ def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState,
         inverse = fac.Sinv[fac.slot[0] * levels + x]
         for i in range(n):
             for j in range(n):
-                # transposed: LAPACK reads by columns
-                S[j, i] = M[i, j] + sigma * (C[i, j] + sigma * K[i, j])
+                S[i, j] = 0.0
                 inverse[i, j] = 1.0 if i == j else 0.0
+        for i in range(n):
+            for e in range(start[i], start[i + 1]):
+                # transposed: LAPACK reads by columns
+                S[index[e], i] = M[e] + sigma * (C[e] + sigma * K[e])
         if n > 0 and solve_complex(address[1], S, inverse, w.sizes, w.pivots) != 0:
             return False
         # right-hand sides were columns for LAPACK, rows for us: transpose back

@@ -8,9 +8,10 @@ import numpy as np
 
 from fricmb.integrate._call import call
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._pack import Packed, Ports, Spread, Structure, Table
+from fricmb.integrate._pack import Packed, Ports, Spread, Table
 from fricmb.integrate._problem import Floats, Problem
 from fricmb.integrate._room import room
+from fricmb.integrate._structure import Structure
 
 
 class Scratch(NamedTuple):
@@ -83,17 +84,17 @@ def structure_force(structure: Structure, elements: Table, spread: Spread, s: Sc
     """All forces on the dofs at X but those of the contacts, into f (n,)."""
     n = f.shape[0]
     nu = s.ddu.shape[0]
-    K, C, tie = structure.K, structure.C, structure.tie
+    start, index, K, C, tie = structure.first, structure.column, structure.K, structure.C, structure.tie
     q, v, u, du = s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n], s.X[1 + 2 * n : 1 + 2 * n + nu], s.X[1 + 2 * n + nu :]
     for i in range(n):
         value = structure.f[i]
         if tie.shape[0] == 0:
-            for j in range(n):
-                value -= K[i, j] * q[j] + C[i, j] * v[j]
+            for e in range(start[i], start[i + 1]):
+                value -= K[e] * q[index[e]] + C[e] * v[index[e]]
         else:
             # stiff springs between dofs by the difference of these: what they do to both is equal to the last digit
-            for j in range(n):
-                value -= K[i, j] * (q[j] - tie[i, j] * q[i]) + C[i, j] * v[j]
+            for e in range(start[i], start[i + 1]):
+                value -= K[e] * (q[index[e]] - tie[e] * q[i]) + C[e] * v[index[e]]
             value -= structure.alone[i] * q[i]
         for j in range(nu):
             value -= structure.Ku[i, j] * u[j] + structure.Cu[i, j] * du[j]
@@ -108,13 +109,20 @@ def structure_force(structure: Structure, elements: Table, spread: Spread, s: Sc
 
 
 @kernel
+def entry_at(structure: Structure, i: int, j: int) -> int:
+    """Where the pattern keeps row i, column j, which must be in it."""
+    e = structure.first[i]
+    while structure.column[e] != j:
+        e += 1
+    return int(e)
+
+
+@kernel
 def structure_jacobian(structure: Structure, elements: Table, spread: Spread, s: Scratch, K: Floats, C: Floats) -> None:
-    """K = -df/dq and C = -df/dv (n, n) of :func:`structure_force` at X."""
-    n = K.shape[0]
-    for i in range(n):
-        for j in range(n):
-            K[i, j] = structure.K[i, j]
-            C[i, j] = structure.C[i, j]
+    """K = -df/dq and C = -df/dv of :func:`structure_force` at X, on the structure's pattern."""
+    n = structure.f.shape[0]
+    K[:] = structure.K
+    C[:] = structure.C
     for k in range(elements.address.shape[0]):
         n_x = gather(elements, k, s.X, s.x)
         call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
@@ -131,9 +139,9 @@ def structure_jacobian(structure: Structure, elements: Table, spread: Spread, s:
                     for i in range(spread.start[row0], spread.start[row0 + 1]):
                         value = slope * elements.form_coefficient[j] * spread.coefficient[i]
                         if at < n:
-                            K[spread.dof[i], at] -= value
+                            K[entry_at(structure, spread.dof[i], at)] -= value
                         else:
-                            C[spread.dof[i], at - n] -= value
+                            C[entry_at(structure, spread.dof[i], at - n)] -= value
 
 
 @kernel
@@ -206,12 +214,13 @@ def powers(packed: Packed, s: Scratch, F: Floats, N: Floats, g: Floats, out: Flo
             push = N[k] - ports.N0[k]
             damping -= (push + s.out[4]) * rate
             supply += push * (felt - rate)
-    C, Ka, q, v = structure.C, structure.Ka, s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n]
+    start, index, C, Ka = structure.first, structure.column, structure.C, structure.Ka
+    q, v = s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n]
     for i in range(n):
         vi = v[i]
-        for j in range(n):
-            damping += vi * C[i, j] * v[j]
-            supply -= vi * Ka[i, j] * q[j]
+        for e in range(start[i], start[i + 1]):
+            damping += vi * C[e] * v[index[e]]
+            supply -= vi * Ka[e] * q[index[e]]
         for j in range(nu):
             damping += vi * structure.Cu[i, j] * s.X[u0 + nu + j]
             supply += vi * structure.B[i, j] * s.X[u0 + j]

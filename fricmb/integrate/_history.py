@@ -14,6 +14,8 @@ from fricmb.integrate._orders import COLUMNS, MAX_ORDER, SPACING, growth_table
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate._room import block, room
+from fricmb.integrate._sparse import Csr
+from fricmb.integrate._structure import Structure
 
 
 class History(NamedTuple):
@@ -86,11 +88,24 @@ def history(problem: Problem, span: float, spectrum: tuple[Floats, Floats], cost
     )
 
 
-def spectrum(K: Floats, C: Floats, Minv: Floats) -> tuple[Floats, Floats]:
-    """Frequencies (n,) and decay rates (n,) of M x'' + C x' + K x = 0, without friction."""
-    values, shapes = np.linalg.eig(Minv @ K)
+#: Structures of more degrees of freedom are not diagonalised for this.
+WHOLE = 256
+
+
+def spectrum(problem: Problem, structure: Structure, K: Floats, C: Floats) -> tuple[Floats, Floats]:
+    """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction; K and C on the structure's pattern."""
+    n = problem.n
+    if n > WHOLE:
+        if len(problem.omega) == n:
+            return problem.omega, problem.omega * problem.zeta
+        # a bound: any frequency up to it may be there
+        top = np.sqrt(structure.mobility.max() * np.bincount(structure.column, np.abs(K), n).max())
+        return np.concatenate([[0.0], top * np.geomspace(1e-4, 1.0, 256)]), np.zeros(257)
+    inverse = Csr((n, n), structure.Minv_start, structure.Minv_index, structure.Minv).dense()
+    whole_K, whole_C = (Csr((n, n), structure.first, structure.column, part).dense() for part in (K, C))
+    values, shapes = np.linalg.eig(inverse @ whole_K)
     try:
-        damping = np.real(np.diag(np.linalg.solve(shapes, Minv @ C @ shapes)))
+        damping = np.real(np.diag(np.linalg.solve(shapes, inverse @ whole_C @ shapes)))
     except np.linalg.LinAlgError:
         damping = np.zeros(len(values))
     return np.sqrt(np.maximum(values.real, 0.0)), 0.5 * np.maximum(damping, 0.0)

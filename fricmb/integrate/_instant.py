@@ -21,6 +21,7 @@ from fricmb.integrate._laws import coefficient, smooth_force
 from fricmb.integrate._pack import Packed, Ports
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
 from fricmb.integrate._room import block, room
+from fricmb.integrate._structure import Structure
 
 #: What can be wrong with a state: see State.fault.
 NEGATIVE, INFINITE = 1.0, 2.0
@@ -145,14 +146,21 @@ def known_forces(packed: Packed, s: Scratch, y: State) -> None:
 
 
 @kernel
+def accelerate(structure: Structure, f: Floats, a: Floats) -> None:
+    """A = M^-1 f, both (n,)."""
+    start, index, Minv = structure.Minv_start, structure.Minv_index, structure.Minv
+    for i in range(a.shape[0]):
+        value = 0.0
+        for e in range(start[i], start[i + 1]):
+            value += Minv[e] * f[index[e]]
+        a[i] = value
+
+
+@kernel
 def free_acceleration(packed: Packed, y: State) -> None:
     """A = M^-1 f and a0 = W^T a - w'."""
     n = y.q.shape[0]
-    for i in range(n):
-        value = 0.0
-        for j in range(n):
-            value += packed.structure.Minv[i, j] * y.f[j]
-        y.a[i] = value
+    accelerate(packed.structure, y.f, y.a)
     for a in range(y.g.shape[0]):
         value = -y.wd[a]
         for i in range(n):

@@ -16,8 +16,8 @@ from fricmb.integrate._room import LAPACK, PLACES
 from fricmb.integrate._share import shared_addresses
 
 #: Routines that came later and stand at the end of the table; their places.
-LATER = ("dgetrf", "dgetrs")
-FACTOR, SOLVE = (PLACES.index(name) for name in LATER)
+LATER = ("dgetrf", "dgetrs", "zgbtrf", "zgbtrs")
+FACTOR, SOLVE, BAND_FACTOR, BAND_SOLVE = (PLACES.index(name) for name in LATER)
 
 
 @lru_cache(maxsize=8)

@@ -14,7 +14,16 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate._field import Scratch, normal_force
-from fricmb.integrate._instant import INFINITE, State, complete, kinematics, known_forces, slip_speed, solve_response
+from fricmb.integrate._instant import (
+    INFINITE,
+    State,
+    accelerate,
+    complete,
+    kinematics,
+    known_forces,
+    slip_speed,
+    solve_response,
+)
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._pack import Packed, Ports, Table
 from fricmb.integrate._port_state import PortState, port_state
@@ -156,7 +165,10 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
 
 @kernel
 def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> None:
-    """Take the last round-off of g away where a contact is at rest: v += M^-1 W D^-1 (-g), momentum conserved."""
+    """Take the last round-off of g away where a contact is at rest: v += M^-1 W D^-1 (-g), momentum conserved.
+
+    Forces and accelerations of ``y`` are lost.
+    """
     kinematics(packed, s, y)
     size = 0
     for k in range(y.mode.shape[0]):
@@ -170,14 +182,17 @@ def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> Non
     if not solve_response(packed.ports, y, r.part, False, size, r.w.sizes, r.w.pivots, address):
         return
     i = 0
+    y.f[:] = 0.0
     for k in range(y.mode.shape[0]):
         if r.part[k] == 0:
             continue
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
             for b in range(y.q.shape[0]):
-                for c in range(y.q.shape[0]):
-                    y.v[b] += packed.structure.Minv[b, c] * packed.ports.W[c, a] * y.rhs[i]
+                y.f[b] += packed.ports.W[b, a] * y.rhs[i]
             i += 1
+    accelerate(packed.structure, y.f, y.a)
+    for b in range(y.q.shape[0]):
+        y.v[b] += y.a[b]
 
 
 @block

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import weakref
 from typing import NamedTuple
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
 from fricmb.integrate._room import room
+from fricmb.integrate._structure import Structure, inverse_mass, pack_structure
 
 
 class Table(NamedTuple):
@@ -23,28 +23,6 @@ class Table(NamedTuple):
     form_index: Ints
     form_coefficient: Floats
     form_constant: Floats
-
-
-class Structure(NamedTuple):
-    """Linear part; ``Kd``, ``Cd``, ``fd`` are the rows of the drivers, ``Ka`` the antisymmetric part of K.
-
-    ``tie`` (n, n), ``alone`` (n,): K q = sum_j K_ij (q_j - tie_ij q_i) + alone_i q_i, see :func:`_ties`.
-    """
-
-    M: Floats2
-    Minv: Floats2
-    K: Floats2
-    C: Floats2
-    Ku: Floats2
-    Cu: Floats2
-    f: Floats
-    B: Floats2
-    Kd: Floats2
-    Cd: Floats2
-    fd: Floats
-    Ka: Floats2
-    tie: Floats2
-    alone: Floats
 
 
 class Ports(NamedTuple):
@@ -102,28 +80,6 @@ def _softness(D: Floats) -> float:
     return 1e-7  # squared in two iterations below round-off; shares of a load differ by round-off over it
 
 
-#: Ratio of frequencies from which on forces of stiff springs are taken from differences of positions.
-SPREAD = 3e3
-
-
-def _ties(K: Floats2, omega: Floats) -> tuple[Floats2, Floats]:
-    """Which entries of K (n, n) are springs between two dofs, and what of each row is none; (0, 0) for soft structures.
-
-    The forces of a spring on its two ends are opposite to the last digit only where both come from q_j - q_i; the
-    round-off of K q on large positions would push the whole by as much as a soft spring does.
-    """
-    moving = omega[omega > 0.0]
-    # a frequency of 0 is a rigid motion, or one that is lost in round-off beside the largest
-    if len(omega) < 2 or (len(moving) == len(omega) and moving.max() < SPREAD * moving.min()):
-        return np.zeros((0, 0)), np.zeros(0)
-    own = np.diag(K)
-    spring = (K < 0.0) & (np.minimum(own[:, None], own[None, :]) >= -K)
-    np.fill_diagonal(spring, val=False)
-    alone = np.array([math.fsum([own[i], *line[ties]]) for i, (line, ties) in enumerate(zip(K, spring, strict=True))])
-    np.fill_diagonal(spring, val=True)
-    return spring.astype(float), alone
-
-
 def _table(templates: Templates) -> Table:
     ints = [templates.address, templates.p_start, templates.x_start, templates.form_start, templates.form_index]
     address, p_start, x_start, form_start, form_index = (np.ascontiguousarray(x, dtype=np.int64) for x in ints)
@@ -147,24 +103,18 @@ _kept: dict[int, Packed] = {}
 
 
 def _pack(problem: Problem) -> Packed:
-    n, linear, contacts = problem.n, problem.linear, problem.contacts
+    contacts = problem.contacts
     solid = np.ascontiguousarray
-    Kx, Cx = np.asarray(linear.Kx, float), np.asarray(linear.Cx, float)
-    K = solid(Kx[:n, :n])
-    Minv = solid(np.linalg.inv(linear.M)) if n else np.zeros((0, 0))
-    structure = Structure(
-        solid(linear.M), Minv, K, solid(Cx[:n, :n]), solid(Kx[:n, n:]), solid(Cx[:n, n:]), solid(linear.fx[:n]),
-        solid(linear.B), solid(Kx[n:]), solid(Cx[n:]), solid(linear.fx[n:]), solid(0.5 * (K - K.T)),
-        *_ties(K, np.asarray(problem.omega, float)),
-    )  # fmt: skip
+    structure = pack_structure(problem)
     varies = contacts.normal != NORMAL_CONSTANT
     var = np.where(varies, np.cumsum(varies) - 1, -1).astype(np.int64)
     W = solid(contacts.W)
+    D = solid(W.T @ (inverse_mass(problem) @ W))
     ports = Ports(
-        solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu), solid(W.T @ Minv @ W),
+        solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu), D,
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
-        (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([_softness(W.T @ Minv @ W)]),
+        (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([_softness(D)]),
         np.zeros(problem.n_c),
     )  # fmt: skip
     spread = Spread(

@@ -255,6 +255,11 @@ FURTHER = (
     "exact_finish",
     "exact_record",
     "step_error",
+    "zgbtrf",
+    "zgbtrs",
+    "structure_correction",
+    "factorise_band",
+    "correct_band",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

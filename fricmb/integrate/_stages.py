@@ -90,20 +90,21 @@ def stage_residual(packed: Packed, s: Scratch, st: Stages, w: PortState, mode: C
             for b in range(n):
                 value += ports.W[b, a] * st.V[i, b]
             w.gb[i, a] = value
-    M, V, hA, f = packed.structure.M, st.V, st.hA, st.f
+    start, index, M = packed.structure.first, packed.structure.column, packed.structure.M
+    V, hA, f = st.V, st.hA, st.f
     for i in range(V.shape[0]):
         for a in range(n):
             value = 0.0
-            for b in range(n):
-                value += M[a, b] * (V[i, b] - st.psi_v[b])
+            for e in range(start[a], start[a + 1]):
+                value += M[e] * (V[i, index[e]] - st.psi_v[index[e]])
             for j in range(V.shape[0]):
                 value -= hA[i, j] * f[j, a]
             st.res[i, a] = value
 
 
-@kernel
-def structure_correction(tab: Tableau, fac: Factor, st: Stages) -> None:
-    """DV = -S^-1 res over all stages."""
+@block
+def structure_correction(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address: Ints) -> None:
+    """DV = -S^-1 res over all stages, by the inverses."""
     n = st.V.shape[1]
     s = st.V.shape[0]
     T, Tinv, res, y, dV = tab.T, tab.Tinv, st.res, st.y, st.dV
@@ -135,10 +136,11 @@ def is_stiff(packed: Packed, fac: Factor, hA: Floats2) -> bool:
     h = 0.0
     for j in range(hA.shape[0]):
         h += hA[hA.shape[0] - 1, j]
-    M, K, C = packed.structure.M, fac.K, fac.C
-    for i in range(K.shape[0]):
-        for j in range(K.shape[0]):
-            if h * (abs(C[i, j]) + h * abs(K[i, j])) > STIFF * M[i, i]:
+    structure, K, C = packed.structure, fac.K, fac.C
+    for i in range(structure.f.shape[0]):
+        inertia = structure.M[structure.own[i]]
+        for e in range(structure.first[i], structure.first[i + 1]):
+            if h * (abs(C[e]) + h * abs(K[e])) > STIFF * inertia:
                 return True
     return False
 
@@ -172,7 +174,7 @@ def solve_stages(
     w.G[:, :] = fac.G[fac.slot[0]]
     for iteration in range(12):
         stage_residual(packed, s, st, w, mode)
-        structure_correction(tab, fac, st)
+        structure_correction(packed, tab, fac, st, address)
         for i in range(n_s):
             for c in range(m):
                 Fo[i, c] = w.F[i, c]

@@ -11,6 +11,8 @@ from fricmb.integrate._modes import Rest, find_open, mark_rest, settle
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import SLIP, Floats, Floats2, Ints, Problem
 from fricmb.integrate._rows import AFTER, Rows, record
+from fricmb.integrate._sparse import Csr
+from fricmb.integrate._structure import Structure
 from fricmb.integrate._transitions import Before, record_changes
 
 
@@ -69,6 +71,12 @@ def signal_scales(problem: Problem, packed: Packed, s: Scratch, t: float, span: 
     return load, float(np.max(rate[moves], initial=0.0)), float(np.max(way[moves], initial=0.0))
 
 
+def magnitudes(structure: Structure) -> Csr:
+    """Of the entries of M^-1."""
+    n = len(structure.f)
+    return Csr((n, n), structure.Minv_start, structure.Minv_index, np.abs(structure.Minv))
+
+
 def natural_scales(problem: Problem, packed: Packed, s: Scratch, t: float, span: float) -> tuple[Floats, Floats]:
     """Velocities and positions (n,) that the scene's own forces bring about in its own time.
 
@@ -81,7 +89,7 @@ def natural_scales(problem: Problem, packed: Packed, s: Scratch, t: float, span:
         return np.zeros(0), np.zeros(0)
     per_row = np.repeat(contacts.mu_s * np.maximum(contacts.N, np.abs(contacts.N0)), np.diff(contacts.row))
     load, driven_speed, driven_way = signal_scales(problem, packed, s, t, span)
-    acceleration = np.abs(structure.Minv) @ (np.abs(contacts.W) @ per_row + np.abs(structure.f) + load)
+    acceleration = magnitudes(structure) @ (np.abs(contacts.W) @ per_row + np.abs(structure.f) + load)
     omega = float(np.max(problem.omega, initial=0.0))
     time = min(1.0 / omega, span) if omega > 0.0 else span
     speed = max(float(np.max(np.abs(contacts.w), initial=0.0)), driven_speed)

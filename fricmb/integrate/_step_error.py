@@ -11,12 +11,22 @@ from fricmb.integrate._pack import Packed
 from fricmb.integrate._port_state import PortState
 from fricmb.integrate._problem import LAW_SMOOTH, STICK, Ints
 from fricmb.integrate._room import block
+from fricmb.integrate._structure import Structure
 from fricmb.integrate._triggers import force_noise
 
 #: Relative round-off of a number.
 ROUND_OFF = 2.3e-16
 #: Part of its limit to which the force of a stuck contact has to be resolved within a step.
 RESOLVED = 0.01
+
+
+@kernel
+def spring_size(structure: Structure, acc: Accuracy, i: int) -> float:
+    """Sum of the magnitudes of the spring forces on one degree of freedom."""
+    value = 0.0
+    for e in range(structure.first[i], structure.first[i + 1]):
+        value += abs(structure.K[e]) * acc.q[structure.column[e]]
+    return float(value)
 
 
 @kernel
@@ -32,12 +42,11 @@ def grain(packed: Packed, y: State, w: PortState, acc: Accuracy, h: float, i: in
         push = max(push, abs(y.F[a]))
         for j in range(w.F.shape[0]):
             push = max(push, abs(w.F[j, a]))
-    pull = 0.0
-    for j in range(acc.q.shape[0]):
-        pull += abs(packed.structure.K[i, j]) * acc.q[j]
-    own = max(abs(packed.structure.K[i, i]), 1e-290)
-    pull *= ROUND_OFF * min(1.0, np.sqrt(packed.structure.M[i, i] / own) / h)
-    acc.grain[i] = max(acc.grain[i], h * packed.structure.Minv[i, i] * (1e-14 * push + pull))
+    structure = packed.structure
+    own = structure.own[i]
+    stiffness = max(abs(structure.K[own]), 1e-290)
+    pull = spring_size(structure, acc, i) * ROUND_OFF * min(1.0, np.sqrt(structure.M[own] / stiffness) / h)
+    acc.grain[i] = max(acc.grain[i], h * structure.mobility[i] * (1e-14 * push + pull))
     return float(acc.grain[i])
 
 
@@ -105,6 +114,6 @@ def spring_noise(packed: Packed, acc: Accuracy, a: int) -> float:
     """What the round-off of positions makes of the forces of springs that a stuck contact carries in row a."""
     noise = 0.0
     for i in range(acc.q.shape[0]):
-        for j in range(acc.q.shape[0]):
-            noise += abs(packed.ports.W[i, a] * packed.structure.K[i, j]) * acc.q[j]
+        if packed.ports.W[i, a] != 0.0:
+            noise += abs(packed.ports.W[i, a]) * spring_size(packed.structure, acc, i)
     return float(32.0 * ROUND_OFF * noise)

@@ -14,7 +14,7 @@ from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
 from fricmb.system._mechanism import build_mechanism
-from fricmb.system._spectrum import check_mass, check_masses, spectrum
+from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
 
@@ -51,12 +51,15 @@ SPECTRUM = 500
 
 
 def _spectrum(linear: Linear, n: int, dofs: Sequence[str]) -> tuple[Floats, Floats]:
-    """Frequencies and damping ratios, none for large scenes, after a check of the mass matrix."""
+    """Frequencies and damping ratios, none for large coupled structures, after a check of the mass matrix."""
     M = linear.csr("M")
     if n <= SPECTRUM or not M.is_diagonal():
         check_mass(linear.M, dofs)
         return spectrum(linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n])
     check_masses(M.diagonal(), dofs)
+    K, C = (linear.csr(name).block(slice(0, n), slice(0, n)) for name in ("Kx", "Cx"))
+    if K.is_diagonal() and C.is_diagonal():
+        return uncoupled_spectrum(M.diagonal(), K.diagonal(), C.diagonal())
     return np.zeros(0), np.zeros(0)
 
 

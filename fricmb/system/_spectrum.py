@@ -57,11 +57,20 @@ def spectrum(M: Floats, K: Floats, C: Floats) -> tuple[Floats, Floats]:
             # first-order perturbation: the eigenvalues of K + eps C move by eps times the modal damping
             eps = 1e-6 * max(float(np.abs(stiffness).max()), 1e-300) / float(np.abs(damping).max())
             rate = (_eigenvalues(stiffness + eps * damping) - values) / eps
+    return _sorted(values, rate)
+
+
+def uncoupled_spectrum(mass: Floats, stiffness: Floats, damping: Floats) -> tuple[Floats, Floats]:
+    """The same of degrees of freedom that no spring or damper ties together, all (n,)."""
+    return _sorted(stiffness / mass, damping / mass)
+
+
+def _sorted(values: Floats, rate: Floats) -> tuple[Floats, Floats]:
     floor = 1e-13 * max(float(np.abs(values).max(initial=0.0)), np.finfo(float).tiny)
     omega = np.sqrt(np.where(np.abs(values) > floor, np.abs(values), 0.0))
     order = np.argsort(omega, kind="stable")
     omega, rate = omega[order], rate[order]
-    return omega, np.divide(rate, 2.0 * omega, out=np.zeros(n), where=omega > 0.0)
+    return omega, np.divide(rate, 2.0 * omega, out=np.zeros(len(omega)), where=omega > 0.0)
 
 
 #: Up to this size all eigenvectors cost nothing that matters.

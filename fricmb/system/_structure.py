@@ -55,8 +55,9 @@ class Structure:
     # -- bodies -------------------------------------------------------------------------------------------------
     def add_body(self, body: Body | ModalBody, index: dict[str, int]) -> None:
         """Masses; of a modal body also modal stiffness and damping."""
-        built = [i for i, name in enumerate(body.dof_names) if name in index]
-        places = [index[body.dof_names[i]] for i in built]
+        names = body.dof_names
+        built = [i for i, name in enumerate(names) if name in index]
+        places = [index[names[i]] for i in built]
         if isinstance(body, Body):
             mass = float(value_of(body.mass))
             self.M.extend((i, i, mass) for i in places)

@@ -81,8 +81,8 @@ def load_at_start(packed: Packed, s: Scratch, q: Floats, f: Floats) -> None:
     u0 = 1 + 2 * n
     for i in range(n):
         value = structure.f[i]
-        for j in range(n):
-            value -= structure.K[i, j] * q[j]
+        for e in range(structure.first[i], structure.first[i + 1]):
+            value -= structure.K[e] * q[structure.column[e]]
         for j in range(nu):
             value += (structure.B[i, j] - structure.Ku[i, j]) * s.X[u0 + j] - structure.Cu[i, j] * s.X[u0 + nu + j]
         f[i] = value

@@ -57,10 +57,11 @@ def places(plain: bool, nonlinear: bool) -> Ints:
 
 
 def _no_factor() -> Factor:
-    shapes = {"Sinv": 3, "P": 3, "G": 3, "made": 1, "slot": 1, "X": 3}
-    kinds = {"Sinv": complex, "S": complex, "X": complex, "slot": np.int64}
+    shapes = {"Sinv": 3, "P": 3, "G": 3, "X": 3, "S": 2, "Nq": 2, "Nv": 2}
+    kinds = {"Sinv": complex, "S": complex, "X": complex, "line": complex, "slot": np.int64}
+    kinds |= {"pivots": np.int32, "sizes": np.int32}
     return room(Factor._make(
-        np.zeros((0,) * shapes.get(name, 2), kinds.get(name, float)) for name in Factor._fields
+        np.zeros((0,) * shapes.get(name, 1), kinds.get(name, float)) for name in Factor._fields
     ))  # fmt: skip
 
 

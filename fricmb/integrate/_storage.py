@@ -1,0 +1,49 @@
+"""How the matrices of implicit steps are kept: dense inverses, or banded factors in a bandwidth-reducing order.
+
+Chosen by measured cost: the inverse of a dense matrix costs n^3 to make and n^2 to use, banded factors n half^2 and
+n half.  Modes without coupled damping are a band of one diagonal, a chain has three.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from fricmb.integrate._lapack import addresses
+from fricmb.integrate._problem import Ints
+from fricmb.integrate._room import CORE, PLACES
+
+#: Fewer degrees of freedom than this are kept dense; so are bands wider than this part of n.
+SMALL, NARROW = 32, 0.15
+#: Blocks that know how the matrices are kept, and those that take their places for bands.
+STANDS_FOR = {"factorise": "factorise_band", "structure_correction": "correct_band"}
+
+
+def band_order(start: Ints, index: Ints) -> tuple[Ints, int]:
+    """Place (n,) of each degree of freedom in a band, and its half-bandwidth; -1 where a dense matrix is cheaper.
+
+    ``start``, ``index``: the pattern by rows.
+    """
+    n = len(start) - 1
+    place = np.arange(n)
+    if n < SMALL:
+        return place, -1
+    row = np.repeat(place, np.diff(start))
+    pattern = csr_array((np.ones(len(index)), index, start), shape=(n, n))
+    found = reverse_cuthill_mckee(pattern.tocsr(), symmetric_mode=True)
+    place = np.empty(n, np.int64)
+    place[found] = np.arange(n)
+    half = int(np.abs(place[row] - place[index]).max(initial=0))
+    return place, half if 3 * half + 1 <= NARROW * n else -1
+
+
+def places_of(half: int, *further: str) -> Ints:
+    """Table of addresses of the blocks that a run needs with matrices kept so."""
+    names = [name for name in (*CORE, "structure_correction", *further) if half < 0 or name not in STANDS_FOR]
+    if half < 0:
+        return addresses(*names)
+    table = addresses(*names, *STANDS_FOR.values()).copy()
+    for name, stand_in in STANDS_FOR.items():
+        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
+    return table
