@@ -13,6 +13,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "_method": ["Method"],
         "_metrics": ["Metrics", "measure"],
         "_own": ["Own", "own_methods"],
+        "_own_laws": ["law_costs"],
         "_reference": ["Reference", "Transitions"],
         "_report": ["report", "report_body"],
         "_run": ["Run", "Setting"],

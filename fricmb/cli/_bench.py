@@ -16,6 +16,7 @@ from fricmb.bench import (
     Store,
     about,
     fingerprint,
+    law_costs,
     names,
     report,
     run,
@@ -42,6 +43,7 @@ def bench(options: argparse.Namespace) -> int:
         result = run(chosen, store, progress)
     if not options.quick and not options.scene:
         result["start_up"] = start_up_times()
+        result["own_laws"] = law_costs()
     _write(options.out, "report.html", report(result))
     _write(options.out, "result.json", json.dumps(result, indent=1))
     if options.json:

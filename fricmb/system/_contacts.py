@@ -27,6 +27,7 @@ from fricmb.scene import Contact, Joint
 from fricmb.system._motions import Motions
 from fricmb.system._structure import is_sparse
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
+from fricmb.system._try_law import try_law
 from fricmb.values import is_expression, value_of
 
 
@@ -102,6 +103,9 @@ class ContactArrays:
         labels = law.state_labels(self.labels[-1])
         self.z_start.append(self.z_start[-1] + len(labels))
         self.states.append(labels)
+        constant = template.is_constant(p)
+        if not constant:
+            try_law(law, f"{type(contact).__name__} {contact.name!r}", template, p, d, len(labels))
         if template.facts["kind"] == "smooth":
             self.law.append(LAW_SMOOTH)
             self.law_table.add(template.address, p)
@@ -112,7 +116,6 @@ class ContactArrays:
         limit = law.slip_limit(N) if template.at_rest is None else float(template.at_rest((*p, N)))
         mu_s = limit if law.static_path is None else float(law.numeric_slots()[law.static_path])
         _check_cone(contact, mu_s, limit)
-        constant = template.is_constant(p)
         self.law.append(LAW_CONSTANT if constant else LAW_COEFFICIENT)
         self.law_table.add(NO_TEMPLATE if constant else template.address, () if constant else p)
         self.mu_s.append(max(mu_s, limit))

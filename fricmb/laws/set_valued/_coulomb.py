@@ -23,6 +23,11 @@ class Coulomb(FrictionLaw):
     ------
     LawError
         If a coefficient is negative or not finite, or mu_k > mu_s.
+
+    References
+    ----------
+    C. A. Coulomb, Theorie des machines simples, Memoires de mathematique et de physique presentes a l'Academie des
+    Sciences 10 (1785) 161-331.
     """
 
     mu_s: Any

@@ -25,6 +25,11 @@ class HyperbolicStribeck(FrictionLaw):
     ------
     LawError
         If a value is outside its range.
+
+    References
+    ----------
+    R. I. Leine, D. H. van Campen, A. de Kraker, L. van den Steen, Stick-slip vibrations induced by alternate friction
+    models, Nonlinear Dynamics 16 (1998) 41-54.
     """
 
     mu_s: Any

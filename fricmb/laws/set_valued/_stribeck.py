@@ -27,6 +27,11 @@ class Stribeck(FrictionLaw):
     ------
     LawError
         If a value is outside its range.
+
+    References
+    ----------
+    L. C. Bo, D. Pavelescu, The friction-speed relation and its influence on the critical velocity of stick-slip motion,
+    Wear 82 (1982) 277-289 (the exponential curve with an exponent).
     """
 
     positive: ClassVar[tuple[str, ...]] = ("v_s", "exponent")
