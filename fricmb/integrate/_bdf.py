@@ -44,8 +44,8 @@ def calm(packed: Packed, y: State, h: float) -> bool:
 
 #: One-step steps to wait where BDF is not to be tried.
 NEVER = 1 << 60
-#: BDF steps after which the two methods are compared.
-PATIENCE = 16
+#: BDF steps after which the two methods are compared; first steps of the one-step method, in which its size settles.
+PATIENCE, SETTLE = 16, 8
 
 
 @kernel
@@ -153,6 +153,7 @@ class Bdf(Integrator):
         jacobian_at(run.packed, run.scratch, run.y, multi.fac)
         spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
         hist = history(problem, t_end - start.t, spectral, cost(problem, stages) / cost(problem, 1))
+        hist.status[4], hist.status[7] = SETTLE, 1
         if np.any(problem.contacts.law == LAW_SMOOTH):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:
             # as many steps of Radau are far more accurate there
