@@ -11,9 +11,12 @@ from fricmb.integrate._radau import Radau
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.collocation._prepare import is_single
 from fricmb.integrate.taylor import Taylor
+from fricmb.integrate.timestepping import TimeStepping
 
 #: Built-in integrators by the name that ``simulate(method=...)`` takes.
-integrators: dict[str, type[Integrator]] = {kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor)}
+integrators: dict[str, type[Integrator]] = {
+    kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor, TimeStepping)
+}
 
 
 def choose(problem: Problem) -> tuple[Integrator, str]:

@@ -260,6 +260,10 @@ FURTHER = (
     "structure_correction",
     "factorise_band",
     "correct_band",
+    "newton_band",
+    "newton_condensed",
+    "review_balls",
+    "take_step",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

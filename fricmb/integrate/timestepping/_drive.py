@@ -1,0 +1,294 @@
+"""The loop of a run: each step done whole and by halves, whose difference is the error; rows and transitions."""
+
+from __future__ import annotations
+
+import math
+
+from fricmb.integrate._kernel import entry, kernel
+from fricmb.integrate._problem import SLIP, STICK
+from fricmb.integrate.timestepping._free import length, set_signals, set_window
+from fricmb.integrate.timestepping._layout import (
+    END,
+    ERROR,
+    FIXED,
+    HERE,
+    LEEWAY,
+    LONGEST,
+    MIDDLE,
+    N_EVENTS,
+    N_REJECTED,
+    N_ROWS,
+    N_STEPS,
+    N_STOP,
+    N_UNSETTLED,
+    NOISE,
+    SAME,
+    SHORTEST,
+    STEP,
+    THERE,
+    TIME,
+    TOL,
+    WHOLE,
+)  # fmt: skip
+from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping._step import forces_at_start, take_step
+
+#: Why a run came back.
+DONE, FULL, NOT_FINITE = range(3)
+
+
+@kernel
+def set_leeway(run: Run) -> None:
+    """How much more than elsewhere the error may be where a transition falls into the step, into ``trial``.
+
+    There it is of second order and comes once; in smooth motion it is of third order and comes every step.
+    """
+    for i in range(run.trial.shape[0]):
+        run.trial[i] = 1.0
+    for c in range(run.status.shape[0]):
+        if run.what[WHOLE, c] >= 0 or run.what[MIDDLE, c] >= 0 or run.what[THERE, c] >= 0:
+            for a in range(run.row[c], run.row[c + 1]):
+                for e in range(run.w_start[a], run.w_start[a + 1]):
+                    run.trial[run.w_dof[e]] = run.x[LEEWAY]
+
+
+@kernel
+def holding_error(run: Run) -> float:
+    """Difference of the forces that hold contacts, relative to the largest limit."""
+    worst = 0.0
+    largest = 0.0
+    for c in range(run.status.shape[0]):
+        largest = max(largest, run.brake[c])
+        if run.mode[WHOLE, c] == STICK and run.mode[THERE, c] == STICK and run.mode[HERE, c] == STICK:
+            for a in range(run.row[c], run.row[c + 1]):
+                worst = max(worst, abs(run.ends[WHOLE, a] - run.ends[THERE, a]))
+    return worst / largest if largest > 0.0 else 0.0
+
+
+@kernel
+def step_error(run: Run) -> float:
+    """Difference of the whole step and the halves, over three times the tolerance of each signal."""
+    n = run.load.shape[0]
+    q, v = run.q[THERE], run.v[THERE]
+    most_q, most_v = 0.0, 0.0
+    for i in range(n):
+        run.top_q[i] = max(run.top_q[i], abs(q[i]))
+        run.top_v[i] = max(run.top_v[i], abs(v[i]))
+        most_q = max(most_q, run.top_q[i])
+        most_v = max(most_v, run.top_v[i])
+    set_leeway(run)
+    worst = 0.0
+    for i in range(n):
+        if most_q > 0.0:
+            scale = (run.top_q[i] + 0.01 * most_q + run.floor_q[i]) * run.trial[i]
+            worst = max(worst, abs(run.q[WHOLE, i] - q[i]) / scale)
+        if most_v > 0.0:
+            scale = (run.top_v[i] + 0.01 * most_v + run.floor_v[i]) * run.trial[i]
+            worst = max(worst, abs(run.v[WHOLE, i] - v[i]) / scale)
+    worst = max(worst, holding_error(run) / run.x[LEEWAY])
+    return float(worst / (3.0 * run.x[TOL]))
+
+
+@kernel
+def is_finite(run: Run) -> bool:
+    """Whether the new state is."""
+    total = 0.0
+    for i in range(run.load.shape[0]):
+        total += 0.0 * (run.q[THERE, i] + run.v[THERE, i])
+    return bool(total == 0.0)
+
+
+@kernel
+def copy_state(run: Run, source: int, target: int) -> None:
+    """One slot of the state into another."""
+    run.q[target, :] = run.q[source]
+    run.v[target, :] = run.v[source]
+    run.u[target, :] = run.u[source]
+    run.du[target, :] = run.du[source]
+    run.g[target, :] = run.g[source]
+    run.w[target, :] = run.w[source]
+    run.F[target, :] = run.F[source]
+    run.ends[target, :] = run.ends[source]
+    run.hold[target, :] = run.hold[source]
+    run.when[target, :] = run.when[source]
+    run.known[target, :] = run.known[source]
+    run.mode[target, :] = run.mode[source]
+    run.push[target, :] = run.push[source]
+
+
+@kernel
+def keep_row(run: Run, slot: int, normal: int, t: float) -> None:
+    """A row of the state, with the normal forces of slot ``normal``."""
+    k = run.i[N_ROWS]
+    run.row_t[k] = t
+    run.row_q[k, :] = run.q[slot]
+    run.row_v[k, :] = run.v[slot]
+    run.row_F[k, :] = run.ends[slot]
+    run.row_g[k, :] = run.g[slot]
+    run.row_N[k, :] = run.push[normal]
+    run.row_mode[k, :] = run.mode[slot]
+    run.row_loss[k, :] = run.total
+    run.row_x[k, 0] = run.spent[HERE, 0]
+    run.row_x[k, 1] = run.spent[HERE, 1]
+    run.i[N_ROWS] = k + 1
+
+
+@kernel
+def accept(run: Run, slot: int, t: float) -> None:
+    """Energies, transitions and the row of a step that ended in ``slot`` at t."""
+    if run.i[N_STEPS] == 0 and run.i[N_ROWS] == 0:
+        if run.x[SAME] == 0.0:
+            forces_at_start(run, slot)
+        keep_row(run, HERE, slot, run.x[TIME])
+    run.i[N_STEPS] += 1
+    for c in range(run.total.shape[0]):
+        run.total[c] += run.loss[slot, c]
+        if run.what[slot, c] >= 0:
+            e = run.i[N_EVENTS]
+            run.event[e, 0] = run.moment[slot, c]
+            run.event[e, 1] = c
+            run.event[e, 2] = run.what[slot, c]
+            run.i[N_EVENTS] = e + 1
+    run.spent[HERE, 0] += run.spent[slot, 0]
+    run.spent[HERE, 1] += run.spent[slot, 1]
+    keep_row(run, slot, slot, t)
+
+
+@kernel
+def on_ladder(h: float) -> float:
+    """The next smaller power of the square root of 2: halves of steps are steps, too."""
+    return float(2.0 ** (math.floor(2.0 * math.log2(h) + 1e-9) / 2.0))
+
+
+@kernel
+def next_length(run: Run) -> float:
+    """Length of the next step: to the next stop at most."""
+    left = run.stops[run.i[N_STOP]] - run.x[TIME]
+    fixed = run.x[FIXED]
+    h = fixed if fixed > 0.0 else on_ladder(min(run.x[STEP], run.x[LONGEST]))
+    if h >= left * (1.0 - 1e-9):
+        return float(left)
+    if fixed == 0.0 and h > 0.5 * left:
+        return float(0.5 * left)
+    return float(h)
+
+
+@kernel
+def adapt(run: Run, h: float, error: float, settled: bool) -> bool:
+    """Set the length of the next step; whether this one is accepted."""
+    if not settled:
+        run.x[STEP] = 0.25 * h
+        fine = h <= run.x[SHORTEST]
+    else:
+        factor = 0.9 * (error + 1e-12) ** (-1.0 / 3.0)
+        if error > 1.0:
+            factor = min(0.9 * error ** (-0.5), 0.5)
+        run.x[STEP] = h * min(2.0, max(0.1, factor))
+        fine = error <= 1.0 or h <= run.x[SHORTEST]
+    run.x[STEP] = max(run.x[STEP], run.x[SHORTEST])
+    if fine and (not settled or error > 1.0):
+        run.i[N_UNSETTLED] += 1
+    return bool(fine)
+
+
+@kernel
+def arrive(run: Run, t: float) -> None:
+    """Go on from the end of a step; behind a stop functions of time are those of the next interval."""
+    copy_state(run, THERE, HERE)
+    stop = run.stops[run.i[N_STOP]]
+    if t >= stop - 1e-14 * abs(stop) - 1e-300:
+        t = stop
+        run.i[N_STOP] += 1
+        if run.i[N_STOP] < run.stops.shape[0]:
+            run.x[TIME] = t
+            set_window(run, run.i[N_STOP])
+            jump(run, t)
+    run.x[TIME] = t
+
+
+@kernel
+def jump(run: Run, t: float) -> None:
+    """Signals behind a breakpoint; a belt whose velocity jumps ends what sticks."""
+    set_signals(run, HERE, t)
+    relative_velocities(run)
+    for c in range(run.mode.shape[1]):
+        if run.mode[HERE, c] == STICK:
+            for a in range(run.row[c], run.row[c + 1]):
+                if run.g[HERE, a] != 0.0:
+                    run.mode[HERE, c] = SLIP
+
+
+@kernel
+def relative_velocities(run: Run) -> None:
+    """G of the present state; what is round-off is 0."""
+    for c in range(run.mode.shape[1]):
+        row0 = run.row[c]
+        d = run.row[c + 1] - row0
+        size = run.x[NOISE]
+        for a in range(row0, row0 + d):
+            value = -run.w[HERE, a]
+            size = max(size, 1e-12 * abs(value))
+            for e in range(run.w_start[a], run.w_start[a + 1]):
+                part = run.w_coef[e] * run.v[HERE, run.w_dof[e]]
+                value += part
+                size = max(size, 1e-12 * abs(part))
+            run.g[HERE, a] = value
+        if length(run.g[HERE], row0, d) <= size or (run.mode[HERE, c] == STICK and size == 0.0):
+            for a in range(row0, row0 + d):
+                run.g[HERE, a] = 0.0
+
+
+@entry
+def begin(run: Run, given: bool) -> None:
+    """Signals, relative velocities and modes at the start."""
+    set_window(run, 0)
+    set_signals(run, HERE, run.x[TIME])
+    relative_velocities(run)
+    for c in range(run.mode.shape[1]):
+        row0 = run.row[c]
+        still = length(run.g[HERE], row0, run.row[c + 1] - row0) == 0.0
+        if not given or not still:
+            run.mode[HERE, c] = STICK if still else SLIP
+    if not given and run.mode.shape[1] > 0:
+        # what nothing can hold slips from the start
+        take_step(run, HERE, WHOLE, run.x[TIME], 1e-4 * run.x[STEP], run.places)
+        for c in range(run.mode.shape[1]):
+            if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == SLIP:
+                run.mode[HERE, c] = SLIP
+
+
+@entry
+def drive(run: Run) -> int:
+    """Step until the end, or until there is no room for rows or transitions."""
+    while True:
+        if run.x[TIME] >= run.x[END] or run.i[N_STOP] >= run.stops.shape[0]:
+            return DONE
+        room = run.i[N_ROWS] + 3 <= run.row_t.shape[0]
+        if not room or run.i[N_EVENTS] + 2 * run.mode.shape[1] > run.event.shape[0]:
+            return FULL
+        t = run.x[TIME]
+        h = next_length(run)
+        if run.x[FIXED] > 0.0:
+            if not take_step(run, HERE, THERE, t, h, run.places):
+                run.i[N_UNSETTLED] += 1
+            if not is_finite(run):
+                return NOT_FINITE
+            accept(run, THERE, t + h)
+            arrive(run, t + h)
+            continue
+        settled = take_step(run, HERE, WHOLE, t, h, run.places)
+        settled = take_step(run, HERE, MIDDLE, t, 0.5 * h, run.places) and settled
+        settled = take_step(run, MIDDLE, THERE, t + 0.5 * h, 0.5 * h, run.places) and settled
+        if not is_finite(run):
+            if h <= run.x[SHORTEST]:
+                return NOT_FINITE
+            run.x[STEP] = 0.25 * h
+            continue
+        error = step_error(run)
+        run.x[ERROR] = error
+        if adapt(run, h, error, settled):
+            accept(run, MIDDLE, t + 0.5 * h)
+            accept(run, THERE, t + h)
+            arrive(run, t + h)
+        else:
+            run.i[N_REJECTED] += 1

@@ -1,0 +1,232 @@
+"""The balls of a step: radius and centre of each contact's force from the law and from where its transition falls.
+
+The mean force of a step through a transition at the fraction s of it is s F_before + (1 - s) F_after.  A ball whose
+centre is moved says so to a problem that knows but one direction of slip, that at the end.  s comes from the contact
+alone, with its own compliance; the others enter through what they do to its velocity, so that s is right to O(h), the
+impulse to O(h^2).
+"""
+
+from __future__ import annotations
+
+import math
+
+from fricmb.integrate._call import call
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import LAW_COEFFICIENT, STICK, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.timestepping._free import length
+from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FREE, HELD, PASSED
+from fricmb.integrate.timestepping._run import Run
+
+#: Rounds in which a contact may still change between resting, passing and going on.
+DECIDING = 6
+
+
+@kernel
+def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
+    """mu(r, N) N."""
+    if run.law[c] != LAW_COEFFICIENT:
+        return float(run.mu_0[c] * N)
+    run.args[0] = speed
+    run.args[1] = N
+    call(run.laws.address[c], run.args, 0, run.laws.p, run.laws.p_start[c], run.out, 0)
+    return float(run.out[0] * N)
+
+
+@kernel
+def first_balls(run: Run, one: int, two: int) -> None:
+    """Status and ball of every contact at the beginning of a step."""
+    for c in range(run.status.shape[0]):
+        row0 = run.row[c]
+        d = run.row[c + 1] - row0
+        N = run.push[two, c]
+        speed = length(run.g[one], row0, d)
+        run.brake[c] = run.mu_s[c] * N
+        run.slide[c] = slide_radius(run, c, speed, N)
+        run.share[c] = 0.0
+        if run.mode[one, c] == STICK:
+            run.status[c] = HELD
+            run.rho[c] = run.brake[c]
+        else:
+            run.status[c] = FREE
+            run.rho[c] = run.slide[c]
+        for a in range(row0, row0 + d):
+            run.delta[a] = 0.0
+            run.away[a] = 0.0
+
+
+@kernel
+def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool:
+    """Whether the line through the last holding force and that of this step passes the limit before the end."""
+    gap = t + 0.5 * h - run.when[one, c]
+    if run.known[one, c] == 0 or gap <= 0.0:
+        return False
+    size = 0.0
+    for a in range(run.row[c], run.row[c + 1]):
+        size = math.hypot(size, run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a]))
+    return bool(size > run.brake[c])
+
+
+@kernel
+def break_away(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
+    """When the holding force reached its limit: on the line through the last one and that of this step.
+
+    ``away`` becomes the mean force less that of slip all along: (mean hold - slip) s, s the fraction held.
+    """
+    row0 = run.row[c]
+    d = run.row[c + 1] - row0
+    middle = t + 0.5 * h
+    limit = run.brake[c]
+    run.status[c] = BROKEN
+    for a in range(row0, row0 + d):
+        run.away[a] = run.F[two, a] - run.g[two, a] / run.soft[c]  # what would have held it
+    s = 0.0
+    gap = middle - run.when[one, c]
+    if run.known[one, c] == 1 and gap > 0.0:
+        aa, ab, bb = 0.0, 0.0, 0.0
+        for a in range(row0, row0 + d):
+            rise = run.away[a] - run.hold[one, a]
+            aa += rise * rise
+            ab += rise * run.hold[one, a]
+            bb += run.hold[one, a] ** 2
+        if bb < limit * limit and aa > 0.0:
+            x = (-ab + math.sqrt(max(0.0, ab * ab + aa * (limit * limit - bb)))) / aa
+            s = min(max((run.when[one, c] + x * gap - t) / h, -1.0), 1.0)
+            # half of what is held lies before the middle of the time held
+            y = x - 0.5 * max(s, 0.0) * h / gap
+            size = 0.0
+            for a in range(row0, row0 + d):
+                rise = run.away[a] - run.hold[one, a]
+                run.gf[a] = run.hold[one, a] + y * rise
+                run.away[a] = run.hold[one, a] + x * rise
+                size = math.hypot(size, run.away[a])
+            for a in range(row0, row0 + d):
+                slip = run.away[a] / size * run.slide[c]
+                run.away[a] = s * (run.gf[a] - slip)
+    else:
+        for a in range(row0, row0 + d):
+            run.away[a] = 0.0
+    run.share[c] = s
+
+
+@kernel
+def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
+    """A contact whose slip turns round or ends: whether it is held (CAUGHT) or goes on the other way (PASSED).
+
+    The path of g: straight under the sliding force to where it is nearest to zero, at the fraction s; then held by
+    ``away``, or driven on where that is more than friction can hold.
+    """
+    row0 = run.row[c]
+    d = run.row[c + 1] - row0
+    soft = run.soft[c]
+    g0 = length(run.g[one], row0, d)
+    ge, ee = 0.0, 0.0
+    for a in range(row0, row0 + d):
+        before = -run.slide[c] * run.g[one, a] / g0
+        end = run.g[two, a] + soft * (before - run.F[two, a])
+        change = end - run.g[one, a]
+        ge += run.g[one, a] * change
+        ee += change * change
+    s = min(max(-ge / ee, 0.0), 1.0 - 1e-9) if ee > 0.0 else 1.0 - 1e-9
+    for a in range(row0, row0 + d):
+        before = -run.slide[c] * run.g[one, a] / g0
+        holding = run.F[two, a] - run.g[two, a] / soft
+        run.away[a] = before + (holding - before) / (1.0 - s)
+    run.share[c] = s
+    run.status[c] = CAUGHT if length(run.away, row0, d) <= run.brake[c] else PASSED
+
+
+@kernel
+def choose_status(run: Run, one: int, two: int, c: int, t: float, h: float, turn: int) -> None:
+    """What a contact does in this step, from forces and relative velocities found so far."""
+    row0 = run.row[c]
+    d = run.row[c + 1] - row0
+    end = length(run.g[two], row0, d)
+    if run.status[c] == HELD:
+        if end > 0.0 or will_break(run, one, two, c, t, h):
+            break_away(run, one, two, c, t, h)
+        return
+    if run.status[c] == BROKEN or length(run.g[one], row0, d) == 0.0:
+        return
+    if turn >= DECIDING and not (run.status[c] == CAUGHT and end > 0.0):
+        return
+    along = 0.0
+    for a in range(row0, row0 + d):
+        along += run.g[one, a] * run.g[two, a]
+    if along > 0.0 and run.status[c] != PASSED:
+        run.status[c] = FREE
+    else:
+        come_to_rest(run, one, two, c)
+        if run.status[c] == PASSED and d == 1 and run.share[c] >= 1.0 - 2e-9:
+            run.status[c] = FREE
+
+
+@kernel
+def turned(run: Run, one: int, two: int, c: int) -> bool:
+    """Centre for a direction of slip that turns in the step: mean force along the middle velocity."""
+    row0 = run.row[c]
+    e0, e1 = run.g[two, row0], run.g[two, row0 + 1]
+    m0, m1 = 0.5 * (e0 + run.g[one, row0]), 0.5 * (e1 + run.g[one, row0 + 1])
+    end, middle = math.hypot(e0, e1), math.hypot(m0, m1)
+    if min(end, min(middle, length(run.g[one], row0, 2))) <= 2.0 * run.soft[c] * run.rho[c]:
+        return False
+    run.delta[row0] = run.rho[c] * (e0 / end - m0 / middle)
+    run.delta[row0 + 1] = run.rho[c] * (e1 / end - m1 / middle)
+    return True
+
+
+@kernel
+def mean_speed(run: Run, one: int, two: int, c: int) -> float:
+    """Slip speed at which the coefficient of the step is taken."""
+    row0 = run.row[c]
+    d = run.row[c + 1] - row0
+    start, end = length(run.g[one], row0, d), length(run.g[two], row0, d)
+    if run.status[c] != FREE or start == 0.0:
+        s = run.share[c] if run.status[c] != BROKEN else 0.0
+        return float(0.5 * (s * start + (1.0 - s) * end))
+    total = 0.0
+    for a in range(row0, row0 + d):
+        total += (0.5 * (run.g[one, a] + run.g[two, a])) ** 2
+    return math.sqrt(total)
+
+
+@block
+def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, places: Ints) -> float:
+    """New balls from what was found; returns their largest change relative to the largest radius."""
+    worst = 0.0
+    largest = 1e-300
+    for c in range(run.status.shape[0]):
+        row0 = run.row[c]
+        d = run.row[c + 1] - row0
+        N = run.push[two, c]
+        run.brake[c] = run.mu_s[c] * N
+        largest = max(largest, run.brake[c])
+        old = run.rho[c]
+        old0 = run.delta[row0]
+        old1 = run.delta[row0 + d - 1]
+        choose_status(run, one, two, c, t, h, turn)
+        status = run.status[c]
+        if status in (HELD, CAUGHT):
+            run.rho[c] = run.brake[c]
+            if status == CAUGHT:
+                run.slide[c] = slide_radius(run, c, mean_speed(run, one, two, c), N)
+            for a in range(row0, row0 + d):
+                run.delta[a] = 0.0
+        else:
+            run.slide[c] = slide_radius(run, c, mean_speed(run, one, two, c), N)
+            run.rho[c] = run.slide[c]
+            s = run.share[c]
+            size = length(run.away, row0, d)
+            for a in range(row0, row0 + d):
+                run.delta[a] = 0.0
+                if status == BROKEN:
+                    run.delta[a] = run.away[a]
+                elif status == PASSED:
+                    before = -run.slide[c] * run.g[one, a] / length(run.g[one], row0, d)
+                    after = run.slide[c] * run.away[a] / size
+                    run.delta[a] = s * (before - after)
+            if status == FREE and d == 2:
+                turned(run, one, two, c)
+        change = abs(run.rho[c] - old) + abs(run.delta[row0] - old0) + abs(run.delta[row0 + d - 1] - old1)
+        worst = max(worst, change)
+    return float(worst / largest)

@@ -1,0 +1,209 @@
+"""The integrator: options, step from the tolerance, the run, what is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._problem import Floats, Problem, Start
+from fricmb.integrate._trajectory import Counters, Samples, Transitions
+from fricmb.integrate.timestepping._drive import FULL, NOT_FINITE, begin, drive
+from fricmb.integrate.timestepping._layout import (
+    BAND,
+    CONDENSED,
+    END,
+    FIXED,
+    HERE,
+    LEEWAY,
+    LONGEST,
+    N_EVENTS,
+    N_FACTOR,
+    N_NEWTON,
+    N_REJECTED,
+    N_ROUNDS,
+    N_ROWS,
+    N_STEPS,
+    N_UNSETTLED,
+    RESIDUAL,
+    SAME,
+    SETTLED,
+    SHORTEST,
+    STEP,
+    TIME,
+    TOL,
+    VARYING,
+)  # fmt: skip
+from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
+from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
+
+#: Errors of a step: TIGHT rtol^(3/2) in smooth motion (third order, so that their sum goes with rtol), LOOSE rtol where
+#: a transition falls into it.
+TIGHT, LOOSE = 3.0, 1.0
+#: Numbers in the room for rows.
+ROOM = 2e6
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimeStepping(Integrator):
+    """Implicit steps of second order over all transitions, all contacts solved together over their cones.
+
+    For scenes with more transitions than can be located one by one, and for large scenes of any kind: any linear
+    structure, contacts of one or two directions, constant or speed-dependent coefficients, varying normal forces.
+
+    Attributes
+    ----------
+    fixed_step : float or None
+        Length of all steps, without control of the error; None: from the tolerance.
+    residual : float
+        Of the contact problem of a step, |F - P(F - g/d)| over the largest mu N; 1e-14 to 1e-3.
+    contacts : str or None
+        "band": in the band of the structure; "condensed": by their responses; None: the cheaper.
+    """
+
+    fixed_step: float | None = None
+    residual: float = 1e-10
+    contacts: str | None = None
+
+    name: ClassVar[str] = "timestepping"
+    order: ClassVar[str] = "2"
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports"})
+    pauses: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        h = self.fixed_step
+        if h is not None and not (isinstance(h, int | float) and 0.0 < h < np.inf):
+            raise SceneError(f"TimeStepping: fixed_step: got {h!r}; expected a positive time or None")
+        if not (isinstance(self.residual, float) and 1e-14 <= self.residual <= 1e-3):
+            raise SceneError(f"TimeStepping: residual: got {self.residual!r}; expected a number from 1e-14 to 1e-3")
+        if self.contacts not in (None, "band", "condensed"):
+            raise SceneError(f"TimeStepping: contacts: got {self.contacts!r}; expected 'band', 'condensed' or None")
+
+    def refuses(self, problem: Problem) -> str | None:
+        """Why this integrator cannot run the problem, or None."""
+        general = super().refuses(problem)
+        if general is not None:
+            return general
+        reason = refusal(problem)
+        return None if reason is None else f"timestepping: {reason}"
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> SteppedRun:
+        """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
+        width = 2 * problem.n + 2 * problem.m + 2 * problem.n_c + 4
+        capacity = int(np.clip(ROOM / width, 8, 1024))
+        run, condensed, band = run_of(problem, self.contacts, capacity)
+        run.i[CONDENSED], run.i[BAND] = int(condensed), band
+        run = self._set_start(problem, run, start, t_end, tolerance)
+        begin(run, start.mode is not None)
+        chunks: list[dict[str, Any]] = []
+        held = 0
+        code = FULL
+        while code == FULL and (memory is None or held < memory):
+            code = drive(run)
+            chunks.append(_emptied(run))
+            held += 8 * width * len(chunks[-1]["row_t"])
+            if progress is not None:
+                progress(float(run.x[TIME]))
+        failure = "the state grew beyond what numbers hold" if code == NOT_FINITE else None
+        return _trajectory(problem, run, chunks, failure)
+
+    def _set_start(self, problem: Problem, run: Run, start: Start, t_end: float, tolerance: Tolerance) -> Run:
+        run.q[HERE], run.v[HERE] = start.q, start.v
+        if start.mode is not None:
+            run.mode[HERE] = start.mode
+        if isinstance(start, SteppedStart):
+            for name in _HELD:
+                getattr(run, name)[HERE] = getattr(start, name)
+        run.top_q[:], run.top_v[:] = np.abs(start.q), np.abs(start.v)
+        if tolerance.atol_q is not None:
+            run.floor_q[:] = tolerance.atol_q / tolerance.rtol
+        if tolerance.atol_v is not None:
+            run.floor_v[:] = tolerance.atol_v / tolerance.rtol
+        _add_floors(run, t_end - start.t)
+        breaks = problem.signals.breakpoints
+        inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
+        span = t_end - start.t
+        fastest = float(np.max(problem.omega, initial=0.0))
+        x = run.x
+        x[TIME], x[END], x[RESIDUAL] = start.t, t_end, self.residual
+        x[TOL], x[LEEWAY] = TIGHT * tolerance.rtol**1.5, LOOSE / (TIGHT * tolerance.rtol**0.5)
+        x[LONGEST], x[SHORTEST], x[FIXED] = span, 1e-9 * span, self.fixed_step or 0.0
+        x[STEP] = min(0.01 * span, 0.3 / fastest) if fastest > 0.0 else 0.01 * span
+        x[SETTLED] = 1e-10 if self.fixed_step else min(1e-4, 0.01 * tolerance.rtol)
+        x[SAME] = float(isinstance(start, SteppedStart))
+        run.i[VARYING] = int(run.var.any())
+        return with_arrays(run, stops=np.append(inside, t_end))
+
+
+def _add_floors(run: Run, span: float) -> None:
+    """Scales of velocity and position that friction brings about in a radian of the fastest mode, a tenth of them."""
+    rows = np.repeat(np.arange(len(run.load)), np.diff(run.start))
+    mass = np.bincount(rows, run.mass * (rows == run.column), len(run.load))
+    fastest = np.sqrt(np.max(np.bincount(rows, np.abs(run.stiff), len(run.load)) / mass, initial=0.0))
+    time = min(0.1 * span, 1.0 / fastest) if fastest > 0.0 else 0.1 * span
+    normal = np.where(run.var == 1, 0.0, run.N)
+    row_of = np.repeat(np.arange(len(run.row) - 1), np.diff(run.row))
+    contact = np.repeat(row_of, np.diff(run.w_start))
+    push = np.zeros(len(run.load))
+    np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (run.mu_s * normal)[contact])
+    largest = float(np.max(push / mass, initial=0.0))
+    run.floor_v += 0.1 * largest * time
+    run.floor_q += 0.1 * largest * time**2
+
+
+_HELD = ("F", "ends", "hold", "when", "known")
+_ROWS = ("row_t", "row_q", "row_v", "row_F", "row_g", "row_N", "row_mode", "row_loss", "row_x")
+
+
+def _emptied(run: Run) -> dict[str, Any]:
+    """What the room for rows and transitions holds, taken out of it."""
+    rows, events = int(run.i[N_ROWS]), int(run.i[N_EVENTS])
+    taken = {name: getattr(run, name)[:rows].copy() for name in _ROWS}
+    taken["event"] = run.event[:events].copy()
+    run.i[N_ROWS], run.i[N_EVENTS] = 0, 0
+    return taken
+
+
+def _trajectory(problem: Problem, run: Run, chunks: list[dict[str, Any]], failure: str | None) -> SteppedRun:
+    whole = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in (*_ROWS, "event")}
+    event = whole["event"][np.argsort(whole["event"][:, 0], kind="stable")]
+    transitions = Transitions(t=event[:, 0].copy(), contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
+    rows = Samples(
+        t=whole["row_t"], q=whole["row_q"].T, v=whole["row_v"].T, z=np.empty((0, len(whole["row_t"]))),
+        F=whole["row_F"].T, g=whole["row_g"].T, N=whole["row_N"].T, mode=whole["row_mode"].T,
+        friction_loss=whole["row_loss"].T, damping_loss=whole["row_x"][:, 0].copy(), input=whole["row_x"][:, 1].copy(),
+    )  # fmt: skip
+    i = run.i
+    notes: tuple[str, ...] = ()
+    if i[N_UNSETTLED]:
+        notes = (f"{i[N_UNSETTLED]} of {i[N_STEPS]} steps were taken though their error or lag is above the tolerance",)
+    counters = Counters(
+        n_steps=int(i[N_STEPS]), n_rejected=int(i[N_REJECTED]), n_rhs=int(i[N_ROUNDS]), n_jac=int(i[N_NEWTON]),
+        n_lu=int(i[N_FACTOR]), notes=notes,
+    )  # fmt: skip
+    direction = np.zeros(problem.m)
+    row = problem.contacts.row
+    for k in range(problem.n_c):
+        part = run.g[HERE, row[k] : row[k + 1]]
+        direction[row[k] : row[k + 1]] = part / (np.linalg.norm(part) or 1.0)
+    end = SteppedStart(
+        t=float(run.x[TIME]), q=run.q[HERE].copy(), v=run.v[HERE].copy(), z=np.zeros(0), mode=run.mode[HERE].copy(),
+        direction=direction, **{name: getattr(run, name)[HERE].copy() for name in _HELD},
+    )  # fmt: skip
+    return SteppedRun(problem, rows, transitions, counters, end, failure)

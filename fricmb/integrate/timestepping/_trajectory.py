@@ -1,0 +1,104 @@
+"""A run kept as its steps: between them velocities are straight lines, displacements parabolas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate._problem import SLIP, Codes, Floats, Problem, Start
+from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteppedStart(Start):
+    """A start that knows what held its contacts last: ``F``, ``ends``, ``hold`` (m,), ``when``, ``known`` (n_c,)."""
+
+    F: Floats
+    ends: Floats
+    hold: Floats
+    when: Floats
+    known: Codes
+
+
+class SteppedRun(Trajectory):
+    """Rows are the ends of steps."""
+
+    def __init__(
+        self, problem: Problem, rows: Samples, transitions: Transitions, counters: Counters, end: Start,
+        failure: str | None,
+    ) -> None:  # fmt: skip
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._rows = rows
+
+    @property
+    def t(self) -> Floats:
+        """Ends of the steps."""
+        return self._rows.t
+
+    def rows(self) -> Samples:
+        """Values there."""
+        return self._rows
+
+    def sample(self, t: Floats) -> Samples:
+        """Values at any times within the run."""
+        rows = self._rows
+        t = np.ascontiguousarray(t, dtype=float)
+        if len(rows.t) < 2:
+            return _take(rows, np.zeros(len(t), dtype=int), t)
+        at = np.searchsorted(rows.t, t, side="right") - 1
+        k = np.clip(at, 0, len(rows.t) - 2)
+        h = rows.t[k + 1] - rows.t[k]
+        s = (t - rows.t[k]) / h
+
+        def line(x: Floats) -> Floats:
+            left = x[..., k]
+            return left + s * (x[..., k + 1] - left)
+
+        v0 = rows.v[:, k]
+        q = rows.q[:, k] + h * (s * v0 + 0.5 * s * s * (rows.v[:, k + 1] - v0))
+        g = line(rows.g)
+        return Samples(
+            t=t, q=q, v=line(rows.v), z=np.empty((0, len(t))), F=self._forces(k, s, g), g=g,
+            N=rows.N[:, k + 1], mode=rows.mode[:, np.clip(at, 0, len(rows.t) - 1)],
+            friction_loss=self._losses(k, s), damping_loss=line(rows.damping_loss), input=line(rows.input),
+        )  # fmt: skip
+
+    def _losses(self, k: np.ndarray, s: Floats) -> Floats:
+        """Friction losses within steps: in proportion to the way slipped."""
+        rows = self._rows
+        left = rows.friction_loss[:, k]
+        r0, r1 = self._speeds(k), self._speeds(k + 1)
+        way = 0.5 * (r0 + r1)
+        share = np.where(way > 0.0, (s * r0 + 0.5 * s * s * (r1 - r0)) / np.where(way > 0.0, way, 1.0), s)
+        return left + share * (rows.friction_loss[:, k + 1] - left)
+
+    def _speeds(self, k: np.ndarray) -> Floats:
+        """Slip speeds (n_c, n_t) in rows."""
+        first = self.problem.contacts.row[:-1]
+        squares = self._rows.g[:, k] ** 2
+        return np.sqrt(np.add.reduceat(squares, first, axis=0) if len(first) else squares)
+
+    def _forces(self, k: np.ndarray, s: Floats, g: Floats) -> Floats:
+        """Forces within steps: lines where a contact's mode stays, along the slip; else those before the transition."""
+        rows, row = self._rows, self.problem.contacts.row
+        if len(row) < 2:
+            return rows.F[:, k]
+        owner = np.repeat(np.arange(self.problem.n_c), np.diff(row))
+        mine, mode = rows.F[:, k], rows.mode[:, k]
+        same = (mode == rows.mode[:, k + 1])[owner]
+        found: Floats = mine + np.where(same, s, 0.0) * (rows.F[:, k + 1] - mine)
+        size = np.sqrt(np.add.reduceat(found**2, row[:-1], axis=0))[owner]
+        speed = np.sqrt(np.add.reduceat(g**2, row[:-1], axis=0))[owner]
+        along = (mode == SLIP)[owner] & (speed > 0.0)
+        return np.where(along, -size * g / np.where(speed > 0.0, speed, 1.0), found)
+
+
+def _take(rows: Samples, k: np.ndarray, t: Floats) -> Samples:
+    taken: dict[str, Any] = {name: getattr(rows, name)[..., k] for name in Samples.__dataclass_fields__}
+    return Samples(**{**taken, "t": t})
