@@ -10,6 +10,7 @@ from fricmb.integrate.timestepping._free import length, set_signals, set_window
 from fricmb.integrate.timestepping._layout import (
     END,
     ERROR,
+    FAULT,
     FIXED,
     HERE,
     LEEWAY,
@@ -34,7 +35,7 @@ from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._step import forces_at_start, take_step
 
 #: Why a run came back.
-DONE, FULL, NOT_FINITE = range(3)
+DONE, FULL, NOT_FINITE, NEGATIVE = range(4)
 
 
 @kernel
@@ -273,6 +274,8 @@ def drive(run: Run) -> int:
                 run.i[N_UNSETTLED] += 1
             if not is_finite(run):
                 return NOT_FINITE
+            if run.x[FAULT] == 1.0:
+                return NEGATIVE
             accept(run, THERE, t + h)
             arrive(run, t + h)
             continue
@@ -287,6 +290,8 @@ def drive(run: Run) -> int:
         error = step_error(run)
         run.x[ERROR] = error
         if adapt(run, h, error, settled):
+            if run.x[FAULT] == 1.0:
+                return NEGATIVE
             accept(run, MIDDLE, t + 0.5 * h)
             accept(run, THERE, t + h)
             arrive(run, t + h)

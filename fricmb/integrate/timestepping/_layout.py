@@ -2,8 +2,9 @@
 
 # x: present time; step; end of the run; tolerance; stated residual of the contacts; longest and shortest step; fixed
 # step or 0; error of the last step; change of the lagged terms that is none; relative velocities below NOISE are
-# round-off; whether the run goes on from another; leeway of steps with transitions
-TIME, STEP, END, TOL, RESIDUAL, LONGEST, SHORTEST, FIXED, ERROR, SETTLED, NOISE, SAME, LEEWAY = range(13)
+# round-off; whether the run goes on from another; leeway of steps with transitions;
+# whether a coefficient of friction is negative where a step ends
+TIME, STEP, END, TOL, RESIDUAL, LONGEST, SHORTEST, FIXED, ERROR, SETTLED, NOISE, SAME, LEEWAY, FAULT = range(14)
 # i: accepted and rejected steps; rounds, Newton iterations, factorisations; rows and events in the room; next stop;
 # whether the contacts are solved condensed; half band width; whether normal forces vary; steps not settled
 N_STEPS, N_REJECTED, N_ROUNDS, N_NEWTON, N_FACTOR, N_ROWS, N_EVENTS, N_STOP, CONDENSED, BAND, VARYING, N_UNSETTLED = (

@@ -15,7 +15,7 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import LAW_COEFFICIENT, STICK, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate.timestepping._free import length
-from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FREE, HELD, PASSED
+from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FAULT, FREE, HELD, PASSED
 from fricmb.integrate.timestepping._run import Run
 
 #: Rounds in which a contact may still change between resting, passing and going on.
@@ -24,13 +24,15 @@ DECIDING = 6
 
 @kernel
 def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
-    """mu(r, N) N."""
+    """mu(r, N) N; 0 where that is negative, through which iterates may pass."""
     if run.law[c] != LAW_COEFFICIENT:
         return float(run.mu_0[c] * N)
     run.args[0] = speed
     run.args[1] = N
     call(run.laws.address[c], run.args, 0, run.laws.p, run.laws.p_start[c], run.out, 0)
-    return float(run.out[0] * N)
+    if run.out[0] < 0.0:
+        run.x[FAULT] = 1.0
+    return float(max(0.0, run.out[0]) * N)
 
 
 @kernel

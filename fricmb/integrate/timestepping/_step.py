@@ -27,7 +27,17 @@ from fricmb.integrate.timestepping._free import (
     set_signals,
     structure_forces,
 )
-from fricmb.integrate.timestepping._layout import CAUGHT, CONDENSED, HELD, HERE, N_ROUNDS, PASSED, SETTLED, VARYING
+from fricmb.integrate.timestepping._layout import (
+    CAUGHT,
+    CONDENSED,
+    FAULT,
+    HELD,
+    HERE,
+    N_ROUNDS,
+    PASSED,
+    SETTLED,
+    VARYING,
+)
 from fricmb.integrate.timestepping._review import first_balls, review_balls, slide_radius
 from fricmb.integrate.timestepping._run import Run
 
@@ -72,6 +82,7 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
         if change <= run.x[SETTLED]:
             settled = True
             break
+    run.x[FAULT] = 0.0  # what counts is where the step ends
     keep_end(run, one, two, t, h)
     return settled
 

@@ -12,7 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._problem import Floats, Problem, Start
 from fricmb.integrate._trajectory import Counters, Samples, Transitions
-from fricmb.integrate.timestepping._drive import FULL, NOT_FINITE, begin, drive
+from fricmb.integrate.timestepping._drive import FULL, NEGATIVE, NOT_FINITE, begin, drive
 from fricmb.integrate.timestepping._layout import (
     BAND,
     CONDENSED,
@@ -42,6 +42,10 @@ from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
 
+FAILURES = {
+    NOT_FINITE: "the state grew beyond what numbers hold",
+    NEGATIVE: "the coefficient of a friction law is negative at the slip speed reached: friction would drive",
+}
 #: Errors of a step: TIGHT rtol^(3/2) in smooth motion (third order, so that their sum goes with rtol), LOOSE rtol where
 #: a transition falls into it.
 TIGHT, LOOSE = 3.0, 1.0
@@ -120,8 +124,7 @@ class TimeStepping(Integrator):
             held += 8 * width * len(chunks[-1]["row_t"])
             if progress is not None:
                 progress(float(run.x[TIME]))
-        failure = "the state grew beyond what numbers hold" if code == NOT_FINITE else None
-        return _trajectory(problem, run, chunks, failure)
+        return _trajectory(problem, run, chunks, FAILURES.get(code))
 
     def _set_start(self, problem: Problem, run: Run, start: Start, t_end: float, tolerance: Tolerance) -> Run:
         run.q[HERE], run.v[HERE] = start.q, start.v
@@ -163,8 +166,8 @@ def _add_floors(run: Run, span: float) -> None:
     push = np.zeros(len(run.load))
     np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (run.mu_s * normal)[contact])
     largest = float(np.max(push / mass, initial=0.0))
-    run.floor_v += 0.1 * largest * time
-    run.floor_q += 0.1 * largest * time**2
+    run.floor_v[:] += 0.1 * largest * time
+    run.floor_q[:] += 0.1 * largest * time**2
 
 
 _HELD = ("F", "ends", "hold", "when", "known")
