@@ -66,14 +66,14 @@ class Outcome:
 PATIENCE, TRIES = 0.5, 7
 
 
-def measure_cell(case: SceneCase, method: Method, setting: Setting) -> Outcome:
+def measure_cell(case: SceneCase, method: Method, setting: Setting, patience: float = PATIENCE) -> Outcome:
     """Run a cell: once with everything recorded, then for the time; a failure is an outcome."""
     known: dict[str, Any] = {"case": case.name, "method": method.name, "setting": setting, "peer": method.peer}
     try:
         with CompileWatch() as watch:
             run = method.run(case, setting, detail=True)
         metrics = measure(run, case.reference(), rows_of(case))
-        seconds, memory = _timed(case, method, setting)
+        seconds, memory = _timed(case, method, setting, patience)
     except (FricmbError, ArithmeticError, ValueError, RuntimeError, MemoryError) as error:
         return Outcome(**known, failure=one_line(error))
     return Outcome(
@@ -95,15 +95,15 @@ def rows_of(case: SceneCase) -> tuple[int, ...]:
     return tuple(len(axes) for axes in build(case.build()).contact_axes)
 
 
-def _timed(case: SceneCase, method: Method, setting: Setting) -> tuple[float, float | None]:
+def _timed(case: SceneCase, method: Method, setting: Setting, patience: float) -> tuple[float, float | None]:
     """Least processor time of several runs, and the rise of resident memory in the first of them."""
     before = _resident(reset=True)
     times: list[float] = []
     memory = None
-    while not times or (sum(times) < PATIENCE and len(times) < TRIES):
+    while not times or (sum(times) < patience and len(times) < TRIES):
         begin = time.process_time()
-        method.run(case, setting, detail=False)
-        times.append(time.process_time() - begin)
+        run = method.run(case, setting, detail=False)
+        times.append(time.process_time() - begin if run.seconds is None else run.seconds)
         highest = _resident(reset=False)
         if before is not None and highest is not None and len(times) == 1:
             memory = max(0.0, highest - before)

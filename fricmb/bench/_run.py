@@ -39,6 +39,8 @@ class Run:
         Of n_steps, n_rejected, n_rhs, n_jac, n_lu what the method counts.
     used : str
         The integrator that ran, where the method left the choice to the package.
+    seconds : float or None
+        Processor time of the solver, where it runs in another process.
     """
 
     q: Floats
@@ -49,3 +51,4 @@ class Run:
     energy: float | None = None
     counters: dict[str, int] = field(default_factory=dict)
     used: str = ""
+    seconds: float | None = None

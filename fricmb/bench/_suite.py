@@ -14,15 +14,18 @@ from typing import Any
 
 import fricmb as fm
 from fricmb.bench._case import SceneCase
-from fricmb.bench._cell import Outcome, measure_cell
+from fricmb.bench._cell import PATIENCE, Outcome, measure_cell
 from fricmb.bench._dae_methods import dae_methods, measure_dae
 from fricmb.bench._daes import dae_cases
+from fricmb.bench._exudyn import exudyn_methods
 from fricmb.bench._method import Method
+from fricmb.bench._numbalsoda import numbalsoda_methods
 from fricmb.bench._orders import configurations, measure_order
 from fricmb.bench._own import own_methods
 from fricmb.bench._run import Setting
 from fricmb.bench._scenes import SCENES
 from fricmb.bench._scipy import scipy_methods
+from fricmb.bench._siconos import siconos_methods
 from fricmb.bench._size import SIZES, measure_size, size_methods
 from fricmb.bench._store import Store
 from fricmb.bench._sundials import sundials_methods
@@ -80,8 +83,30 @@ class Cell:
 
 def methods(quick: bool) -> list[Method]:
     """Integrators of fricmb, then the solvers of others that are installed."""
-    peers = [*scipy_methods(), *sundials_methods()]
-    return [*own_methods(), *([p for p in peers if p.name in ("scipy LSODA", "CVODE")] if quick else peers)]
+    if quick:
+        peers = [peer for peer in (*scipy_methods(), *sundials_methods()) if peer.name in ("scipy LSODA", "CVODE")]
+    else:
+        peers = [peer for adapters in _ADAPTERS.values() for peer in adapters()]
+    return [*own_methods(), *peers]
+
+
+#: Adapters by what has to be installed for them.
+_ADAPTERS: dict[str, Callable[[], list[Method]]] = {
+    "scipy": scipy_methods,
+    "scikit-sundae": sundials_methods,
+    "numbalsoda": numbalsoda_methods,
+    "exudyn": exudyn_methods,
+    "siconos (or FRICMB_SICONOS, the interpreter that has it)": siconos_methods,
+}
+
+
+def missing() -> list[dict[str, str]]:
+    """Peers that are left out, and what they need (case, method, why)."""
+    return [
+        {"case": "every scene", "method": name.split()[0], "why": f"not installed: {name}"}
+        for name, adapters in _ADAPTERS.items()
+        if not adapters()
+    ]
 
 
 def names() -> list[str]:
@@ -93,7 +118,7 @@ def names() -> list[str]:
 def plan(options: Options) -> tuple[list[Cell], list[dict[str, str]]]:
     """The cells in order, and the refusals (case, method, why)."""
     cells: list[Cell] = []
-    refusals: list[dict[str, str]] = []
+    refusals = [] if options.quick else missing()
     for case in SCENES:
         if not options.wants(case.name, case.quick):
             continue
@@ -119,7 +144,16 @@ def plan(options: Options) -> tuple[list[Cell], list[dict[str, str]]]:
     return cells, refusals
 
 
-def measure_named(cell: Cell) -> dict[str, Any]:
+def compile_named(cell: Cell) -> None:
+    """Run what a cell compiles, once and without measuring."""
+    if cell.family != "scene":
+        measure_named(cell, patience=0.0)
+        return
+    case: SceneCase = next(case for case in SCENES if case.name == cell.case)
+    next(method for method in methods(False) if method.name == cell.method).run(case, cell.setting, detail=False)
+
+
+def measure_named(cell: Cell, patience: float = PATIENCE) -> dict[str, Any]:
     """Measure a cell (in whatever process); a plain dict."""
     if cell.family == "order":
         return measure_order(cell.method)
@@ -131,7 +165,7 @@ def measure_named(cell: Cell) -> dict[str, Any]:
         return measure_dae(dae, solver, cell.setting).as_dict()
     case: SceneCase = next(case for case in SCENES if case.name == cell.case)
     method = next(method for method in methods(False) if method.name == cell.method)
-    return measure_cell(case, method, cell.setting).as_dict()
+    return measure_cell(case, method, cell.setting, patience).as_dict()
 
 
 def run(options: Options, store: Store, progress: Progress | None = None) -> dict[str, Any]:
@@ -148,7 +182,7 @@ def run(options: Options, store: Store, progress: Progress | None = None) -> dic
                 progress(i, len(cells), f"{cell.case}, {cell.method}")
             value = store.get(cell.key)
             if value is None:
-                value = _measured(worker, cell, options.limit, cell.row in given_up)
+                value = _measured(worker, cell, options, cell.row in given_up)
                 store.put(cell.key, value)
             if "not done after" in value.get("failure", ""):
                 given_up.add(cell.row)
@@ -169,15 +203,16 @@ def _warming(cells: list[Cell]) -> list[tuple[Callable[..., Any], tuple[Any, ...
     first: dict[tuple[str, str], Cell] = {}
     for cell in cells:
         first.setdefault((cell.family, cell.method.partition(",")[0]), cell)
-    return [(measure_named, (cell,)) for cell in first.values()]
+    return [(compile_named, (cell,)) for cell in first.values()]
 
 
-def _measured(worker: Worker, cell: Cell, limit: float, given_up: bool) -> dict[str, Any]:
+def _measured(worker: Worker, cell: Cell, options: Options, given_up: bool) -> dict[str, Any]:
     try:
         if given_up:
             raise CellEnded("not tried: an easier setting was not done after the time limit")
-        patience = 3.0 * limit if cell.family == "size" else limit  # a size is run once, and the last one counts
-        value: dict[str, Any] = worker.run(measure_named, cell, limit=patience)
+        # a size is run once, and the last one counts
+        limit = 3.0 * options.limit if cell.family == "size" else options.limit
+        value: dict[str, Any] = worker.run(measure_named, cell, 0.1 if options.quick else PATIENCE, limit=limit)
         return value
     except CellEnded as error:
         failure = str(error)
@@ -205,7 +240,8 @@ def about(options: Options) -> dict[str, Any]:
         "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         "python": platform.python_version(),
         "versions": {"fricmb": fm.__version__, "numpy": numpy.__version__, "scipy": scipy.__version__,
-                     "numba": numba.__version__, "scikit-sundae": _version("scikit-sundae")},
+                     "numba": numba.__version__,
+                     **{name: _version(name) for name in ("scikit-sundae", "numbalsoda", "exudyn")}},
         "quick": options.quick, "limit": options.limit,
     }  # fmt: skip
 

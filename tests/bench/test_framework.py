@@ -296,6 +296,19 @@ def test_the_tolerance_statistic_lists_what_is_outside():
     assert found["within"] == pytest.approx(1 / 3)
     assert found["not_above"] == pytest.approx(2 / 3)
     assert [row["ratio"] for row in found["exceptions"]] == [pytest.approx(5e3), pytest.approx(1e-3)]
+    assert found["fair"] == pytest.approx(1 / 3)  # no steps are known
+
+
+def test_accuracy_that_costs_nothing_is_told_from_waste():
+    def run(rtol, steps, error):
+        made = cell("auto", 1.0, error)
+        return {**made, "setting": {**made["setting"], "rtol": rtol}, "counters": {"n_steps": steps}}
+
+    exact = [run(1e-3, 40, 1e-12), run(1e-6, 44, 1e-12), run(1e-9, 80, 1e-12)]
+    found = tolerance_statistic(exact)
+    assert found["within"] == pytest.approx(0.0)
+    assert found["fair"] == pytest.approx(2 / 3)
+    assert [row["rtol"] for row in found["exceptions"] if row["why"] == "more accurate than asked"] == [1e-9]
 
 
 def test_a_case_can_be_declared_outside():
