@@ -7,13 +7,27 @@ from __future__ import annotations
 
 from fricmb.integrate._factor import Factor, port_inputs, port_outputs
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._lapack import BAND_FACTOR, BAND_SOLVE, call_lapack
+from fricmb.integrate._lapack import BAND_FACTOR, BAND_SOLVE, addresses, call_lapack
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._port_state import PortState
 from fricmb.integrate._problem import Ints, Pivots
-from fricmb.integrate._room import block
+from fricmb.integrate._room import CORE, PLACES, block
 from fricmb.integrate._stages import Stages
 from fricmb.integrate._tableau import Complexes, Complexes2, Tableau
+
+#: Blocks that know how the matrices are kept, and those that take their places for bands.
+STANDS_FOR = {"factorise": "factorise_band", "structure_correction": "correct_band"}
+
+
+def places_of(half: int, *further: str) -> Ints:
+    """Table of addresses of the blocks that a run needs with matrices kept so."""
+    names = [name for name in (*CORE, "structure_correction", *further) if half < 0 or name not in STANDS_FOR]
+    if half < 0:
+        return addresses(*names)
+    table = addresses(*names, *STANDS_FOR.values()).copy()
+    for name, stand_in in STANDS_FOR.items():
+        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
+    return table
 
 
 @kernel

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fricmb.integrate import _band  # noqa: F401  (makes its blocks known)
 from fricmb.integrate._advance import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL, Clock
+from fricmb.integrate._band import places_of
 from fricmb.integrate._exact_step import no_exact
 from fricmb.integrate._factor import factor
 from fricmb.integrate._field import scratch
@@ -23,7 +23,6 @@ from fricmb.integrate._room import room
 from fricmb.integrate._rows import rows, widths
 from fricmb.integrate._stages import stages
 from fricmb.integrate._start import begin, natural_scales
-from fricmb.integrate._storage import places_of
 from fricmb.integrate._tableau import Tableau
 from fricmb.integrate._trajectory import Counters, Transitions
 from fricmb.integrate._transitions import Before

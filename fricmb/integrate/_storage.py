@@ -10,14 +10,15 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from fricmb.integrate._lapack import addresses
 from fricmb.integrate._problem import Ints
-from fricmb.integrate._room import CORE, PLACES
 
 #: Fewer degrees of freedom than this are kept dense; so are bands wider than this part of n.
 SMALL, NARROW = 32, 0.15
-#: Blocks that know how the matrices are kept, and those that take their places for bands.
-STANDS_FOR = {"factorise": "factorise_band", "structure_correction": "correct_band"}
+
+
+def is_narrow(n: int, half: int) -> bool:
+    """Whether steps of a structure of n degrees of freedom and this half-bandwidth keep banded factors."""
+    return n >= SMALL and 3 * half + 1 <= NARROW * n
 
 
 def band_order(start: Ints, index: Ints) -> tuple[Ints, int]:
@@ -35,15 +36,4 @@ def band_order(start: Ints, index: Ints) -> tuple[Ints, int]:
     place = np.empty(n, np.int64)
     place[found] = np.arange(n)
     half = int(np.abs(place[row] - place[index]).max(initial=0))
-    return place, half if 3 * half + 1 <= NARROW * n else -1
-
-
-def places_of(half: int, *further: str) -> Ints:
-    """Table of addresses of the blocks that a run needs with matrices kept so."""
-    names = [name for name in (*CORE, "structure_correction", *further) if half < 0 or name not in STANDS_FOR]
-    if half < 0:
-        return addresses(*names)
-    table = addresses(*names, *STANDS_FOR.values()).copy()
-    for name, stand_in in STANDS_FOR.items():
-        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
-    return table
+    return place, half if is_narrow(n, half) else -1

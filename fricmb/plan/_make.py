@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from fricmb.errors import unknown_name
+from fricmb.integrate._storage import is_narrow
 from fricmb.plan._graph import coupling, narrow_order
 from fricmb.plan._links import Link, Links, links_of
 from fricmb.plan._plan import Island, Plan
@@ -14,9 +15,6 @@ from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanis
 from fricmb.plan._rest import is_held
 from fricmb.plan._truncate import truncated
 from fricmb.scene import Body, Contact, Driven, Element, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
-
-#: Up to this many degrees of freedom dense matrices are as fast as anything.
-DENSE = 64
 
 
 @dataclass
@@ -163,8 +161,4 @@ def _islands(scene: Scene, links: Links, kept: Sequence[int]) -> tuple[Island, .
 def _storage(n: int, bandwidth: int) -> str:
     if bandwidth == 0:
         return "diagonal"
-    if n <= DENSE:
-        return "dense"
-    if bandwidth <= n // 8:
-        return "banded"
-    return "sparse" if bandwidth < n // 2 else "dense"
+    return "banded" if is_narrow(n, bandwidth) else "dense"

@@ -95,7 +95,7 @@ class Plan:
     bandwidth : int
         Half-bandwidth of the structure in that order (0: diagonal).
     storage : str
-        "diagonal", "banded", "sparse" or "dense": the fitting form of the constant matrices.
+        "diagonal", "banded" or "dense": what implicit steps keep of the structure.
     """
 
     scene: str
