@@ -2,11 +2,14 @@ r"""
 Collocation of port forces
 ==========================
 
-What the integrator of :doc:`/explanation/collocation` does, in three pictures: how the direction of slip settles before
-a landing, what the error of one step depends on, and what the exact structure is worth over a whole run.
+What the integrator of :doc:`/explanation/collocation` does, in four pictures: how the direction of slip settles before
+a landing, what the error of one step depends on, what the exact structure is worth over a whole run, and where the
+method is the fastest.
 """
 
+import json
 import math
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -134,9 +137,36 @@ ax.legend()
 plt.show()
 
 # %%
+# **Which is faster.**  Time of BDF or Radau, whichever is faster, over that of collocation of any ports, from the
+# measurements in ``docs/benchmark/choice.json`` (``tools/choice_survey.py`` makes it): set-valued laws alone.
+
+places = [Path(__file__).parent if "__file__" in globals() else Path.cwd(), Path.cwd()]
+roots = [root for place in places for root in (place, *place.parents)]
+survey = next(root / "docs/benchmark/choice.json" for root in roots if (root / "docs/benchmark/choice.json").exists())
+measured = {(row["scene"], row["rtol"], row["method"]): row for row in json.loads(survey.read_text())}
+figure, ax = plt.subplots(figsize=(7, 4), layout="constrained")
+gains = {}
+for rtol, color in ((1e-4, "C0"), (1e-6, "C1"), (1e-8, "C2"), (1e-10, "C3")):
+    points = []
+    for (scene_name, tolerance, which), row in measured.items():
+        if tolerance != rtol or which != "collocation" or "ms" not in row or scene_name in ("belt, tanh", "belt, Dahl"):
+            continue
+        others = [measured[scene_name, rtol, other].get("ms", np.inf) for other in ("bdf", "radau")]
+        points.append((row["rows"], min(others) / row["ms"]))
+    count, gain = np.array(points).T
+    gains[rtol] = gain[count <= 4]
+    ax.loglog(count * 1.03 ** (np.log10(rtol) + 7), gain, "o", color=color, markersize=4, label=f"rtol = {rtol:.0e}")
+ax.axhline(1.0, color="0.6", linewidth=0.8)
+ax.set_xlabel("port rows")
+ax.set_ylabel("time of BDF or Radau over collocation's")
+ax.legend(fontsize="small")
+plt.show()
+
+# %%
 # Numbers of what was shown.
 
 print("order of one step:", {key: round(float(value), 1) for key, value in slopes.items()})
 print("errors of the run:", errors)
 assert all(slope > 2 * s - 0.5 for (s, _), slope in slopes.items())
 assert errors["exact"][0] < 0.6 * errors["plain Radau"][0]
+assert np.median(gains[1e-8]) > 1.0

@@ -84,7 +84,8 @@ class Islands(Integrator):
                 run = task.integrator.integrate(task.problem, mine, t_end, **options)
             runs.append((task.index, run))
         m = self.mechanics
-        return JoinedRun(runs, [task.integrator.name for task in self.tasks], m.members, m.names, start, m.idle)
+        took = [run.instead or (task.integrator.name, "") for (_, run), task in zip(runs, self.tasks, strict=True)]
+        return JoinedRun(runs, [name for name, _ in took], m.members, m.names, start, m.idle)
 
 
 def _share(tolerance: Tolerance, dofs: Any) -> Tolerance:
@@ -98,7 +99,7 @@ def _part_of(progress: Callable[[float], None], t0: float, t1: float, k: int, n:
     return lambda t: progress(t0 + ((t - t0) + k * (t1 - t0)) / n)
 
 
-def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span) -> Chosen:
+def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span, rtol: float) -> Chosen:
     """What is run, and by whom: islands on their own where the method takes each of them, else all as one.
 
     Raises
@@ -107,7 +108,7 @@ def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span) 
         For a method that is none, or refuses the scene.
     """
     if mechanics.whole is None:
-        tasks = _tasks(mechanics, method, start, span)
+        tasks = _tasks(mechanics, method, start, span, rtol)
         if tasks:
             names = tuple(dict.fromkeys(task.integrator.name for task in tasks))
             chief = max(tasks, key=lambda task: not isinstance(task.integrator, Exact)).integrator
@@ -118,21 +119,21 @@ def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span) 
         mechanics = mechanics.as_one()
     system = mechanics.members[0].system
     problem = system.problem_for(span.t_start, span.t_end)
-    integrator, why = find_integrator(method, problem)
+    integrator, why = find_integrator(method, problem, rtol)
     return Chosen(
         mechanics=mechanics, integrator=integrator, problem=problem, name=integrator.name, why=why,
         adaptive=integrator.adaptive,
     )  # fmt: skip
 
 
-def _tasks(mechanics: SceneMechanics, method: Any, start: Start, span: Span) -> tuple[Task, ...]:
+def _tasks(mechanics: SceneMechanics, method: Any, start: Start, span: Span, rtol: float) -> tuple[Task, ...]:
     """A task for each island that does not rest; none where an island is refused, or all rest."""
     tasks = []
     for index in np.flatnonzero(~resting(mechanics.members, start)).tolist():
         member = mechanics.members[index]
         problem = member.system.problem_for(span.t_start, span.t_end)
         try:
-            integrator, why = find_integrator(method, problem)
+            integrator, why = find_integrator(method, problem, rtol)
         except SceneError:
             exact = Exact()
             if not isinstance(method, str | Integrator) or exact.refuses(problem) is not None:

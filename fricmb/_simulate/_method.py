@@ -8,8 +8,10 @@ from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import Integrator, Problem
 
 
-def find_integrator(method: Any, problem: Problem) -> tuple[Integrator, str]:
+def find_integrator(method: Any, problem: Problem, rtol: float) -> tuple[Integrator, str]:
     """The integrator for ``method=`` (a name, "auto", or a configured instance), and why it is taken.
+
+    The choice of "auto" depends on the tolerance, too.
 
     Raises
     ------
@@ -22,7 +24,7 @@ def find_integrator(method: Any, problem: Problem) -> tuple[Integrator, str]:
     if integrator is None:
         from fricmb.integrate import choose
 
-        return choose(problem)
+        return choose(problem, rtol)
     refusal = integrator.refuses(problem)
     if refusal is not None:
         raise SceneError(f"method: {refusal}")

@@ -33,6 +33,7 @@ def make_solution(
         to there.
     """
     counters = trajectory.counters
+    method, why = trajectory.instead or (method, why)
     counts = {name: getattr(counters, name) for name in ("n_steps", "n_rejected", "n_rhs", "n_jac", "n_lu")}
     notes = tuple(dict.fromkeys((*mechanics.plan.cautions, *counters.notes)))
 

@@ -99,7 +99,7 @@ def simulate(
         start, mechanics = find_start(mechanics, initial, number("t_start", t_start, "a finite time"))
         span = check_span(start.t, t_end, t_eval)
         tolerance = check_tolerance(rtol, atol, start.q.size)
-        chosen = find_runs(mechanics, method, start, span)
+        chosen = find_runs(mechanics, method, start, span, tolerance.rtol)
         fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
         keep = check_keep(dense, chunk, on_chunk, span)
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
 from fricmb.integrate._bdf import Bdf
 from fricmb.integrate._bdf2_paper import Bdf2Paper
 from fricmb.integrate._exact import Exact
-from fricmb.integrate._integrator import Integrator
-from fricmb.integrate._problem import Problem
+from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._problem import Floats, Problem, Start
 from fricmb.integrate._radau import Radau
+from fricmb.integrate._trajectory import Trajectory
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.collocation._prepare import is_single
+from fricmb.integrate.collocation._suits import against, port_rows
 from fricmb.integrate.taylor import Taylor
 from fricmb.integrate.timestepping import TimeStepping
 
@@ -19,20 +25,51 @@ integrators: dict[str, type[Integrator]] = {
 }
 
 
-def choose(problem: Problem) -> tuple[Integrator, str]:
-    """The integrator for a problem, and why: the fastest that takes it, else the general one and what stood against."""
+@dataclass(frozen=True, kw_only=True)
+class Guarded(Collocation):
+    """Collocation as ``auto`` takes it: a run that it cannot finish is done by the general method, and says so."""
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> Trajectory:
+        """See :class:`Integrator`."""
+        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
+        run = super().integrate(problem, start, t_end, **options)
+        if run.failure is None:
+            return run
+        other = Bdf()
+        why = f"collocation stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
+        run = other.integrate(problem, start, t_end, **options)
+        run.counters = replace(run.counters, notes=(*run.counters.notes, why))
+        run.instead = (other.name, why)
+        return run
+
+
+def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
+    """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
     if problem.mechanism is not None:
         return Radau(), "bodies that turn or joints: one-step on the index-reduced system"
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
-    fast = Collocation()
-    reason: str | None = "more than one contact under constant friction and loads linear in time"
-    if is_single(problem):
-        reason = fast.refuses(problem)
-    if reason is None:
+    fast = Guarded()
+    refusal = fast.refuses(problem)
+    if is_single(problem) and refusal is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
     many = Taylor()
     if problem.n_c > 1 and many.refuses(problem) is None:
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+    reason = refusal or against(problem, rtol)
+    if reason is None:
+        rows = port_rows(problem)
+        return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     return Bdf(), f"the general method: {reason}"

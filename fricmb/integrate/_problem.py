@@ -156,6 +156,8 @@ class Contacts:
         One entry a contact (address 0 for LAW_CONSTANT); the linear forms are unused.
     mu_s, mu_0 : (n_c,)
         Break-away coefficient and limit of the slip coefficient for r -> 0 (for LAW_CONSTANT: mu_k).
+    piecewise : (n_c,) bool
+        Whether a law is a table or compiled by itself: its slope may jump, or what it is made of.
     z_start : (n_c+1,) int64
         Contact k owns the internal states ``z_start[k]:z_start[k+1]``.
     normal : (n_c,) int8
@@ -178,6 +180,7 @@ class Contacts:
     law_table: Templates = field(default_factory=Templates)
     mu_s: Floats = field(default_factory=lambda: _f(0))
     mu_0: Floats = field(default_factory=lambda: _f(0))
+    piecewise: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
     z_start: Ints = field(default_factory=lambda: _i(1))
     normal: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     N: Floats = field(default_factory=lambda: _f(0))

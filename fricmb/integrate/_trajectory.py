@@ -67,6 +67,8 @@ class Trajectory(ABC):
         From which a further run goes on.
     failure : str or None
         Why the run stopped before its end, with the condition that failed.
+    instead : (name, why) or None
+        Who did the run in place of the integrator that was asked, which could not finish it.
     """
 
     problem: Problem
@@ -76,6 +78,7 @@ class Trajectory(ABC):
     failure: str | None
     #: Degrees of freedom that move; None: all may.  The others keep their position, which is finite.
     moving: Ints | None = None
+    instead: tuple[str, str] | None = None
 
     @property
     @abstractmethod

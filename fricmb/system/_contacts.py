@@ -43,6 +43,7 @@ class ContactArrays:
     law_table: TableBuilder = field(default_factory=TableBuilder)
     mu_s: list[float] = field(default_factory=list)
     mu_0: list[float] = field(default_factory=list)
+    piecewise: list[bool] = field(default_factory=list)
     z_start: list[int] = field(default_factory=lambda: [0])
     normal: list[int] = field(default_factory=list)
     N: list[float] = field(default_factory=list)
@@ -101,6 +102,7 @@ class ContactArrays:
         compiled = template.function is not None
         p: Sequence[float] = law.parameter_block().tolist() if compiled else numbers(law)
         labels = law.state_labels(self.labels[-1])
+        self.piecewise.append(compiled)
         self.z_start.append(self.z_start[-1] + len(labels))
         self.states.append(labels)
         constant = template.is_constant(p)
@@ -170,6 +172,7 @@ class ContactArrays:
             "law": np.array(self.law, dtype=np.int8),
             "law_table": self.law_table.build(n, n_u),
             "mu_s": np.array(self.mu_s, dtype=float),
+            "piecewise": np.array(self.piecewise, dtype=bool),
             "mu_0": np.array(self.mu_0, dtype=float),
             "z_start": np.array(self.z_start, dtype=np.int64),
             "normal": np.array(self.normal, dtype=np.int8),

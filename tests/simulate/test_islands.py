@@ -57,7 +57,7 @@ def together(scene, t_end=12.0, **options):
     """The run with all islands as one: what the reduction is compared with."""
     mechanics = mechanics_of(scene).as_one()
     span = Span(t_start=0.0, t_end=t_end, t_eval=None)
-    chosen = find_runs(mechanics, "bdf", mechanics.start, span)
+    chosen = find_runs(mechanics, "bdf", mechanics.start, span, 1e-6)
     trajectory = chosen.integrator.integrate(
         chosen.problem, mechanics.start, t_end, tolerance=check_tolerance(1e-10, None, mechanics.start.q.size)
     )

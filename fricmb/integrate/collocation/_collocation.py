@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,14 +10,24 @@ from typing import ClassVar
 
 import numpy as np
 
+from fricmb.errors import SceneError
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._pack import packed_of
-from fricmb.integrate._problem import SLIP, STICK, Floats, Problem, Start
+from fricmb.integrate._problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
 from fricmb.integrate.collocation._general_prepare import free_blocks
 from fricmb.integrate.collocation._general_run import run_general
 from fricmb.integrate.collocation._nodes import Z_EXACT
-from fricmb.integrate.collocation._prepare import Rows, is_single, model, run_of, with_rows
+from fricmb.integrate.collocation._prepare import (
+    Rows,
+    is_single,
+    is_stiff,
+    longest_step,
+    model,
+    run_of,
+    set_longest_step,
+    with_rows,
+)  # fmt: skip
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._single import (
     DONE,
@@ -47,7 +58,8 @@ class Collocation(Integrator):
     nodes : int or None
         Number of nodes, 4 to 9; None: from the tolerance.
     safety : float
-        Tolerance of a step per ``rtol``: errors of single steps come out far smaller at the end of a run.
+        Tolerance of a step per ``rtol``: errors of single steps come out far smaller at the end of a run.  1 for laws
+        that are regularised, have states or come by table, where they do not.
     general : bool
         Whether one contact under constant friction and loads, too, is run as any other scene is; it has a faster way
         of its own.
@@ -66,6 +78,15 @@ class Collocation(Integrator):
     order: ClassVar[str] = "7 to 17"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
     pauses: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if self.nodes is not None and self.nodes not in Z_EXACT:
+            raise SceneError(f"collocation: nodes={self.nodes!r}; expected a number from 4 to 9, or None")
+        if not 0.0 < self.safety < math.inf:
+            raise SceneError(f"collocation: safety={self.safety!r}; expected a positive number")
+        if self.exact_up_to is not None and not 0.0 <= self.exact_up_to <= Z_EXACT[9]:
+            raise SceneError(f"collocation: exact_up_to={self.exact_up_to!r}; expected 0 to {Z_EXACT[9]:g}, or None")
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
@@ -96,12 +117,23 @@ class Collocation(Integrator):
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         with _running:
-            if not is_single(problem) or self.general:
-                s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
+            s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
+            span = t_end - start.t
+            if self.general or not is_single(problem) or is_stiff(problem, s, span):
+                safety = self.safety if _superconverges(problem) else 1.0
                 # where tolerances are loose a step may still not err by more than 2 %
-                safety = min(self.safety, 0.02 / tolerance.rtol)
+                safety = min(safety, 0.02 / tolerance.rtol)
                 return run_general(problem, start, t_end, tolerance, s, safety, self.exact_up_to, progress, memory)
-            return _run_single(problem, start, t_end, tolerance, self.nodes, self.safety, progress, memory)
+            return _run_single(problem, start, t_end, tolerance, s, self.safety, progress, memory)
+
+
+def _superconverges(problem: Problem) -> bool:
+    """Whether forces are as smooth as polynomials: then ends of steps are far better than the polynomial through them.
+
+    Laws that are steep (regularised), or have kinks or states of their own, give what the polynomial gives.
+    """
+    contacts = problem.contacts
+    return problem.n_z == 0 and not (np.any(contacts.law == LAW_SMOOTH) or np.any(contacts.piecewise))
 
 
 #: Tables and work arrays are kept with the problem, for one run at a time.
@@ -136,12 +168,13 @@ def _set_state(problem: Problem, run: Run, start: Start, tolerance: Tolerance) -
 
 
 def _run_single(
-    problem: Problem, start: Start, t_end: float, tolerance: Tolerance, count: int | None, safety: float,
+    problem: Problem, start: Start, t_end: float, tolerance: Tolerance, s: int, safety: float,
     progress: Callable[[float], None] | None, memory: float | None = None,
 ) -> Trajectory:  # fmt: skip
-    s = nodes_for(tolerance.rtol) if count is None else count
     held = run_of(problem, s)
     run = held[0]
+    if t_end > start.t:
+        set_longest_step(run, longest_step(problem, s, t_end - start.t))
     _set_state(problem, run, start, tolerance)
     pause = (t_end - start.t) / 100.0 if progress is not None else np.inf
     while True:

@@ -9,7 +9,7 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._onestep import Accuracy, OneStep, newton_tolerances, widest
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._ports import solve_ports
-from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, Ints
+from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, STICK, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate.collocation._general_blocks import (
     end_blocks,
@@ -24,16 +24,34 @@ from fricmb.integrate.collocation._layout import NODE, TABLEAU, VECTORS
 
 
 @kernel
-def weigh_inputs(y: State, one: OneStep, acc: Accuracy, h: float) -> None:
-    """What a unit of every input, held for the step, changes in velocities, each by its own scale."""
+def held_at_rest(packed: Packed, y: State, one: OneStep, i: int) -> float:
+    """Acceleration that the friction of contacts at rest can take from velocity i."""
+    push = 0.0
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] == STICK:
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+                push += abs(one.exact.MB[a, i]) * packed.ports.mu_s[k] * y.N[k]
+    return push
+
+
+@kernel
+def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> None:
+    """What a unit of every input, held for the step, changes in velocities, each by its own scale.
+
+    What has never moved, as friction holds it, has no scale but what friction could do: its force is resolved to a part
+    of the limit.
+    """
     ex = one.exact
     top = widest(acc.v)
+    for i in range(y.q.shape[0]):
+        scale = max(acc.v[i], abs(y.v[i]), acc.floor_v[i])
+        one.scale[i] = scale if scale > 2.0 * acc.floor_v[i] else max(scale, h * held_at_rest(packed, y, one, i))
     for c in range(ex.flags[INPUTS]):
         worst = 0.0
         for i in range(y.q.shape[0]):
             size = abs(ex.MB[c, i])
             if size > 0.0:
-                scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
+                scale = max(one.scale[i], abs(y.a[i]) * h, 1e-10 * top, 1e-290)
                 worst = max(worst, size / scale)
         ex.weight[c] = h * worst
 
@@ -119,7 +137,7 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     outputs_at_start(packed, s, y, one, h)
     free_outputs(ex, slot, h, ex.flags[UNKNOWN])
     guess_ports(packed, y, one, h)
-    weigh_inputs(y, one, acc, h)
+    weigh_inputs(packed, y, one, acc, h)
     newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     if ex.flags[OUTPUTS] > y.g.shape[0]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
@@ -11,6 +12,7 @@ import numpy as np
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate._room import room
+from fricmb.integrate.collocation._layout import CHANGE
 from fricmb.integrate.collocation._nodes import RUNGS, TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._signals import linear_signals
@@ -132,20 +134,52 @@ def model(problem: Problem) -> Model:
     return kept(problem, "model", lambda: _model(problem))
 
 
-def longest_step(w2: Floats, d: Floats, s: int) -> float:
-    """The top of the ladder: every block takes exact weights, on which the dense output relies too."""
-    fastest = max(np.sqrt(np.abs(w2)).max(initial=0.0), np.abs(d).max(initial=0.0))
-    return float(Z_EXACT[s] / fastest) if fastest > 0.0 else 1.0
+def fastest_block(problem: Problem) -> float:
+    """Largest frequency or decay rate of a one-contact problem in slip."""
+    w2, d = model(problem).blk[0]
+    return float(max(np.sqrt(np.abs(w2)).max(initial=0.0), np.abs(d).max(initial=0.0)))
 
 
-def _tables(p: Model, s: int, longest: float) -> Tables:
+def longest_step(problem: Problem, s: int, span: float) -> float:
+    """The top of the ladder: every block takes exact weights, on which the dense output relies too.
+
+    A step that ``span`` does not hold is none; runs of about the same span share their tables.
+    """
+    fastest = fastest_block(problem)
+    within = 2.0 ** math.ceil(math.log2(span))
+    return Z_EXACT[s] / fastest if fastest * within > Z_EXACT[s] else within
+
+
+#: Damping ratio above which a vibration has died out long before the next transition.
+CALM = 0.01
+#: Steps below which nothing is gained by looking for longer ones, and by how much longer they have to be.
+MANY_STEPS, FAR_LONGER = 2000.0, 10.0
+
+
+def is_stiff(problem: Problem, s: int, span: float) -> bool:
+    """Whether blocks that are damped out would force short steps on the kernels for one contact."""
+    w2, d = model(problem).blk[0]
+    rates = np.maximum(np.sqrt(np.abs(w2)), np.abs(d))
+    ringing = rates[d <= 2.0 * CALM * np.sqrt(np.abs(w2))].max(initial=0.0)
+    fastest = rates.max(initial=0.0)
+    return bool(span * fastest / Z_EXACT[s] > MANY_STEPS and fastest > FAR_LONGER * ringing)
+
+
+def set_longest_step(run: Run, longest: float) -> None:
+    """Let the ladder begin at this step; tables of another ladder are forgotten."""
+    if run.ladder[0] != longest:
+        run.ladder[:] = longest * 2.0 ** (-0.25 * np.arange(RUNGS + 1))
+        run.slots[:-1] = -1
+        run.slots[-1] = 0
+
+
+def _tables(p: Model, s: int) -> Tables:
     n, m = p.blk.shape[2], p.co.shape[1]
     per_slot = 6 * n * s + (m * s) ** 2
     count = 1 + int(np.clip(4_000_000 // per_slot, 12, 48))
     slots = np.full(RUNGS + 2, -1, dtype=np.int64)
     slots[-1] = 0
-    ladder = np.asarray(longest * 2.0 ** (-0.25 * np.arange(RUNGS + 1)), dtype=np.float64)
-    return Tables(np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, s)), ladder, slots)
+    return Tables(np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, s)), np.zeros(RUNGS + 1), slots)
 
 
 def rows(n: int, m: int, s: int, size: int) -> Rows:
@@ -158,8 +192,10 @@ def rows(n: int, m: int, s: int, size: int) -> Rows:
 def _run(problem: Problem, s: int) -> Run:
     p, nd = model(problem), nodes(s)
     n, m = problem.n, problem.m
-    tab = _tables(p, s, longest_step(p.blk[0, 0], p.blk[0, 1], s))
-    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n, TERMS), (3, s + 1, s + 1)))
+    tab = _tables(p, s)
+    # the last line of wk has a name (CHANGE): few nodes need as many lines
+    lines = (3, max(s, CHANGE) + 1, s + 1)
+    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n, TERMS), lines))
     state = np.zeros((4, n)), np.zeros((2, m)), np.zeros(5), np.zeros(8, dtype=np.int64)
     parts: list[Any] = [*p, *nd, *tab, bx, nx, kappa, np.zeros(n, np.int64), wk, *state, *rows(n, m, s, 512)]
     return room(Run._make([*parts, addresses(*BLOCKS)]))

@@ -81,12 +81,14 @@ def release_time(run: Run, longest: float) -> float:
     fastest = 0.0
     cap = 1e300
     for j in range(b):
+        fastest = max(fastest, math.sqrt(abs(run.blk[1, W2, j])) + abs(run.blk[1, DAMP, j]))
+    brief = 1.0 / fastest if fastest > 0.0 else longest
+    for j in range(b):
         rate = math.sqrt(abs(run.blk[1, W2, j])) + abs(run.blk[1, DAMP, j])
-        fastest = max(fastest, rate)
         if run.blk[1, W2, j] < 0.0 or run.blk[1, DAMP, j] < 0.0:
             cap = min(cap, 0.5 / rate)
         elif run.blk[1, W2, j] == 0.0 and run.blk[1, DAMP, j] == 0.0 and run.bx[K, j] != 0.0:
-            cap = min(cap, abs(run.bx[A, j] / run.bx[K, j]) + 1.0 / max(fastest, 1e-3))
+            cap = min(cap, abs(run.bx[A, j] / run.bx[K, j]) + brief)
     t = 0.0
     for _ in range(100000000):
         bound = stuck_force(run, t, b, cap)
@@ -104,7 +106,7 @@ def release_time(run: Run, longest: float) -> float:
             if FdF > 0.0:
                 return t
             # on the cone and going inside (just landed, or a tangency): leave the root behind
-            least = max(least, min(1e-7 / max(fastest, 1e-3), 1e-7 * limit / max(dF, 1e-300)))
+            least = max(least, 1e-7 * min(brief, limit / max(dF, 1e-300)))
             step = least
         else:
             step = min(safe_step(F, FdF, dF, bound, limit), cap)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fricmb.integrate._problem import Floats, Ints, Problem, Start
 from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
-from fricmb.integrate.collocation._ledger import has_ledger, integrals, powers
+from fricmb.integrate.collocation._ledger import from_row_starts, has_ledger, integrals, powers
 from fricmb.integrate.collocation._prepare import Rows, linear_part, model, run_of, with_rows
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._sample import locate, sample_rows
@@ -130,9 +130,10 @@ class SingleRun(Trajectory):
             k = self._n_rows
             begin = self._rows.steps[:k, 0] + self._rows.steps[:k, 1]
             length = np.maximum(np.append(begin[1:], self.end.t) - begin, 0.0)
-            steps = integrals(self._power_states, power, np.arange(k), length, fastest)
+            steps = integrals(self._power_states, power, np.arange(k), np.zeros(k), length, fastest)
             self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), steps]), axis=1)
-        return self._totals[:, row] + integrals(self._power_states, power, row, np.maximum(tau, 0.0), fastest)
+        inside = from_row_starts(self._power_states, power, row, np.maximum(tau, 0.0), fastest)
+        return self._totals[:, row] + inside
 
     def _samples(self, row: Ints, tau: Floats, t: Floats) -> Samples:
         q, v, F, g, mode, loss = self._states(row, tau, t)

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fricmb as fm
+from fricmb.errors import SceneError
 from fricmb.integrate import SLIP, STICK, Contacts, Elements, Linear, Problem, Signals, Start, Templates, Tolerance
 from fricmb.integrate.collocation import Collocation
 
@@ -235,3 +237,82 @@ def test_run_pickles_without_its_problem():
     again = pickle.loads(pickle.dumps(trajectory))
     again.attach(brake("2"))
     assert np.array_equal(again.sample(t).q, before.q)
+
+
+@pytest.mark.parametrize("nodes", [4, 5, 6, 7, 8, 9])
+def test_any_number_of_nodes(nodes):
+    ref = reference.load("p1_2")
+    trajectory = run_brake("2", 1e-7, nodes=nodes)
+    assert len(trajectory.transitions.t) == len(ref["t_event"])
+    assert worst_error(ref, trajectory.sample(ref["t"])) <= 1e-5
+
+
+@pytest.mark.parametrize("options", [{"nodes": 3}, {"nodes": 10}, {"safety": 0.0}, {"exact_up_to": -1.0}])
+def test_options_that_cannot_be(options):
+    with pytest.raises(SceneError, match=next(iter(options))):
+        Collocation(**options)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e4, 1e9])
+def test_without_springs_steps_know_no_unit_of_time(scale):
+    # a puck on the plane under friction alone: straight to rest at t = |v|/(mu g), whatever a second is
+    p = problem(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), np.eye(2), N=1.0)
+    trajectory = run(p, [0.0, 0.0], [3.0 * scale, 4.0 * scale], 6.0 * scale, 1e-6)
+    assert trajectory.transitions.t == pytest.approx([5.0 * scale], rel=1e-12)
+    assert trajectory.counters.n_steps < 10
+    samples = trajectory.sample(np.array([2.0 * scale, 6.0 * scale]))
+    assert samples.q / scale**2 == pytest.approx(np.array([[4.8, 7.5], [6.4, 10.0]]), rel=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-4, 1e9])
+def test_the_belt_in_any_unit_of_time(scale):
+    # x'' + x/scale^2: the same motion, stretched
+    start, speed = [1.0], 0.2 / scale
+    p = problem([[1]], [[1 / scale**2]], [[0]], [[1]], speed, mu_k=0.5, N=1 / scale**2)
+    trajectory = run(p, start, [speed], 100.0 * scale, 1e-10)
+    t = trajectory.transitions.t[trajectory.transitions.kind == 1]
+    period = 2.0 * (np.pi - np.arctan(0.5 / 0.2)) + 2.0 * 0.5 / 0.2
+    assert len(t) == 12
+    assert np.diff(t) / scale == pytest.approx(period, rel=1e-9)
+    assert trajectory.counters.n_steps < 200
+
+
+def test_a_load_that_rises_slowly_breaks_a_free_body_loose_in_any_unit():
+    # no spring, no mode: the load alone knows the time
+    for scale in (1e-9, 1.0, 1e9):
+        body = fm.Body("m", mass=1.0)
+        force = fm.Force("f", body, axis="x", value=fm.t / scale**3)
+        sole = fm.Contact("c", body, law=fm.laws.Coulomb(mu_s=2.0, mu_k=1.0), normal_force=1.0 / scale**2)
+        sol = fm.simulate(fm.Scene("pulled", [body, force, sole]), t_end=3.0 * scale)
+        assert [event.kind for event in sol.events] == ["slip"]
+        assert sol.events[0].t == pytest.approx(2.0 * scale, rel=1e-9)
+        # x'' = t - 1 from t = 2
+        assert sol["m.x"][-1] == pytest.approx(1.0 / 2 + 1.0 / 6, rel=1e-9)
+        assert sol.stats.n_steps < 100
+
+
+def test_steps_do_not_follow_a_stiff_mode_that_is_damped_out():
+    # two halves of a mass tied by a stiff damped spring: the free oscillator, at rest after 14 half cycles
+    one, two = (fm.Body(name, mass=0.5, position={"x": 2.7183}) for name in ("one", "two"))
+    soft = fm.Spring("soft", one, axis="x", stiffness=1.0)
+    tie = fm.Spring("tie", one, two, axis="x", stiffness=1e10)
+    calm = fm.Damper("calm", one, two, axis="x", damping=0.5e5)
+    sole = fm.Contact("sole", two, law=fm.laws.Coulomb(mu_s=1.0), normal_force=0.1)
+    sol = fm.simulate(fm.Scene("stiff pair", [one, two, soft, tie, calm, sole]), t_end=50.0)
+    assert sol.stats.method == "collocation"
+    assert sol.stats.n_steps < 300
+    assert sol.events[-1].t == pytest.approx(14 * np.pi, abs=1e-5)
+    assert sol.q[:, -1] == pytest.approx(2.7183 - 2.8, abs=1e-5)
+
+
+def test_samples_anywhere_know_the_energies():
+    # of many times within one long stick, in any order, as of each alone
+    trajectory = run_brake("5", 1e-8, t_end=100.0)
+    t = np.linspace(0.0, 100.0, 501)
+    shuffled = np.random.default_rng(1).permutation(t)
+    together, alone = trajectory.sample(shuffled), [trajectory.sample(t[i : i + 1]) for i in range(0, 501, 25)]
+    order = np.argsort(shuffled)
+    for name in ("damping_loss", "input"):
+        values = getattr(together, name)[order]
+        assert values[::25] == pytest.approx([getattr(x, name)[0] for x in alone], rel=1e-12)
+    assert np.diff(together.damping_loss[order]).min() >= 0.0

@@ -1,0 +1,44 @@
+"""Where collocation of the port forces is the fastest way to a tolerance, and where another integrator is better."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, Problem
+
+#: Port rows up to which steps are cheaper than those of BDF and Radau: at any tolerance, and at tight ones.
+FEW_ROWS, TIGHT_ROWS = 4, 12
+#: Tolerance that counts as tight.
+TIGHT = 1e-7
+#: Degrees of freedom per port row beyond which condensing to the ports pays at any tolerance, and largest structure.
+WIDE, LARGEST = 5, 400
+
+
+def port_rows(problem: Problem) -> int:
+    """Unknown port forces of a node: friction, varying normal forces, local forces of elements."""
+    varying = int(np.sum(problem.contacts.normal != 0))
+    return problem.m + varying + int(problem.elements.f_start[-1])
+
+
+def against(problem: Problem, rtol: float) -> str | None:
+    """Why another integrator is to be preferred for a problem that collocation takes, or None.
+
+    Measured over some sixty scenes, see docs/explanation/collocation.md.
+    """
+    contacts = problem.contacts
+    if problem.n_c == 0:
+        return "no contact"
+    if problem.n_z or np.any(contacts.law == LAW_SMOOTH):
+        return "a regularised or bristle law, whose own fast states hold the steps"
+    if np.any(contacts.piecewise):
+        return "a friction law by table, which polynomials through a step do not follow"
+    if np.any(contacts.normal == 1) and np.any(contacts.law != LAW_CONSTANT):
+        return "a normal force that is prescribed, under a coefficient that varies"
+    rows, n = port_rows(problem), problem.n
+    if n > LARGEST:
+        return f"{n} degrees of freedom, more than {LARGEST}"
+    if rows > TIGHT_ROWS:
+        return f"{rows} port rows, more than {TIGHT_ROWS}"
+    if rows > FEW_ROWS and rtol > TIGHT and n < WIDE * rows:
+        return f"{rows} port rows, more than {FEW_ROWS} at this tolerance"
+    return None

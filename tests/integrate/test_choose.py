@@ -1,0 +1,87 @@
+"""Which integrator ``auto`` takes, and what it does where that one cannot go on."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from fricmb.integrate._choose import Guarded
+from fricmb.integrate.collocation import Collocation
+
+
+def row(n, law, *, axes="x", contacts=None, **contact):
+    """Masses in a row between springs, the last ``contacts`` of them on a belt."""
+    belt = fm.Driven("belt", velocity={"x": 0.5})
+    bodies = [fm.Body(f"b{i}", mass=1.0, axes=axes) for i in range(n)]
+    springs = [fm.Spring(f"g{axis}", bodies[0], axis=axis, stiffness=4.0) for axis in axes]
+    springs += [
+        fm.Spring(f"s{i}{axis}", bodies[i], bodies[i + 1], axis=axis, stiffness=30.0)
+        for i in range(n - 1)
+        for axis in axes
+    ]
+    rubbing = bodies[n - (n if contacts is None else contacts) :]
+    pads = [
+        fm.Contact(f"c{i}", body, belt, law=law, **{"normal_force": 1.0, **contact}) for i, body in enumerate(rubbing)
+    ]
+    return fm.Scene("row", [*bodies, belt, *springs, *pads])
+
+
+COULOMB = fm.laws.Coulomb(mu_s=1.2, mu_k=1.0)
+STRIBECK = fm.laws.Stribeck(mu_s=1.2, mu_k=1.0, v_s=0.1)
+
+
+@pytest.mark.parametrize(
+    ("scene", "rtol", "method", "why"),
+    [
+        (row(3, COULOMB, contacts=1), 1e-6, "collocation", "one contact under constant friction"),
+        (row(2, COULOMB, axes="xy"), 1e-6, "collocation", r"few port rows \(4\)"),
+        (row(2, STRIBECK), 1e-6, "collocation", r"few port rows \(2\)"),
+        (row(6, STRIBECK), 1e-6, "bdf", "6 port rows, more than 4 at this tolerance"),
+        (row(6, STRIBECK), 1e-8, "collocation", r"few port rows \(6\)"),
+        (row(40, STRIBECK, contacts=6), 1e-6, "collocation", r"few port rows \(6\)"),
+        (row(14, STRIBECK), 1e-9, "bdf", "14 port rows, more than 12"),
+        (row(6, COULOMB), 1e-6, "taylor", "many contacts"),
+        (row(1, fm.laws.TanhRegularised(mu=1.0, v_reg=1e-2)), 1e-6, "bdf", "regularised or bristle law"),
+        (row(1, fm.laws.Dahl(mu=1.0, sigma0=100.0)), 1e-6, "bdf", "regularised or bristle law"),
+        (row(1, fm.laws.Tabulated(speed=[0.0, 0.5, 2.0], mu=[1.2, 1.0, 1.0])), 1e-6, "bdf", "by table"),
+        (row(1, COULOMB, normal_force=1.0 + 0.2 * fm.t), 1e-6, "collocation", "few port rows"),
+        (row(1, STRIBECK, normal_force=1.0 + 0.2 * fm.t), 1e-6, "bdf", "normal force that is prescribed"),
+    ],
+)
+def test_the_choice_and_why(scene, rtol, method, why):
+    sol = fm.simulate(scene, t_end=0.1, rtol=rtol)
+    assert sol.stats.method == method
+    assert re.search(why, sol.stats.why)
+
+
+def test_redundant_contacts_go_to_the_general_method():
+    held = fm.Body("held", mass=1.0, axes="xy")
+    law = fm.laws.Coulomb(mu_s=0.5)
+    pinched = fm.Scene("pinched", [held, *(fm.Contact(f"pad{i}", held, law=law, normal_force=1.0) for i in range(2))])
+    sol = fm.simulate(pinched, t_end=0.1)
+    assert sol.stats.method == "bdf"
+    assert "redundant" in sol.stats.why
+
+
+def test_a_run_that_stops_is_done_by_the_general_method_and_says_so(monkeypatch):
+    scene = row(2, STRIBECK)
+    good = fm.simulate(scene, t_end=5.0, method="bdf")
+    whole = Collocation.integrate
+
+    def stops(self, *args, **options):
+        run = whole(self, *args, **options)
+        run.failure = "the step fell to nothing"
+        return run
+
+    monkeypatch.setattr(Collocation, "integrate", stops)
+    sol = fm.simulate(scene, t_end=5.0)
+    assert sol.stats.method == "bdf"
+    assert sol.stats.why.startswith("collocation stopped at t = 5: the step fell to nothing")
+    assert any("bdf did the run" in note for note in sol.stats.notes)
+    np.testing.assert_array_equal(sol.q[:, -1], good.q[:, -1])
+    with pytest.raises(fm.IntegrationError, match="fell to nothing"):
+        fm.simulate(scene, t_end=5.0, method="collocation")
+    assert Guarded().name == "collocation"
