@@ -119,12 +119,11 @@ class Collocation(Integrator):
         with _running:
             s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
             span = t_end - start.t
+            # where tolerances are loose a step may still not err by more than 0.5 %
+            safety = min(self.safety if _superconverges(problem) else 1.0, 0.005 / tolerance.rtol)
             if self.general or not is_single(problem) or is_stiff(problem, s, span):
-                safety = self.safety if _superconverges(problem) else 1.0
-                # where tolerances are loose a step may still not err by more than 2 %
-                safety = min(safety, 0.02 / tolerance.rtol)
                 return run_general(problem, start, t_end, tolerance, s, safety, self.exact_up_to, progress, memory)
-            return _run_single(problem, start, t_end, tolerance, s, self.safety, progress, memory)
+            return _run_single(problem, start, t_end, tolerance, s, safety, progress, memory)
 
 
 def _superconverges(problem: Problem) -> bool:

@@ -196,6 +196,10 @@ def sample_rows(
                     value += run.nd[WITH_START, r, l] * steps[k, base + m * s + l]
                 loss[i] += h * power * value / (r + 1.0)
                 power *= theta
+            # the last of a landing is crossed otherwise than by this polynomial
+            loss[i] = max(loss[i], steps[k, AT_LOSS])
+            if k + 1 < steps.shape[0]:
+                loss[i] = min(loss[i], steps[k + 1, AT_LOSS])
         else:
             for a in range(m):
                 value = -load[0, a] - load[1, a] * t_of[i]

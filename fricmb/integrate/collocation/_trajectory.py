@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -45,8 +45,11 @@ class SingleRun(Trajectory):
         self._arrays = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**super().__getstate__(), "_arrays": None}
+        state = {**super().__getstate__(), "_arrays": None}
+        state.pop("_row_times", None)
+        return state
 
+    @cached_property
     def _row_times(self) -> tuple[Ints, Floats, Floats]:
         """Row, time since its start and time of every sample of :meth:`rows`: starts, and ends before transitions."""
         k = self._n_rows
@@ -66,13 +69,13 @@ class SingleRun(Trajectory):
         """Times of the rows."""
         if self._n_rows == 0:
             return np.array([self.end.t])
-        return self._row_times()[2]
+        return self._row_times[2]
 
     def rows(self) -> Samples:
         """Values at the rows."""
         if self._n_rows == 0:
             return self._at_rest()
-        row, tau, t = self._row_times()
+        row, tau, t = self._row_times
         return self._samples(row, tau, t)
 
     def sample(self, t: Floats) -> Samples:

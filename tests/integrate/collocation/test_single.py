@@ -144,7 +144,7 @@ def test_free_decay_rests_where_it_must(x0):
 
 
 @pytest.mark.parametrize(("name", "N"), [("p5_a", 0.3), ("p5_b", 0.1), ("p5_d", 0.05), ("p5_e", 0.1)])
-@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10])
 def test_passes_close_to_zero(name, N, rtol):
     # the direction swings round while r falls to as little as 3e-8, and slip goes on
     ref = reference.load(name)
@@ -292,16 +292,17 @@ def test_a_load_that_rises_slowly_breaks_a_free_body_loose_in_any_unit():
 
 
 def test_steps_do_not_follow_a_stiff_mode_that_is_damped_out():
-    # two halves of a mass tied by a stiff damped spring: the free oscillator, at rest after 14 half cycles
+    # two halves of a mass tied by a stiff damped spring: the free oscillator, at rest after 14 half cycles, but for what
+    # the tie does at every turn of the friction (some 4/w together; 1.84e-4 at K = 1e8, also by plain Radau at 1e-10)
     one, two = (fm.Body(name, mass=0.5, position={"x": 2.7183}) for name in ("one", "two"))
     soft = fm.Spring("soft", one, axis="x", stiffness=1.0)
     tie = fm.Spring("tie", one, two, axis="x", stiffness=1e10)
     calm = fm.Damper("calm", one, two, axis="x", damping=0.5e5)
     sole = fm.Contact("sole", two, law=fm.laws.Coulomb(mu_s=1.0), normal_force=0.1)
-    sol = fm.simulate(fm.Scene("stiff pair", [one, two, soft, tie, calm, sole]), t_end=50.0)
+    sol = fm.simulate(fm.Scene("stiff pair", [one, two, soft, tie, calm, sole]), t_end=50.0, rtol=1e-8)
     assert sol.stats.method == "collocation"
     assert sol.stats.n_steps < 300
-    assert sol.events[-1].t == pytest.approx(14 * np.pi, abs=1e-5)
+    assert sol.events[-1].t == pytest.approx(14 * np.pi, abs=4.0 / 2e5)
     assert sol.q[:, -1] == pytest.approx(2.7183 - 2.8, abs=1e-5)
 
 
