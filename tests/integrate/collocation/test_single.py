@@ -292,8 +292,8 @@ def test_a_load_that_rises_slowly_breaks_a_free_body_loose_in_any_unit():
 
 
 def test_steps_do_not_follow_a_stiff_mode_that_is_damped_out():
-    # two halves of a mass tied by a stiff damped spring: the free oscillator, at rest after 14 half cycles, but for what
-    # the tie does at every turn of the friction (some 4/w together; 1.84e-4 at K = 1e8, also by plain Radau at 1e-10)
+    # two halves of a mass tied by a stiff damped spring: the free oscillator, at rest after 14 half cycles, but for
+    # what the tie does at every turn of the friction (some 4/w together; 1.84e-4 at K = 1e8, also by Radau)
     one, two = (fm.Body(name, mass=0.5, position={"x": 2.7183}) for name in ("one", "two"))
     soft = fm.Spring("soft", one, axis="x", stiffness=1.0)
     tie = fm.Spring("tie", one, two, axis="x", stiffness=1e10)
