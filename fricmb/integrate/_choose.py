@@ -62,13 +62,14 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
     fast = Guarded()
-    refusal = fast.refuses(problem)
-    if is_single(problem) and refusal is None:
+    refusal = fast.refuses(problem) if is_single(problem) else "several ports"
+    if refusal is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
     many = Taylor()
     if problem.n_c > 1 and many.refuses(problem) is None:
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
-    reason = refusal or against(problem, rtol)
+    # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
+    reason = against(problem, rtol) or fast.refuses(problem)
     if reason is None:
         rows = port_rows(problem)
         return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
