@@ -31,6 +31,11 @@ class MechanismSystem(System):
             raise TypeError("this system has no mechanism")
         return self.problem.mechanism
 
+    @property
+    def _n_coordinates(self) -> int:
+        """Degrees of freedom, and the points fixed in bodies behind them."""
+        return self.problem.n + self.mechanism.n_places
+
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""
         M, v = self.mechanism.M, samples.v

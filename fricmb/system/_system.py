@@ -93,7 +93,12 @@ class System:
 
     @cached_property
     def _linear(self) -> Stored:
-        return stored_of(self.stores, self.problem.n, self.problem.n_u)
+        return stored_of(self.stores, self._n_coordinates, self.problem.n_u)
+
+    @property
+    def _n_coordinates(self) -> int:
+        """Number of coordinates that stores depend on."""
+        return self.problem.n
 
     def potentials(self, samples: Samples) -> dict[str, Floats]:
         """Stored energy of every element and of every contact with a normal-force law, by name."""
