@@ -54,6 +54,10 @@ class Guarded(Collocation):
         return run
 
 
+#: Degrees of freedom above which the matrices of a scene are sparse; those who need them dense are left out.
+LARGE = 256
+
+
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
     if problem.mechanism is not None:
@@ -68,6 +72,12 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     many = Taylor()
     if problem.n_c > 1 and many.refuses(problem) is None:
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+    stepping = TimeStepping()
+    if problem.n > LARGE and problem.n_c and stepping.refuses(problem) is None:
+        return (
+            stepping,
+            f"more than {LARGE} degrees of freedom: implicit steps over transitions; {many.refuses(problem)}",
+        )
     # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
     reason = against(problem, rtol) or fast.refuses(problem)
     if reason is None:

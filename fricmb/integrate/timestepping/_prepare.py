@@ -87,6 +87,11 @@ def _band(rows: Ints, columns: Ints, place: Ints) -> int:
     return int(np.abs(place[rows] - place[columns]).max(initial=0))
 
 
+def _band_cost(n: int, width: int) -> float:
+    """Operations of a factorisation and a few solutions in a band of that half width."""
+    return 2.0 * n * width * (width + 1.0) + n * (12.0 * width + 6.0)
+
+
 def _storage(problem: Problem, rows: Ints, columns: Ints, contacts: str | None) -> tuple[Ints, int, bool]:
     """Order of the dofs, half width of the band, and whether contacts are condensed: by operations a step."""
     n, m = problem.n, problem.m
@@ -94,17 +99,15 @@ def _storage(problem: Problem, rows: Ints, columns: Ints, contacts: str | None) 
     narrow = _band(rows, columns, alone)
     nnz = len(problem.contacts.csr("W").value)
     slim = n * (4.0 * narrow + 2.0) + 4.0 * nnz + 2.0 * m * n + 3.0 * m**3
-    counts = np.diff(problem.contacts.csr("W").transposed().start)
-    if contacts != "band" and (
-        contacts == "condensed" or float((counts.astype(float) ** 2).sum()) > 50.0 * n * (n + 1)
-    ):
+    # the dofs of one contact are neighbours of each other: a lower bound of the width
+    least = int(np.diff(problem.contacts.csr("W").transposed().start).max(initial=1)) - 1
+    if contacts == "condensed" or (contacts is None and m <= CONDENSABLE and slim < _band_cost(n, least)):
         return alone, narrow, True
     extra = _contact_pairs(problem)
     both_rows, both_columns = np.concatenate([rows, extra[0]]), np.concatenate([columns, extra[1]])
     together = _order(both_rows, both_columns, n)
     wide = _band(both_rows, both_columns, together)
-    full = 2.0 * n * wide * (wide + 1.0) + n * (12.0 * wide + 6.0)
-    if contacts != "band" and m <= CONDENSABLE and slim < full:
+    if contacts is None and m <= CONDENSABLE and slim < _band_cost(n, wide):
         return alone, narrow, True
     return together, wide, False
 

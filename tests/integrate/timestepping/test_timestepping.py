@@ -174,3 +174,31 @@ def test_what_it_does_not_take():
     for options in ({"fixed_step": -1.0}, {"residual": 1.0}, {"contacts": "both"}):
         with pytest.raises(fm.SceneError, match=next(iter(options))):
             TimeStepping(**options)
+
+
+def test_auto_takes_it_for_large_scenes_that_taylor_does_not_take():
+    laws = [fm.laws.Stribeck(mu_s=1.2 + 0.1 * np.sin(7 * i), mu_k=1.0, v_s=0.5) for i in range(300)]
+    scene = fm.models.stick_slip_chain(300, laws=laws, belt=1.0)
+    t = np.linspace(0, 3, 7)
+    sol = fm.simulate(scene, t_end=3.0, t_eval=t, rtol=1e-3)
+    assert sol.stats.method == "timestepping"
+    assert "taylor takes chains" in sol.stats.why
+    finer = fm.simulate(scene, t_end=3.0, t_eval=t, method=TimeStepping(fixed_step=1e-3))
+    assert len(sol.events) >= 300
+    assert np.abs(sol.q - finer.q).max() < 1e-2 * np.abs(finer.q).max()
+
+
+def test_thousands_of_modes_under_several_contacts():
+    # untruncated: the cost of a step goes with the number of modes, and nothing is dense
+    order = np.arange(1, 3001)
+    where = {f"p{i}": np.sqrt(2) * np.sin(order * np.pi * x) for i, x in enumerate((0.2, 0.45, 0.8))}
+    bar = fm.ModalBody("bar", frequencies=20.0 * order, damping_ratios=0.02, shapes=where)
+    belt = fm.Driven("belt", velocity={"x": 0.5})
+    law = fm.laws.Coulomb(mu_s=0.4, mu_k=0.3)
+    pads = [fm.Contact(f"c{i}", bar.point(f"p{i}"), belt, law=law, normal_force=100.0) for i in range(3)]
+    sol = fm.simulate(fm.Scene("bar", [bar, belt, *pads]), t_end=0.02, rtol=1e-2, method="timestepping")
+    # to the residual of the contact problem, 1e-10 in each of 700 steps
+    assert np.abs(sol.energy.residual).max() < 1e-8 * np.abs(sol.energy.input).max()
+    # 40 friction forces of 30 N cannot push a bar of unit modal masses further than statics allow, twice
+    flexibility = sum(np.abs(where["p1"] * shape / (40.0 * np.pi * order) ** 2).sum() for shape in where.values())
+    assert np.abs(sol["bar.p1.x"]).max() < 2 * 40.0 * flexibility
