@@ -13,6 +13,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.polynomial import legendre
 from scipy.linalg import expm
 
@@ -157,6 +158,10 @@ for rtol, color in ((1e-4, "C0"), (1e-6, "C1"), (1e-8, "C2"), (1e-10, "C3")):
     gains[rtol] = gain[count <= 4]
     ax.loglog(count * 1.03 ** (np.log10(rtol) + 7), gain, "o", color=color, markersize=4, label=f"rtol = {rtol:.0e}")
 ax.axhline(1.0, color="0.6", linewidth=0.8)
+for axis, ticks in ((ax.xaxis, (1, 2, 4, 8, 16, 32)), (ax.yaxis, (0.3, 0.5, 1, 2, 3, 5))):
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    axis.set_minor_locator(NullLocator())
 ax.set_xlabel("port rows")
 ax.set_ylabel("time of BDF or Radau over collocation's")
 ax.legend(fontsize="small")

@@ -85,6 +85,11 @@ class Trajectory(ABC):
     def t(self) -> Floats:
         """Times of the rows (n_t,): non-decreasing, the first and last the ends of the run."""
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """Ends of the run."""
+        return float(self.t[0]), float(self.t[-1])
+
     @abstractmethod
     def rows(self) -> Samples:
         """Values at the rows; at a transition first the left, then the right-hand values."""

@@ -69,8 +69,8 @@ class Piece:
         self._trajectory = trajectory
         self.origin = origin
         self._mechanics = mechanics
-        self.t_start = float(trajectory.t[0])
-        self.t_end = float(trajectory.t[-1]) if t_end is None else t_end
+        self.t_start, last = trajectory.span
+        self.t_end = last if t_end is None else t_end
 
     @property
     def mechanics(self) -> Mechanics:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate._problem import NORMAL_LAW, Floats, Problem, Start, Templates
+from fricmb.integrate._sparse import Csr
 from fricmb.integrate._trajectory import Samples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._evaluate import arguments, evaluate
@@ -74,7 +75,7 @@ class System:
     # -- energies -----------------------------------------------------------------------------------------------
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""
-        M, v = self.problem.linear.csr("M"), samples.v
+        M, v = self._mass, samples.v
         if M.is_diagonal():
             energy: Floats = 0.5 * (M.diagonal() @ (v * v))
             return energy
@@ -90,6 +91,10 @@ class System:
             for _, value in self._each_potential(samples, linear=False):
                 total += value
         return total
+
+    @cached_property
+    def _mass(self) -> Csr:
+        return self.problem.linear.csr("M")
 
     @cached_property
     def _linear(self) -> Stored:

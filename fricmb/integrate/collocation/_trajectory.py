@@ -56,13 +56,21 @@ class SingleRun(Trajectory):
         start = self._rows.steps[:k, 0] + self._rows.steps[:k, 1]
         stop = np.append(start[1:], self.end.t)
         length = (stop - self._rows.steps[:k, 0]) - self._rows.steps[:k, 1]
-        turns = np.isin(stop, self.transitions.t)
+        known = self.transitions.t
+        turns = np.searchsorted(known, stop, side="right") > np.searchsorted(known, stop)
         turns[-1:] = True
         count = 1 + turns
         row = np.repeat(np.arange(k), count)
         late = np.zeros(len(row), dtype=bool)
         late[np.cumsum(count)[turns] - 1] = True
         return row, np.where(late, length[row], 0.0), np.where(late, stop[row], start[row])
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Ends of the run."""
+        if self._n_rows == 0:
+            return self.end.t, self.end.t
+        return float(self._rows.steps[0, 0] + self._rows.steps[0, 1]), self.end.t
 
     @property
     def t(self) -> Floats:
