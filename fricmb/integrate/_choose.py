@@ -72,15 +72,15 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     many = Taylor()
     if problem.n_c > 1 and many.refuses(problem) is None:
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+    # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
+    reason = against(problem, rtol) or fast.refuses(problem)
+    if reason is None:
+        rows = port_rows(problem)
+        return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     stepping = TimeStepping()
     if problem.n > LARGE and problem.n_c and stepping.refuses(problem) is None:
         return (
             stepping,
             f"more than {LARGE} degrees of freedom: implicit steps over transitions; {many.refuses(problem)}",
         )
-    # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
-    reason = against(problem, rtol) or fast.refuses(problem)
-    if reason is None:
-        rows = port_rows(problem)
-        return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     return Bdf(), f"the general method: {reason}"
