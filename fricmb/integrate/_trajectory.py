@@ -86,7 +86,7 @@ class Trajectory(ABC):
         """Times of the rows (n_t,): non-decreasing, the first and last the ends of the run."""
 
     @property
-    def span(self) -> tuple[float, float]:
+    def ends(self) -> tuple[float, float]:
         """Ends of the run."""
         return float(self.t[0]), float(self.t[-1])
 

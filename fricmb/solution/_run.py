@@ -69,7 +69,7 @@ class Piece:
         self._trajectory = trajectory
         self.origin = origin
         self._mechanics = mechanics
-        self.t_start, last = trajectory.span
+        self.t_start, last = trajectory.ends
         self.t_end = last if t_end is None else t_end
 
     @property

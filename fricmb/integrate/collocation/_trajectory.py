@@ -66,7 +66,7 @@ class SingleRun(Trajectory):
         return row, np.where(late, length[row], 0.0), np.where(late, stop[row], start[row])
 
     @property
-    def span(self) -> tuple[float, float]:
+    def ends(self) -> tuple[float, float]:
         """Ends of the run."""
         if self._n_rows == 0:
             return self.end.t, self.end.t
