@@ -54,8 +54,37 @@ class Guarded(Collocation):
         return run
 
 
-#: Degrees of freedom above which the matrices of a scene are sparse; those who need them dense are left out.
-LARGE = 256
+@dataclass(frozen=True, kw_only=True)
+class GuardedTaylor(Taylor):
+    """Taylor steps as ``auto`` takes them: where transitions crowd, time stepping does the run, and says so."""
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> Trajectory:
+        """See :class:`Integrator`."""
+        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
+        run = super().integrate(problem, start, t_end, **options)
+        if run.failure is None:
+            return run
+        other = TimeStepping()
+        why = f"taylor stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
+        stepped = other.integrate(problem, start, t_end, **options)
+        stepped.counters = replace(stepped.counters, notes=(*stepped.counters.notes, why))
+        stepped.instead = (other.name, why)
+        return stepped
+
+
+#: Rows of contacts above which their common Newton matrix makes the general method slower than time stepping.
+MANY = 100
 
 
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
@@ -69,7 +98,7 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     refusal = fast.refuses(problem) if is_single(problem) else "several ports"
     if refusal is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
-    many = Taylor()
+    many = GuardedTaylor()
     if problem.n_c > 1 and many.refuses(problem) is None:
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
     # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
@@ -78,9 +107,7 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
         rows = port_rows(problem)
         return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     stepping = TimeStepping()
-    if problem.n > LARGE and problem.n_c and stepping.refuses(problem) is None:
-        return (
-            stepping,
-            f"more than {LARGE} degrees of freedom: implicit steps over transitions; {many.refuses(problem)}",
-        )
+    if problem.m > MANY and stepping.refuses(problem) is None:
+        crowd = f"{problem.m} rows of contacts, more than {MANY}: implicit steps over transitions"
+        return stepping, f"{crowd}; {many.refuses(problem)}"
     return Bdf(), f"the general method: {reason}"

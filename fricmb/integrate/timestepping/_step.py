@@ -15,7 +15,8 @@ from fricmb.integrate._problem import (
     Ints,
 )
 from fricmb.integrate._room import block
-from fricmb.integrate.timestepping._cones import mark_stuck, solve_contacts
+from fricmb.integrate.timestepping._balls import mark_stuck
+from fricmb.integrate.timestepping._cones import solve_contacts
 from fricmb.integrate.timestepping._free import (
     add_normals,
     add_responses,

@@ -66,7 +66,8 @@ class SteppedRun(Trajectory):
         return Samples(
             t=t, q=q, v=line(rows.v), z=np.empty((0, len(t))), F=self._forces(k, s, g), g=g,
             N=rows.N[:, k + 1], mode=rows.mode[:, np.clip(at, 0, len(rows.t) - 1)],
-            friction_loss=self._losses(k, s), damping_loss=line(rows.damping_loss), input=line(rows.input),
+            friction_loss=self._losses(k, s),
+            damping_loss=line(rows.damping_loss), input=line(rows.input) + self._belt_work(k, s),
         )  # fmt: skip
 
     def _losses(self, k: np.ndarray, s: Floats) -> Floats:
@@ -77,6 +78,22 @@ class SteppedRun(Trajectory):
         way = 0.5 * (r0 + r1)
         share = np.where(way > 0.0, (s * r0 + 0.5 * s * s * (r1 - r0)) / np.where(way > 0.0, way, 1.0), s)
         return left + share * (rows.friction_loss[:, k + 1] - left)
+
+    def _belt_work(self, k: np.ndarray, s: Floats) -> Floats:
+        """What the work of belts within steps is beside a straight line, where holding forces rise or fall."""
+        rows, contacts = self._rows, self.problem.contacts
+        owner = np.repeat(np.arange(self.problem.n_c), np.diff(contacts.row))
+        same = (rows.mode[:, k] == rows.mode[:, k + 1])[owner]
+        W = contacts.csr("W")
+
+        def power(at: np.ndarray) -> Floats:
+            F = np.where(same, rows.F[:, at], 0.0)
+            found: Floats = (rows.v[:, at] * (W @ F)).sum(axis=0) - (F * rows.g[:, at]).sum(axis=0)
+            return found
+
+        change = power(k + 1) - power(k)
+        beside: Floats = 0.5 * (rows.t[k + 1] - rows.t[k]) * change * (s * s - s)
+        return beside
 
     def _speeds(self, k: np.ndarray) -> Floats:
         """Slip speeds (n_c, n_t) in rows."""

@@ -202,3 +202,20 @@ def test_thousands_of_modes_under_several_contacts():
     # 40 friction forces of 30 N cannot push a bar of unit modal masses further than statics allow, twice
     flexibility = sum(np.abs(where["p1"] * shape / (40.0 * np.pi * order) ** 2).sum() for shape in where.values())
     assert np.abs(sol["bar.p1.x"]).max() < 2 * 40.0 * flexibility
+
+
+def test_where_transitions_crowd_auto_goes_over_to_it(monkeypatch):
+    from fricmb.integrate.taylor import Taylor
+
+    whole = Taylor.integrate
+
+    def crowded(self, *args, **options):
+        run = whole(self, *args, **options)
+        run.failure = "more than 1200 transitions in one step"
+        return run
+
+    monkeypatch.setattr(Taylor, "integrate", crowded)
+    scene = fm.models.stick_slip_chain(10)
+    sol = fm.simulate(scene, t_end=3.0, rtol=1e-4)
+    assert sol.stats.method == "timestepping"
+    assert sol.stats.why.startswith("taylor stopped at t = 3: more than 1200 transitions")

@@ -1,0 +1,60 @@
+"""The error of a step: what it makes of the end done whole and by halves."""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import STICK
+from fricmb.integrate.timestepping._layout import HERE, LEEWAY, MIDDLE, THERE, TOL, WHOLE
+from fricmb.integrate.timestepping._run import Run
+
+
+@kernel
+def set_leeway(run: Run) -> None:
+    """How much more than elsewhere the error may be where a transition falls into the step, into ``trial``.
+
+    There it is of second order and comes once; in smooth motion it is of third order and comes every step.
+    """
+    for i in range(run.trial.shape[0]):
+        run.trial[i] = 1.0
+    for c in range(run.status.shape[0]):
+        if run.what[WHOLE, c] >= 0 or run.what[MIDDLE, c] >= 0 or run.what[THERE, c] >= 0:
+            for a in range(run.row[c], run.row[c + 1]):
+                for e in range(run.w_start[a], run.w_start[a + 1]):
+                    run.trial[run.w_dof[e]] = run.x[LEEWAY]
+
+
+@kernel
+def holding_error(run: Run) -> float:
+    """Difference of the forces that hold contacts, relative to the largest limit."""
+    worst = 0.0
+    largest = 0.0
+    for c in range(run.status.shape[0]):
+        largest = max(largest, run.brake[c])
+        if run.mode[WHOLE, c] == STICK and run.mode[THERE, c] == STICK and run.mode[HERE, c] == STICK:
+            for a in range(run.row[c], run.row[c + 1]):
+                worst = max(worst, abs(run.ends[WHOLE, a] - run.ends[THERE, a]))
+    return worst / largest if largest > 0.0 else 0.0
+
+
+@kernel
+def step_error(run: Run) -> float:
+    """Difference of the whole step and the halves, over three times the tolerance of each signal."""
+    n = run.load.shape[0]
+    q, v = run.q[THERE], run.v[THERE]
+    most_q, most_v = 0.0, 0.0
+    for i in range(n):
+        run.top_q[i] = max(run.top_q[i], abs(q[i]))
+        run.top_v[i] = max(run.top_v[i], abs(v[i]))
+        most_q = max(most_q, run.top_q[i])
+        most_v = max(most_v, run.top_v[i])
+    set_leeway(run)
+    worst = 0.0
+    for i in range(n):
+        if most_q > 0.0:
+            scale = (run.top_q[i] + 0.01 * most_q + run.floor_q[i]) * run.trial[i]
+            worst = max(worst, abs(run.q[WHOLE, i] - q[i]) / scale)
+        if most_v > 0.0:
+            scale = (run.top_v[i] + 0.01 * most_v + run.floor_v[i]) * run.trial[i]
+            worst = max(worst, abs(run.v[WHOLE, i] - v[i]) / scale)
+    worst = max(worst, holding_error(run) / run.x[LEEWAY])
+    return float(worst / (3.0 * run.x[TOL]))
