@@ -17,6 +17,7 @@ from fricmb.integrate._field import Scratch, normal_force
 from fricmb.integrate._history import History, admissible, rescale
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._laws import break_away
 from fricmb.integrate._onestep import Accuracy, OneStep, add_to_position, newton_tolerances, state_noise, widest
 from fricmb.integrate._orders import MAX_ORDER
 from fricmb.integrate._pack import Packed
@@ -129,9 +130,10 @@ def meets_transition(packed: Packed, s: Scratch, y: State, end: State, hist: His
             if r1 <= 0.0 or dips(r0, r1, d0, d1) < 0.0:
                 meets = True
         elif y.mode[k] == STICK:
-            limit = packed.ports.mu_s[k] * end.N[k]
+            limit = break_away(packed.ports, packed.laws, k, s, end.N[k]) * end.N[k]
             over = slip_speed(end.F, row0, d) - limit
-            rise = over - slip_speed(y.F, row0, d) + packed.ports.mu_s[k] * y.N[k]
+            held = break_away(packed.ports, packed.laws, k, s, y.N[k]) * y.N[k]
+            rise = over - slip_speed(y.F, row0, d) + held
             curve = abs(rise - hist.over[k]) if hist.status[6] > 0 else abs(rise)
             hist.over[k] = rise
             # the one-step method takes over in time: an extremum might pass the limit between two steps

@@ -24,6 +24,14 @@ def coefficient(ports: Ports, laws: Table, k: int, s: Scratch, r: float, N: floa
 
 
 @kernel
+def break_away(ports: Ports, laws: Table, k: int, s: Scratch, N: float) -> float:
+    """Coefficient up to which a contact sticks: declared, or (``mu_s`` < 0) the limit of the coefficient under N."""
+    if ports.mu_s[k] >= 0.0:
+        return float(ports.mu_s[k])
+    return float(coefficient(ports, laws, k, s, 0.0, N)[0])
+
+
+@kernel
 def smooth_force(
     laws: Table, k: int, s: Scratch, g: Floats, g0: int, d: int, N: float, z: Floats, z0: int, nz: int
 ) -> None:

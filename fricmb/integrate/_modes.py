@@ -25,6 +25,7 @@ from fricmb.integrate._instant import (
     solve_response,
 )
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._laws import break_away, coefficient
 from fricmb.integrate._pack import Packed, Ports, Table
 from fricmb.integrate._port_state import PortState, port_state
 from fricmb.integrate._ports import solve_ports
@@ -63,6 +64,8 @@ def rest(problem: Problem, packed: Packed) -> Rest:
     w = port_state(replace(problem, contacts=plain), 1)
     ports = packed.ports._replace(
         law=np.zeros(nc, np.int8),
+        mu_s=packed.ports.mu_s.copy(),
+        mu_0=packed.ports.mu_0.copy(),
         N=np.zeros(nc),
         var=np.full(nc, -1, np.int64),
         acts=np.zeros(nc, np.int8),
@@ -88,6 +91,9 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
             w.G[a, b] = ports.D[a, b]
     for k in range(nc):
         w.N[0, k] = y.N[k]
+        if packed.ports.law[k] != LAW_SMOOTH and packed.ports.var[k] >= 0:
+            ports.mu_0[k] = coefficient(packed.ports, packed.laws, k, s, 0.0, y.N[k])[0]
+            ports.mu_s[k] = break_away(packed.ports, packed.laws, k, s, y.N[k])
         r.tol[k] = 1e-13 * big
         r.mode[k] = OPEN
         if r.part[k] == 1:

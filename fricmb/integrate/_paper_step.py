@@ -13,6 +13,7 @@ from fricmb.integrate._factor import prepare
 from fricmb.integrate._field import Scratch, normal_force, set_state, set_time
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import entry, kernel
+from fricmb.integrate._laws import break_away
 from fricmb.integrate._onestep import Accuracy, OneStep, newton_tolerances
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import (
@@ -118,7 +119,7 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
         if ports.law[k] == LAW_SMOOTH or mode[k] != STICK:
             continue
         size = slip_speed(w.F[0], row0, d)
-        if size > ports.mu_s[k] * w.N[0, k]:
+        if size > break_away(ports, packed.laws, k, s, w.N[0, k]) * w.N[0, k]:
             mode[k] = SLIP
             changed = True
             for a in range(row0, row0 + d):

@@ -155,7 +155,8 @@ class Contacts:
     law_table : Templates
         One entry a contact (address 0 for LAW_CONSTANT); the linear forms are unused.
     mu_s, mu_0 : (n_c,)
-        Break-away coefficient and limit of the slip coefficient for r -> 0 (for LAW_CONSTANT: mu_k).
+        Break-away coefficient and limit of the slip coefficient for r -> 0 (for LAW_CONSTANT: mu_k).  ``mu_s`` < 0:
+        break-away is that limit under the present normal force, of this size at the start.
     piecewise : (n_c,) bool
         Whether a law is a table or compiled by itself: its slope may jump, or what it is made of.
     z_start : (n_c+1,) int64

@@ -87,7 +87,7 @@ def natural_scales(problem: Problem, packed: Packed, s: Scratch, t: float, span:
     contacts, structure = problem.contacts, packed.structure
     if problem.n == 0:
         return np.zeros(0), np.zeros(0)
-    per_row = np.repeat(contacts.mu_s * np.maximum(contacts.N, np.abs(contacts.N0)), np.diff(contacts.row))
+    per_row = np.repeat(np.abs(contacts.mu_s) * np.maximum(contacts.N, np.abs(contacts.N0)), np.diff(contacts.row))
     load, driven_speed, driven_way = signal_scales(problem, packed, s, t, span)
     acceleration = magnitudes(structure) @ (np.abs(contacts.W) @ per_row + np.abs(structure.f) + load)
     omega = float(np.max(problem.omega, initial=0.0))

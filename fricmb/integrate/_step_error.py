@@ -98,7 +98,7 @@ def unseen_force(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
         N = y.N[k]
         for j in range(n_s):
             N = max(N, one.w.N[j, k])
-        allowed = RESOLVED * packed.ports.mu_s[k] * N + 1e-290
+        allowed = RESOLVED * abs(packed.ports.mu_s[k]) * N + 1e-290
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
             error = one.tab.top[0, 0] * y.F[a]
             for j in range(n_s):

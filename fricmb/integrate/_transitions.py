@@ -9,6 +9,7 @@ import numpy as np
 from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import State, slip_speed
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._laws import break_away
 from fricmb.integrate._modes import Rest, find_open, mark_rest, settle
 from fricmb.integrate._onestep import Accuracy, OneStep, attempt, finish
 from fricmb.integrate._pack import Packed
@@ -220,6 +221,19 @@ def record_changes(packed: Packed, y: State, old: Before, out: Rows) -> None:
             record_event(out, y.t[0], c, EVENT_REVERSAL)
 
 
+@kernel
+def holds_nothing(packed: Packed, y: State, k: int) -> bool:
+    """Whether a stuck contact that has reached its cone bears nothing but round-off: it is the cone that has closed."""
+    row0 = packed.ports.row[k]
+    if y.mode[k] != STICK or packed.ports.var[k] < 0:
+        return False
+    top = 0.0
+    for i in range(y.a.shape[0]):
+        top = max(top, abs(y.a[i]))
+    held = packed.ports.D[row0, row0] * slip_speed(y.F, row0, packed.ports.row[k + 1] - row0)
+    return bool(held <= 1e-12 * top)
+
+
 @block
 def transition(
     packed: Packed, s: Scratch, y: State, k: int, lifted: bool, r: Rest, old: Before, out: Rows, address: Ints
@@ -231,6 +245,8 @@ def transition(
     Records the rows on both sides and the events.  Returns the code of :func:`settle`.
     """
     ports = packed.ports
+    # an open contact has no other transition (located without a step, nothing has told which it is)
+    lifted = lifted or (k >= 0 and (y.mode[k] == OPEN or holds_nothing(packed, y, k)))
     record(out, y, BEFORE)
     for c in range(y.mode.shape[0]):
         old.mode[c] = y.mode[c]
@@ -243,14 +259,14 @@ def transition(
     mark_rest(packed, s, y, r, address)
     for c in range(y.mode.shape[0]):
         row0 = ports.row[c]
-        force = ports.D[row0, row0] * ports.mu_s[c] * y.N[c]
+        force = ports.D[row0, row0] * break_away(ports, packed.laws, c, s, y.N[c]) * y.N[c]
         if c != k and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
             # released at this very instant: tried stuck again it would be on its cone, and so without end
             r.part[c] = 2
         elif c != k and old.mode[c] == STICK and r.part[c] == 1 and ports.soft[0] > 0.0 and k >= 0 and not lifted:
             # redundant contacts share a load and reach their cones as one: none can hold it without the others
             size = slip_speed(y.F, row0, ports.row[c + 1] - row0)
-            if size > 0.0 and size >= (1.0 - 1e-9) * ports.mu_s[c] * y.N[c]:
+            if size > 0.0 and ports.D[row0, row0] * size >= (1.0 - 1e-9) * force:
                 r.part[c] = 2
                 for a in range(row0, ports.row[c + 1]):
                     y.n[a] = -y.F[a] / size

@@ -7,6 +7,7 @@ import numpy as np
 from fricmb.integrate._field import Scratch, normal_force, set_state, set_time
 from fricmb.integrate._instant import State, slip_speed
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._laws import break_away
 from fricmb.integrate._onestep import OneStep
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
@@ -37,7 +38,7 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
             else:
                 x = first_crossing(tab, slip_speed(y.g, row0, d), one)
         elif y.mode[k] == STICK:
-            x = cone_crossing(packed, y, end, one, k)
+            x = cone_crossing(packed, s, y, end, one, k)
         if packed.ports.var[k] >= 0:
             x = min(x, normal_crossing(packed, s, y, one, k))
         if x < found[0]:
@@ -175,22 +176,21 @@ def force_noise(packed: Packed, y: State, k: int, h: float) -> float:
 
 
 @kernel
-def cone_crossing(packed: Packed, y: State, end: State, one: OneStep, k: int) -> float:
+def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: int) -> float:
     """Where |F| of a stuck contact first leaves the cone, by squares; 2 where it does not."""
     row0 = packed.ports.row[k]
     d = packed.ports.row[k + 1] - row0
-    mu = packed.ports.mu_s[k]
-    limit = mu * y.N[k]
+    limit = break_away(packed.ports, packed.laws, k, s, y.N[k]) * y.N[k]
     first = max(0.0, limit * limit - slip_speed(y.F, row0, d) ** 2)
     n_s = one.tab.c.shape[0]
     # stage multipliers are of lower order: a hair beyond the cone inside the step is left to its end
     hair = 1e-6 * limit * limit
-    limit = mu * end.N[k]
+    limit = break_away(packed.ports, packed.laws, k, s, end.N[k]) * end.N[k]
     last = limit * limit - slip_speed(end.F, row0, d) ** 2
     # and in a very short step they are the round-off of velocities over the step
     unknown = force_noise(packed, y, k, end.t[0] - y.t[0]) > 1e-8 * limit
     for j in range(n_s - 1):
-        limit = mu * one.w.N[j, k]
+        limit = break_away(packed.ports, packed.laws, k, s, one.w.N[j, k]) * one.w.N[j, k]
         one.margin[j] = limit * limit - slip_speed(one.w.F[j], row0, d) ** 2 + hair
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
@@ -235,7 +235,8 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: in
     if y.mode[k] == SLIP:
         other = one.w.r[one.tab.c.shape[0] - 1, k]
     else:
-        other = packed.ports.mu_s[k] * end.N[k] - slip_speed(end.F, row0, d)
+        limit = break_away(packed.ports, packed.laws, k, s, end.N[k]) * end.N[k]
+        other = limit - slip_speed(end.F, row0, d)
     if other < value:
         found[1] = 0.0
         return float(other)

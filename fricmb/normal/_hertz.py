@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from fricmb.normal._base import NormalLaw
 
@@ -29,6 +29,8 @@ class Hertz(NormalLaw):
     restitution interpreted as damping in vibroimpact, Journal of Applied Mechanics 42 (1975) 440-445.
     """
 
+    positive: ClassVar[tuple[str, ...]] = ("stiffness",)
+
     stiffness: Any
     damping: Any = 0.0
     preload: Any = 0.0
@@ -38,21 +40,25 @@ class Hertz(NormalLaw):
         self._set("damping", self._number("damping", self.damping, minimum=0.0))
         super().__post_init__()
 
-    def _approach(self, e: Any) -> Any:
+    def _approach(self, e: Any) -> tuple[Any, Any]:
+        """Approach and its magnitude; real also for SymPy, and with derivatives that are finite at 0."""
         import sympy
 
-        return sympy.cbrt(self.preload / self.stiffness) ** 2 - e
+        from fricmb.values._symbols import norm
+
+        delta = sympy.cbrt(self.preload / self.stiffness) ** 2 - e
+        return delta, norm((delta,))
 
     def define_normal(self, e: Any, e_dot: Any) -> Any:
         """Negative beyond the opening, so that its instant is a change of sign."""
         import sympy
 
-        delta = self._approach(e)
-        return self.stiffness * delta * sympy.sqrt(sympy.Abs(delta)) * (1 - self.damping * e_dot)
+        delta, size = self._approach(e)
+        return self.stiffness * delta * sympy.sqrt(size) * (1 - self.damping * e_dot)
 
     def define_stored(self, e: Any) -> Any:
         """Antiderivative of N(e, 0) up to the opening."""
         import sympy
 
-        delta = self._approach(e)
-        return -2 * self.stiffness * delta**2 * sympy.sqrt(sympy.Abs(delta)) / 5
+        _, size = self._approach(e)
+        return -2 * self.stiffness * size**2 * sympy.sqrt(size) / 5

@@ -120,7 +120,9 @@ class ContactArrays:
         _check_cone(contact, mu_s, limit)
         self.law.append(LAW_CONSTANT if constant else LAW_COEFFICIENT)
         self.law_table.add(NO_TEMPLATE if constant else template.address, () if constant else p)
-        self.mu_s.append(max(mu_s, limit))
+        follows = law.static_path is None and template.facts.get("load_dependent", compiled)
+        varies = isinstance(contact, Contact) and contact.normal_kind != "constant"
+        self.mu_s.append(-max(limit, 1e-290) if follows and varies else max(mu_s, limit))
         self.mu_0.append(limit)
 
     def _add_normal(self, contact: Contact) -> None:

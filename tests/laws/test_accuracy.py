@@ -1,6 +1,7 @@
 """Laws in motion against closed forms and certified digits."""
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -217,3 +218,26 @@ def test_rate_and_state_sticks_and_slips_on_a_belt(evolution):
     assert creep[sol.t > 0.6].max() > 0.05
     assert sol.stats.n_steps < 3000
     assert np.abs(sol.energy.residual).max() < 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Saturating(fm.FrictionLaw):
+    mu_0: float
+    N_ref: float
+
+    def define_coefficient(self, r, N):
+        return self.mu_0 / (1 + N / self.N_ref)
+
+
+@pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
+def test_break_away_follows_the_normal_force(method):
+    """mu(N) N = 6 N/(1 + N/10)/10 under N = 10 - t holds a load of 2 until N = 5; then slip under mu(N) N."""
+    law = Saturating(mu_0=0.6, N_ref=10.0)
+    block = fm.Body("block", mass=1.0)
+    pull = fm.Force("pull", block, axis="x", value=2.0)
+    scene = fm.Scene("s", [block, pull, fm.Contact("sole", block, law=law, normal_force=10.0 - fm.t)])
+    sol = fm.simulate(scene, t_end=7.0, rtol=1e-9, method=method)
+    assert [event.kind for event in sol.events] == ["slip"]
+    assert sol.events[0].t == pytest.approx(5.0, abs=1e-8)
+    # v' = 2 - 6 N/(10 + N) = -4 + 60/(20 - t)
+    assert sol.velocity("block.x")[-1] == pytest.approx(-8.0 + 60.0 * np.log(15.0 / 13.0), rel=1e-7)

@@ -73,3 +73,43 @@ def test_friction_that_presses_itself_on_flutters():
         swing = np.abs(sol["block.y"] - y)
         late, early = swing[sol.t > 40].max(), swing[sol.t < 20].max()
         assert (late > 3.0 * early) == grows
+
+
+def time_of_contact(law):
+    """How long a mass of 1 at the speed 0.1 stays in contact: half a swing, or Hertz's integral."""
+    if isinstance(law, fm.normal.Spring):
+        return np.pi / 100.0
+    deepest = (5.0 * 0.1**2 / (4.0 * 1e4)) ** 0.4
+    # u = 1 - w^2 takes the root at u = 1 away
+    whole = quad(lambda w: 2.0 * w / np.sqrt(1.0 - (1.0 - w * w) ** 2.5), 0.0, 1.0, epsrel=1e-12)[0]
+    return 2.0 * deepest / 0.1 * whole
+
+
+@pytest.mark.parametrize("method", ["bdf", "radau"])
+@pytest.mark.parametrize("kind", [fm.normal.Hertz, fm.normal.Spring])
+def test_contact_is_made_without_preload(kind, method):
+    """From touching at 0.1: the speed turns round, and friction takes mu times the impulse of N."""
+    law = kind(axis="y", stiffness=1e4)
+    sol = fm.simulate(slider(law, x=1.0, y=-0.1), t_end=0.5, rtol=1e-9, method=method)
+    assert [event.kind for event in sol.events] == ["close", "open"]
+    assert sol.events[0].t == pytest.approx(0.0, abs=1e-12)
+    assert sol.events[1].t == pytest.approx(time_of_contact(law), rel=1e-6)
+    assert sol.velocity("block.y")[-1] == pytest.approx(0.1, rel=1e-7)
+    assert sol.velocity("block.x")[-1] == pytest.approx(1.0 - 0.5 * 0.2, rel=1e-8)
+    assert np.abs(sol.energy.residual).max() < 1e-8
+
+
+@pytest.mark.parametrize("kind", [fm.normal.Hertz, fm.normal.Spring])
+def test_a_bouncing_block_comes_to_rest_along_the_ground(kind):
+    """It sticks while pressed, is open without a force at its foot, and lands at rest."""
+    block = fm.Body("block", mass=1.0, axes="xy", velocity={"x": 1.0, "y": 0.1})
+    sole = fm.Contact(
+        "sole", block, law=fm.laws.Coulomb(mu_s=0.5), normal_force=kind(axis="y", stiffness=1e4), axes="x"
+    )
+    weight = fm.Force("weight", block, axis="y", value=-9.81)
+    sol = fm.simulate(fm.Scene("s", [block, sole, weight]), t_end=1.0, rtol=1e-8, method="bdf")
+    kinds = [event.kind for event in sol.events]
+    stop = kinds.index("stick")
+    assert kinds[stop + 1 : stop + 5] == ["open", "close", "open", "close"]
+    assert np.abs(sol.velocity("block.x")[sol.t > sol.events[stop].t]).max() < 1e-12
+    assert np.abs(sol.energy.residual).max() < 1e-7

@@ -96,7 +96,7 @@ def search_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
         elif y.mode[k] == STICK:
             for j in range(n_s):
                 one.margin[j] = slip_speed(w.F[j], row0, d) ** 2
-            limit = packed.ports.mu_s[k] * y.N[k]
+            limit = abs(packed.ports.mu_s[k]) * y.N[k]
             noise = 100.0 * force_noise(packed, y, k, h) * max(limit, slip_speed(y.F, row0, d))
             worst = max(worst, rough(one, slip_speed(y.F, row0, d) ** 2, limit * limit + noise))
     return worst

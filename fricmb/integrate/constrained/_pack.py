@@ -140,7 +140,7 @@ def _pack(problem: Problem) -> Mech:
         port_joint[m.joints.port[j]] = j
     solid = np.ascontiguousarray
     port = Port(
-        port_joint, _table(m.slip), solid(contacts.w), solid(contacts.law, np.int8), solid(contacts.mu_s),
+        port_joint, _table(m.slip), solid(contacts.w), solid(contacts.law, np.int8), solid(np.abs(contacts.mu_s)),
         solid(contacts.mu_0), solid(contacts.z_start, np.int64), solid(contacts.normal, np.int8),
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
         _table(contacts.law_table), _table(contacts.normal_table),
