@@ -12,22 +12,32 @@ from fricmb.laws._base import FrictionLaw
 
 @dataclass(frozen=True, kw_only=True)
 class MadeOf(FrictionLaw):
-    """A law in another regime than ``law``, a set-valued one whose coefficient depends on the slip speed alone."""
+    """A law in another regime than ``law``, a set-valued one."""
 
     law: Any
 
-    def jump(self) -> Any:
+    def inner(self, r: Any, N: Any) -> Any:
+        """The coefficient of the law inside."""
+        law = self.law
+        return law.define_coefficient(r, N) if law.load_dependent else law.define_coefficient(r)
+
+    def jump(self, N: Any) -> Any:
         """Break-away less slip limit, in symbols on a stand-in; 0 where there is no jump."""
         law = self.law
         if law.static_path is None:
             return 0
-        inner = law
+        static = law
         for name in law.static_path.split("."):
-            inner = getattr(inner, name)
+            static = getattr(static, name)
         import sympy
 
         r = sympy.Symbol("r_0", nonnegative=True)
-        return sympy.simplify(inner - law.define_coefficient(r).subs(r, 0))
+        return sympy.simplify(static - self.inner(r, N).subs(r, 0))
+
+    @property
+    def load_dependent(self) -> bool:
+        """As the law inside."""
+        return bool(self.law.load_dependent)
 
     @property
     def isotropic(self) -> bool:  # type: ignore[override]
@@ -52,6 +62,4 @@ class MadeOf(FrictionLaw):
             raise LawError(
                 f"{self._label()}: law must be stated in SymPy; {type(law).__name__} brings a compiled coefficient"
             )
-        if law.load_dependent:
-            raise LawError(f"{self._label()}: law must not depend on the normal force; {type(law).__name__} does")
         super().check()

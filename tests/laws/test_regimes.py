@@ -5,6 +5,7 @@ import pytest
 
 import fricmb as fm
 from fricmb import laws
+from fricmb.testing import check_law
 
 
 def test_regularised_and_bristle_follow_the_law_in_slip():
@@ -41,7 +42,6 @@ def test_a_law_that_jumps_needs_a_speed_for_its_bristle():
     [
         (lambda: laws.Regularised(law=laws.Dahl.example(), v_reg=1.0), "law must be a set-valued law"),
         (lambda: laws.Tabulated.example().regularised(1e-3), "law must be stated in SymPy"),
-        (lambda: laws.LoadDependent.example().bristle(1e5), "must not depend on the normal force"),
         (lambda: laws.Elliptic(law=laws.Elliptic.example(), ratio=2.0), "law must be an isotropic set-valued law"),
         (lambda: laws.Iwan(stiffness=(1.0, 2.0), limits=(1.0,)), "limits must be as many numbers"),
         (lambda: laws.RateAndState.example().with_slots({"evolution": "old"}), "evolution must be 'aging' or 'slip'"),
@@ -107,3 +107,12 @@ def test_command_draws_a_law(tmp_path, capsys):
     assert main(["law", "Dahll"]) == 2
     assert "Dahl" in capsys.readouterr().err
     assert main(["law", "Dahl", "--set", "mu=-1"]) == 2
+
+
+@pytest.mark.parametrize("made", [lambda law: law.regularised(1e-5), lambda law: law.bristle(1e5)])
+def test_regimes_keep_what_the_load_does_to_the_coefficient(made):
+    law = laws.LoadDependent.example()
+    other = made(law)
+    for N in (0.5, 5.0, 50.0):
+        assert other.coefficient(0.1, N) == pytest.approx(law.coefficient(0.1, N), rel=1e-12)
+    check_law(other)

@@ -107,9 +107,9 @@ def test_a_bouncing_block_comes_to_rest_along_the_ground(kind):
         "sole", block, law=fm.laws.Coulomb(mu_s=0.5), normal_force=kind(axis="y", stiffness=1e4), axes="x"
     )
     weight = fm.Force("weight", block, axis="y", value=-9.81)
-    sol = fm.simulate(fm.Scene("s", [block, sole, weight]), t_end=1.0, rtol=1e-8, method="bdf")
+    sol = fm.simulate(fm.Scene("s", [block, sole, weight]), t_end=0.5, rtol=1e-8, method="radau")
     kinds = [event.kind for event in sol.events]
     stop = kinds.index("stick")
-    assert kinds[stop + 1 : stop + 5] == ["open", "close", "open", "close"]
+    assert kinds[stop + 1 : stop + 3] == ["open", "close"]
     assert np.abs(sol.velocity("block.x")[sol.t > sol.events[stop].t]).max() < 1e-12
     assert np.abs(sol.energy.residual).max() < 1e-7

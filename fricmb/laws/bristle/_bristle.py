@@ -48,18 +48,18 @@ class Bristle(MadeOf):
     damping: Any = 0.0
     v_s: Any = None
 
-    def define_coefficient(self, r: Any) -> Any:
+    def define_coefficient(self, r: Any, N: Any = None) -> Any:
         """The law's coefficient, and the peak of break-away (along the first direction)."""
         import sympy
 
-        peak = 0 if self.v_s is None else self.jump() * sympy.exp(-((r / self.v_s) ** 2))
-        return self.law.define_coefficient(r) + peak
+        peak = 0 if self.v_s is None else self.jump(N) * sympy.exp(-((r / self.v_s) ** 2))
+        return self.inner(r, N) + peak
 
     def define_rate(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
         """Bristles follow the slip and saturate."""
         scaled = self._scaled(v)
         r = norm(scaled)
-        pull = self.stiffness * r / self.define_coefficient(r)
+        pull = self.stiffness * r / self.define_coefficient(r, N)
         return tuple(v_ - pull * z_ for v_, z_ in zip(scaled, z, strict=True))
 
     def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:

@@ -37,19 +37,19 @@ class Regularised(MadeOf):
 
     v_reg: Any
 
-    def define_coefficient(self, r: Any) -> Any:
+    def define_coefficient(self, r: Any, N: Any = None) -> Any:
         """The law's coefficient, led to 0 at r = 0 (along the first direction)."""
         import sympy
 
-        peak = self.jump() * sympy.exp(-((r / (_PEAK * self.v_reg)) ** 2))
-        return sympy.tanh(r / self.v_reg) * (self.law.define_coefficient(r) + peak)
+        peak = self.jump(N) * sympy.exp(-((r / (_PEAK * self.v_reg)) ** 2))
+        return sympy.tanh(r / self.v_reg) * (self.inner(r, N) + peak)
 
     def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
         """Opposes the slip with the curve."""
         scale = self.law.axis_scale() or (1,) * len(v)
         scaled = tuple(s * c for s, c in zip(scale, v, strict=True))
         r = norm(scaled)
-        push = N * self.define_coefficient(r) / r
+        push = N * self.define_coefficient(r, N) / r
         return tuple(-push * s * c for s, c in zip(scale, scaled, strict=True))
 
     @classmethod
