@@ -30,7 +30,7 @@ def held_at_rest(packed: Packed, y: State, one: OneStep, i: int) -> float:
     for k in range(y.mode.shape[0]):
         if y.mode[k] == STICK:
             for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-                push += abs(one.exact.MB[a, i]) * packed.ports.mu_s[k] * y.N[k]
+                push += abs(one.exact.MB[a, i]) * abs(packed.ports.mu_s[k]) * y.N[k]
     return push
 
 

@@ -143,7 +143,7 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     N = contacts.N
     return {
         "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
-        "compliance": compliance, "belt": contacts.w, "stick": contacts.mu_s * N, "slip": contacts.mu_0 * N,
+        "compliance": compliance, "belt": contacts.w, "stick": np.abs(contacts.mu_s) * N, "slip": contacts.mu_0 * N,
         "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "owner": owner,
         "plain": plain.astype(np.int8), "special": np.flatnonzero(~plain),
         "first_dof": rows.index[rows.start[:-1]],

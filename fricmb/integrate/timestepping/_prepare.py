@@ -144,8 +144,9 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
     varies = contacts.normal != NORMAL_CONSTANT
     return {
         "row": contacts.row, "w_start": W.start, "w_dof": W.index, "w_coef": W.value, "belt": contacts.w,
-        "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "law": contacts.law, "mu_s": contacts.mu_s,
-        "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N), "var": varies.astype(np.int8),
+        "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "law": contacts.law,
+        "mu_s": np.abs(contacts.mu_s), "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N),
+        "var": varies.astype(np.int8),
         "acts": (contacts.normal == NORMAL_LAW).astype(np.int8), "n_start": Wn.start, "n_dof": Wn.index,
         "n_coef": Wn.value, "N0": contacts.N0, "signals": _table(problem.signals.table),
         "laws": _table(contacts.law_table), "normals": _table(contacts.normal_table),
