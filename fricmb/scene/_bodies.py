@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from fricmb.errors import SceneError
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._part import LETTERS, End, Part
+from fricmb.scene._part import LETTERS, Part, PartEnd
 
 
 def check_letters(owner: Part, argument: str, axes: Any) -> str:
@@ -33,7 +33,7 @@ def check_keys(owner: Part, argument: str, values: Any, known: tuple[str, ...]) 
 
 
 @dataclass(frozen=True, eq=False)
-class Body(Part, End):
+class Body(PartEnd):
     """A rigid body that moves along axes without turning.
 
     Parameters
@@ -81,16 +81,6 @@ class Body(Part, End):
         return values
 
     @property
-    def end_name(self) -> str:
-        """The body's name."""
-        return self.name
-
-    @property
-    def owner(self) -> Part:
-        """Itself."""
-        return self
-
-    @property
     def letters(self) -> tuple[str, ...]:
         """Its axes."""
         return tuple(self.axes)
@@ -104,13 +94,9 @@ class Body(Part, End):
         """A degree of freedom."""
         return LinearForm.of({f"{self.name}.{letter}": 1.0})
 
-    def moved_to(self, part: Part) -> End:
-        """The other version."""
-        return part if isinstance(part, End) else self
-
 
 @dataclass(frozen=True, eq=False)
-class Driven(Part, End):
+class Driven(PartEnd):
     """A body whose motion is prescribed.
 
     Parameters
@@ -153,16 +139,6 @@ class Driven(Part, End):
                 self._refuse(f"position[{letter!r}]", self.position[letter], "a number where the velocity is given too")
 
     @property
-    def end_name(self) -> str:
-        """The body's name."""
-        return self.name
-
-    @property
-    def owner(self) -> Part:
-        """Itself."""
-        return self
-
-    @property
     def letters(self) -> tuple[str, ...] | None:
         """Its axes, if restricted."""
         return None if self.axes is None else tuple(self.axes)
@@ -180,7 +156,3 @@ class Driven(Part, End):
     def motion(self, letter: str) -> LinearForm:
         """The prescribed motion; 0 along an axis that is not named."""
         return LinearForm.of({f"{self.name}.{letter}": 1.0} if letter in self.moving else {})
-
-    def moved_to(self, part: Part) -> End:
-        """The other version."""
-        return part if isinstance(part, End) else self

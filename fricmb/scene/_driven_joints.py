@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
 from fricmb.scene._expressions import check_expression
@@ -27,6 +27,7 @@ class DrivenAngle(Joint):
         Instead: its rate, from the declared relative angle on.
     """
 
+    only_relative: ClassVar[bool] = True
     _: KW_ONLY
     angle: Any = None
     speed: Any = None
@@ -70,6 +71,7 @@ class DrivenSlide(PlaneJoint):
         Instead: its rate, from 0 on.
     """
 
+    only_relative: ClassVar[bool] = True
     _: KW_ONLY
     angle: Any = 0.0
     distance: Any = None

@@ -55,6 +55,9 @@ class Joint(Part):
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b")
     #: Whether the joint has slip and load.
     takes_friction: ClassVar[bool] = False
+    #: Whether its constraints depend on the motion of its ends relative to one another alone: they stay satisfied where
+    #: both ends are moved and turned as one.
+    only_relative: ClassVar[bool] = False
 
     a: End
     b: End = GROUND
@@ -102,6 +105,18 @@ class Joint(Part):
     @property
     def one_sided(self) -> bool:
         """Whether its single multiplier pushes only (lam >= 0)."""
+        return False
+
+    @property
+    def relative(self) -> bool:
+        """Whether the joint sees no more than the relative motion of two ends that turn."""
+        return self.only_relative and all(
+            hasattr(end.owner, "inertia") or not getattr(end.owner, "dof_names", ()) for end in (self.a, self.b)
+        )
+
+    @property
+    def hands_over(self) -> bool:
+        """Whether a one-sided joint whose contact is lost lets go and the run goes on without it."""
         return False
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:

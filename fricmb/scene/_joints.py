@@ -26,6 +26,7 @@ class Revolute(PlaneJoint):
     friction : FrictionLaw, optional
     """
 
+    only_relative: ClassVar[bool] = True
     takes_friction: ClassVar[bool] = True
     _: KW_ONLY
     radius: Any = 0.0
@@ -68,6 +69,8 @@ class Revolute(PlaneJoint):
 class Fixed(PlaneJoint):
     """Two points stay together, and the bodies keep their relative angle.  Reaction: force (x, y) and torque on a."""
 
+    only_relative: ClassVar[bool] = True
+
     def __post_init__(self) -> None:
         super().__post_init__()
         self.local_coordinates()
@@ -99,6 +102,7 @@ class Prismatic(PlaneJoint):
         Normal force ``|N1| + |N2|`` with ``N1, N2 = force/2 +- torque/guide``.
     """
 
+    only_relative: ClassVar[bool] = True
     takes_friction: ClassVar[bool] = True
     _: KW_ONLY
     angle: Any = 0.0
@@ -149,6 +153,7 @@ class Rod(PlaneJoint):
         > 0.
     """
 
+    only_relative: ClassVar[bool] = True
     positive: ClassVar[tuple[str, ...]] = ("length",)
     _: KW_ONLY
     length: Any

@@ -14,7 +14,7 @@ from fricmb.errors import unknown_name
 from fricmb.scene._arrays import check_array, check_vector
 from fricmb.scene._bodies import check_keys, check_letters
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._part import End, Part
+from fricmb.scene._part import End, Part, PointEnd
 from fricmb.values import value_of
 
 
@@ -279,35 +279,16 @@ class ModalBody(Part):
 
 
 @dataclass(frozen=True)
-class Point(End):
+class Point(PointEnd):
     """A named point of a modal body; made by :meth:`ModalBody.point`."""
 
     body: ModalBody
     point: str
 
     @property
-    def end_name(self) -> str:
-        """``"plate.tip"``."""
-        return f"{self.body.name}.{self.point}"
-
-    @property
-    def owner(self) -> Part:
-        """The modal body."""
-        return self.body
-
-    @property
     def letters(self) -> tuple[str, ...]:
         """Axes of the body."""
         return tuple(self.body.axes)
-
-    @property
-    def movable(self) -> bool:
-        """Always."""
-        return True
-
-    def motion(self, letter: str) -> LinearForm:
-        """``"plate.tip.x"``; :meth:`Scene.expand` turns it into modes."""
-        return LinearForm.of({f"{self.end_name}.{letter}": 1.0})
 
     def moved_to(self, part: Part) -> End:
         """The point of the same name."""

@@ -113,21 +113,55 @@ class End:
         raise NotImplementedError
 
 
-@dataclass(frozen=True, eq=False)
-class Ground(Part, End):
-    """What never moves; there is one, :data:`GROUND`."""
-
-    name: str = "ground"
+class PartEnd(Part, End):
+    """A part that is an end itself."""
 
     @property
     def end_name(self) -> str:
-        """Its name."""
+        """The part's name."""
         return self.name
 
     @property
     def owner(self) -> Part:
-        """Itself; never listed in a scene."""
+        """Itself."""
         return self
+
+    def moved_to(self, part: Part) -> End:
+        """The other version."""
+        return part if isinstance(part, End) else self
+
+
+class PointEnd(End):
+    """A named point of a body, whose fields are ``body`` and ``point``; forces move it."""
+
+    body: Part
+    point: str
+
+    @property
+    def end_name(self) -> str:
+        """``"plate.tip"``."""
+        return f"{self.body.name}.{self.point}"
+
+    @property
+    def owner(self) -> Part:
+        """The body."""
+        return self.body
+
+    @property
+    def movable(self) -> bool:
+        """Always."""
+        return True
+
+    def motion(self, letter: str) -> LinearForm:
+        """``"plate.tip.x"``: what it is in terms of the body's coordinates is known to the scene."""
+        return LinearForm.of({f"{self.end_name}.{letter}": 1.0})
+
+
+@dataclass(frozen=True, eq=False)
+class Ground(PartEnd):
+    """What never moves; there is one, :data:`GROUND`."""
+
+    name: str = "ground"
 
     @property
     def letters(self) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from fricmb.errors import SceneError, unknown_name
 from fricmb.scene._bodies import Body, check_keys
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._part import GROUND, End, Part
+from fricmb.scene._part import GROUND, End, Part, PartEnd, PointEnd
 from fricmb.values import is_plain, value_of
 
 PLANE = ("x", "y")
@@ -30,7 +30,7 @@ def check_pair(owner: Part, argument: str, value: Any) -> tuple[Any, Any]:
 
 
 @dataclass(frozen=True, eq=False)
-class RigidBody(Part, End):
+class RigidBody(PartEnd):
     """A rigid body in the plane: its centre of mass moves along x and y, and it turns.
 
     Degrees of freedom ``"name.x"``, ``"name.y"`` (centre of mass) and ``"name.angle"`` (rad, counter-clockwise).
@@ -95,16 +95,6 @@ class RigidBody(Part, End):
         return {**getattr(self, argument), "angle": turn}
 
     @property
-    def end_name(self) -> str:
-        """The body's name."""
-        return self.name
-
-    @property
-    def owner(self) -> Part:
-        """Itself."""
-        return self
-
-    @property
     def letters(self) -> tuple[str, ...]:
         """The plane."""
         return PLANE
@@ -117,10 +107,6 @@ class RigidBody(Part, End):
     def motion(self, letter: str) -> LinearForm:
         """The centre of mass along an axis."""
         return LinearForm.of({f"{self.name}.{letter}": 1.0})
-
-    def moved_to(self, part: Part) -> End:
-        """The other version."""
-        return part if isinstance(part, End) else self
 
     def point(self, name: str, offset: Any = None) -> RigidPoint:
         """A point fixed in the body: an end for elements, contacts and joints.
@@ -156,7 +142,7 @@ class RigidBody(Part, End):
 
 
 @dataclass(frozen=True)
-class RigidPoint(End):
+class RigidPoint(PointEnd):
     """A point fixed in a rigid body; made by :meth:`RigidBody.point`.
 
     ``own``: its offset, where the body's ``points`` do not list it.
@@ -173,28 +159,9 @@ class RigidPoint(End):
         return u, v
 
     @property
-    def end_name(self) -> str:
-        """``"crank.tip"``."""
-        return f"{self.body.name}.{self.point}"
-
-    @property
-    def owner(self) -> Part:
-        """The body."""
-        return self.body
-
-    @property
     def letters(self) -> tuple[str, ...]:
         """The plane."""
         return PLANE
-
-    @property
-    def movable(self) -> bool:
-        """Always."""
-        return True
-
-    def motion(self, letter: str) -> LinearForm:
-        """``"crank.tip.x"``: a function of position and angle of the body."""
-        return LinearForm.of({f"{self.end_name}.{letter}": 1.0})
 
     def moved_to(self, part: Part) -> End:
         """The point of the same name."""

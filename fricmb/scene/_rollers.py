@@ -13,7 +13,43 @@ from fricmb.scene._rigid import angle_of
 
 
 @dataclass(frozen=True, eq=False)
-class RollerOnLine(PlaneJoint):
+class Surface(PlaneJoint):
+    """What a line and a circle share: whether they hold from both sides, and what happens where contact is lost."""
+
+    takes_friction: ClassVar[bool] = True
+    only_relative: ClassVar[bool] = True
+    _: KW_ONLY
+    push_only: bool = False
+    when_lost: str = "end"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.push_only, bool):
+            self._refuse("push_only", self.push_only, "True or False")
+        if self.when_lost not in ("end", "open"):
+            self._refuse("when_lost", self.when_lost, "'end' or 'open'")
+        if self.when_lost == "open" and not self.push_only:
+            self._refuse("when_lost", self.when_lost, "left out: without push_only contact is never lost")
+
+    @property
+    def one_sided(self) -> bool:
+        """As ``push_only``."""
+        return self.push_only
+
+    @property
+    def hands_over(self) -> bool:
+        """As ``when_lost``."""
+        return self.when_lost == "open"
+
+    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
+        """Magnitude of the reaction."""
+        import sympy
+
+        return lam[0] if self.push_only else sympy.Abs(lam[0])
+
+
+@dataclass(frozen=True, eq=False)
+class RollerOnLine(Surface):
     """A point of a stays on a line through b, fixed in b.  Reaction: force on a along the line's left-hand normal.
 
     Parameters
@@ -23,14 +59,18 @@ class RollerOnLine(PlaneJoint):
     angle : float
         Direction of the line in the axes of b; the normal is 90 degrees further.
     push_only : bool
-        The line can push but not pull; where it would have to pull, contact is lost and the run ends.
+        The line can push but not pull; where it would have to pull, contact is lost.
+    when_lost : str
+        "end": the run ends there with an error that says so.  "open": it goes on without this joint, and ends with an
+        error where the point meets the line again (impacts are not computed).  A scene that starts with the point
+        away from the line, on the side of the normal, or leaving it, starts open.
     slide : number or SymPy expression in ``fm.t``
         Velocity of the line's surface along the line.
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction.
     """
 
-    takes_friction: ClassVar[bool] = True
+    only_relative: ClassVar[bool] = True
     _: KW_ONLY
     angle: Any = 0.0
     push_only: bool = False
@@ -38,18 +78,11 @@ class RollerOnLine(PlaneJoint):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not isinstance(self.push_only, bool):
-            self._refuse("push_only", self.push_only, "True or False")
         self._set("slide", check_expression(self, "slide", self.slide, motions=False))
         self.local_coordinates()
 
     def _takes_expression(self, field: str) -> bool:
         return field == "slide"
-
-    @property
-    def one_sided(self) -> bool:
-        """As ``push_only``."""
-        return self.push_only
 
     def drives(self) -> tuple[Any, ...]:
         """The surface's own motion."""
@@ -82,15 +115,9 @@ class RollerOnLine(PlaneJoint):
         across = x[1] * sympy.cos(turn) - x[0] * sympy.sin(turn)
         return sympy.cos(turn), sympy.sin(turn), across, -1
 
-    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
-        """Magnitude of the reaction."""
-        import sympy
-
-        return lam[0] if self.push_only else sympy.Abs(lam[0])
-
 
 @dataclass(frozen=True, eq=False)
-class RollerOnCircle(PlaneJoint):
+class RollerOnCircle(Surface):
     """A point of a stays on a circle about b.  Reaction: force on a, outward.
 
     Parameters
@@ -99,11 +126,12 @@ class RollerOnCircle(PlaneJoint):
     a, b : ends
     radius : float
         > 0.
+    push_only, when_lost : bool, str
+        As of RollerOnLine; the circle pushes outward.
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction; slip relative to a circle that does not turn.
     """
 
-    takes_friction: ClassVar[bool] = True
     positive: ClassVar[tuple[str, ...]] = ("radius",)
     _: KW_ONLY
     radius: Any
@@ -123,9 +151,3 @@ class RollerOnCircle(PlaneJoint):
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Counter-clockwise along the circle."""
         return -x[1] / self.radius, x[0] / self.radius
-
-    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
-        """Magnitude of the reaction."""
-        import sympy
-
-        return sympy.Abs(lam[0])
