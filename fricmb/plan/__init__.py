@@ -2,6 +2,18 @@
 
 from fricmb.plan._make import make_plan
 from fricmb.plan._plan import Island, Omission, Plan, Selection
+from fricmb.plan._tree import Branch, Loop, Topology, topology
 from fricmb.plan._truncate import truncated
 
-__all__ = ["Island", "Omission", "Plan", "Selection", "make_plan", "truncated"]
+__all__ = [
+    "Branch",
+    "Island",
+    "Loop",
+    "Omission",
+    "Plan",
+    "Selection",
+    "Topology",
+    "make_plan",
+    "topology",
+    "truncated",
+]

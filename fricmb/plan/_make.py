@@ -13,6 +13,7 @@ from fricmb.plan._plan import Island, Plan
 from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
+from fricmb.plan._tree import topology
 from fricmb.plan._truncate import truncated
 from fricmb.scene import Body, Contact, Driven, Element, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
 
@@ -70,6 +71,7 @@ def _make(scene: Scene, wanted: Wanted | None) -> Plan:
     still = resting(scene, islands)
     idle = tuple(link.part.name for link in inside if link.idle and isinstance(link.part, Contact))
     order, bandwidth = narrow_order(coupling(inside, scene.dof_names), kept)
+    joined = topology(scene, (part.name for part in parts))
     return Plan(
         scene=scene.name,
         dofs=dofs,
@@ -84,6 +86,8 @@ def _make(scene: Scene, wanted: Wanted | None) -> Plan:
         order=tuple(dofs[i] for i in order),
         bandwidth=bandwidth,
         storage=_storage(len(dofs), bandwidth),
+        tree=joined.tree,
+        loops=joined.loops,
     )
 
 

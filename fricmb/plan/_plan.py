@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from fricmb.plan._tree import Branch, Loop
+
 
 @dataclass(frozen=True, kw_only=True)
 class Omission:
@@ -96,6 +98,11 @@ class Plan:
         Half-bandwidth of the structure in that order (0: diagonal).
     storage : str
         "diagonal", "banded" or "dense": what implicit steps keep of the structure.
+    tree : tuple of Branch
+        Of a mechanism: on what each body hangs, by which joint, and the coordinates that are that joint's own
+        (``sol["pin.angle"]``).  Runs keep the coordinates of bodies; see the page on mechanisms.
+    loops : tuple of Loop
+        Joints that close loops, and the joints along them.
     """
 
     scene: str
@@ -111,6 +118,8 @@ class Plan:
     order: tuple[str, ...]
     bandwidth: int
     storage: str
+    tree: tuple[Branch, ...] = ()
+    loops: tuple[Loop, ...] = ()
 
     @property
     def key(self) -> tuple[Any, ...]:
@@ -128,8 +137,14 @@ class Plan:
         lines += [f"  {name:<{width}}  {count}" for name, count in self.counts.items() if count or name in _ALWAYS]
         lines.append(f"  {'storage':<{width}}  {self.storage} (half-bandwidth {self.bandwidth})")
         if len(self.islands) > 1:
-            lines.append("islands (each run on its own)")
+            lines.append("islands (run together)" if self.tree else "islands (each run on its own)")
             lines += _some([f"  {island}" for island in self.islands])
+        if self.tree:
+            lines.append("tree of bodies and joints")
+            lines += _some([f"  {branch}" for branch in self.tree])
+        if self.loops:
+            lines.append("joints that close loops")
+            lines += _some([f"  {loop}" for loop in self.loops])
         if self.resting:
             lines.append("not run")
             lines += _some([f"  {item}" for item in self.resting])

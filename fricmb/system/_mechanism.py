@@ -12,6 +12,7 @@ from fricmb.equations import joint_template, numbers, place_template, signal_exp
 from fricmb.errors import SceneError
 from fricmb.integrate._mechanism import Entries, Joints, Mechanism, Places
 from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
+from fricmb.plan import topology
 from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
@@ -33,6 +34,7 @@ class JointArrays:
     rows: list[int] = field(default_factory=lambda: [0])
     port: list[int] = field(default_factory=list)
     one_sided: list[int] = field(default_factory=list)
+    hands_over: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     forms: list[tuple[Row, ...]] = field(default_factory=list)
 
@@ -44,6 +46,7 @@ class JointArrays:
         self.table.add(template.address, numbers(joint.bare()), [*(r.value() for r in rows), *(r.rate() for r in rows)])
         self.rows.append(self.rows[-1] + int(template.facts["rows"]))
         self.one_sided.append(int(joint.one_sided))
+        self.hands_over.append(int(joint.hands_over))
         self.names.append(joint.name)
         self.forms.append(tuple(rows))
         self.port.append(-1)
@@ -70,6 +73,7 @@ class JointArrays:
             row=np.array(self.rows, dtype=np.int64),
             port=np.array(self.port, dtype=np.int64),
             one_sided=np.array(self.one_sided, dtype=np.int8),
+            hands_over=np.array(self.hands_over, dtype=np.int8),
             names=tuple(self.names),
             dropped=np.zeros(self.rows[-1], dtype=np.int8),
         )
@@ -143,9 +147,10 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
 
 def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     """The problem with constraints marked that follow from others; friction needs reactions that are determined."""
-    from fricmb.integrate.constrained._assemble import redundancy
+    from fricmb.integrate.constrained._independent import redundancy
 
-    found = redundancy(problem, start)
+    groups = topology(scene, problem.mechanism.joints.names).groups if problem.mechanism else ()
+    found = redundancy(problem, start, groups)
     mechanism = problem.mechanism
     if not found.rows.size or mechanism is None:
         return problem
