@@ -1,4 +1,4 @@
-"""Classical differential-algebraic equations of index 1, with the published digits at their end.
+"""Classical differential-algebraic equations of index 1, with the published digits at their end; one is a mechanism.
 
 Test Set for Initial Value Problem Solvers, release 2.4 (F. Mazzia, C. Magherini, University of Bari, 2008): equations
 and reference solutions.  ``residual(t, y, yp, out)`` is compiled.
@@ -9,9 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+import fricmb as fm
+from fricmb.bench import _andrews
 from fricmb.bench._reference import Floats
 from fricmb.integrate._kernel import entry
 
@@ -20,7 +23,9 @@ from fricmb.integrate._kernel import entry
 class DaeCase:
     """An implicit equation ``residual(t, y, yp) = 0``; ``end`` is the solution at ``t_end``, ``size`` its scales.
 
-    ``quick``: part of the quick suite.  ``algebraic``: components without a derivative.
+    ``quick``: part of the quick suite.  ``algebraic``: components without a derivative.  ``compared``: number of
+    components whose end is known (None: all).  ``scene`` builds the mechanism that the equation describes, and ``read``
+    takes the compared components from its solution.
     """
 
     name: str
@@ -33,6 +38,9 @@ class DaeCase:
     size: Floats
     algebraic: tuple[int, ...] = ()
     quick: bool = False
+    compared: int | None = None
+    scene: Callable[[], fm.Scene] | None = None
+    read: Callable[[Any], Floats] | None = None
     source: str = "Test Set for IVP Solvers, release 2.4"
 
 
@@ -146,7 +154,7 @@ _ROBERTSON_END = (0.2083340149701255e-7, 0.8333360770334713e-13, 0.9999999791665
 
 def dae_cases() -> tuple[DaeCase, ...]:
     """The cases; a function, because two starts are computed with compiled residuals."""
-    akzo, transistor = _akzo_start(), _transistor_start()
+    akzo, transistor, mechanism = _akzo_start(), _transistor_start(), _andrews.start()
     ends = [np.array(end) for end in (_ROBERTSON_END, _AKZO_END, _TRANSISTOR_END, _RING_END)]
     return (
         DaeCase(
@@ -165,5 +173,11 @@ def dae_cases() -> tuple[DaeCase, ...]:
         DaeCase(
             name="ring_modulator", title="ring modulator", residual=ring_modulator, t_end=1e-3, y0=np.zeros(15),
             yp0=np.array([0.0] * 15), end=ends[3], size=np.abs(ends[3]),
+        ),
+        DaeCase(
+            name="andrews", title="Andrews' mechanism", residual=_andrews.andrews, t_end=0.03, y0=mechanism[0],
+            yp0=mechanism[1], end=np.array(_andrews.END), compared=14, algebraic=tuple(range(14, 27)), quick=True,
+            size=np.array([*np.abs(_andrews.END), *np.abs(mechanism[0][14:21]).clip(1e4), *[100.0] * 6]),
+            scene=fm.models.andrews, read=_andrews.angles,
         ),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Cost against size: chains of blocks with stick-slip, and a body of many modes with one contact."""
+"""Cost against size: chains of blocks with stick-slip, a body of many modes with one contact, chains of links."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ RTOL = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class SizeCase:
-    """Scenes that grow: ``build(n)``, run to ``t_end``, at ``sizes``."""
+    """Scenes that grow: ``build(n)``, run to ``t_end``, at ``sizes``.
+
+    ``per_step``: the motion is another one at every size, and what is compared is the time of an attempted step.
+    """
 
     name: str
     title: str
@@ -31,6 +34,7 @@ class SizeCase:
     t_end: float
     sizes: tuple[int, ...]
     quick: int = 2
+    per_step: bool = False
 
 
 def modal_belt(n: int) -> fm.Scene:
@@ -50,6 +54,15 @@ def modal_belt(n: int) -> fm.Scene:
     return fm.Scene(f"bar of {n} modes", [bar, belt, sole])
 
 
+def links(n: int) -> fm.Scene:
+    """An open chain of n pinned links that starts level and swings down under its weight."""
+    ends = {"a": (-0.5, 0.0), "b": (0.5, 0.0)}
+    bars = [fm.RigidBody(f"l{i}", mass=1.0, inertia=1.0 / 12.0, position=(i + 0.5, 0.0), points=ends) for i in range(n)]
+    held = [fm.ground_point(0.0, 0.0), *(bar.point("b") for bar in bars[:-1])]
+    pins = [fm.Revolute(f"j{i}", bar.point("a"), end) for i, (bar, end) in enumerate(zip(bars, held, strict=True))]
+    return fm.Scene(f"chain of {n} links", [*bars, *pins, fm.Gravity("weight")])
+
+
 SIZES = (
     SizeCase(
         name="chain", title="chain of n blocks on a belt, t = 20", build=models.stick_slip_chain, t_end=20.0,
@@ -59,11 +72,17 @@ SIZES = (
         name="modes", title="bar of n modes with one contact, t = 20", build=modal_belt, t_end=20.0,
         sizes=(5, 16, 50, 160, 500, 1600, 5000),
     ),
+    SizeCase(
+        name="links", title="open chain of n pinned links, one step", build=links, t_end=0.5,
+        sizes=(6, 12, 25, 50, 100, 200, 400), per_step=True,
+    ),
 )  # fmt: skip
 
 
 def size_methods(case: SizeCase) -> list[str]:
     """Integrators of variable step, and CVODE for the chain."""
+    if case.name == "links":
+        return ["auto", "bdf"]
     own = ["auto", *(name for name, kind in fm.integrators.items() if kind.adaptive)]
     return [*own, "CVODE"] if case.name == "chain" else own
 
@@ -88,6 +107,8 @@ def _own(case: SizeCase, scene: fm.Scene, method: str, n: int) -> dict[str, Any]
     begin = time.process_time()
     sol = fm.simulate(scene, t_end=case.t_end, rtol=RTOL, method=method, t_eval=times)
     seconds = time.process_time() - begin
+    if case.per_step:
+        seconds /= sol.stats.n_steps + sol.stats.n_rejected
     return {
         "seconds": seconds, "events": len(sol.events), "steps": sol.stats.n_steps, "used": sol.stats.method,
         "energy": float(np.abs(sol.energy.residual).max()), "error": _error(case, n, sol.q),

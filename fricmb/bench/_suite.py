@@ -131,7 +131,7 @@ def plan(options: Options) -> tuple[list[Cell], list[dict[str, str]]]:
             cells += [Cell("scene", case.name, method.name, setting) for setting in settings]
     for dae in dae_cases():
         if options.wants(dae.name, dae.quick):
-            for solver in dae_methods():
+            for solver in (method for method in dae_methods() if method.takes(dae)):
                 cells += [Cell("dae", dae.name, solver.name, setting) for setting in solver.settings(options.quick)]
     if options.wants("order"):
         labels = [label for label, _ in configurations() if not options.quick or label in _QUICK_ORDERS]
@@ -218,7 +218,7 @@ def _measured(worker: Worker, cell: Cell, options: Options, given_up: bool) -> d
         failure = str(error)
     if cell.family in ("size", "order"):
         return {"case": cell.case, "method": cell.method, "n": cell.n, "failure": failure}
-    own = {"solve_dae", *(method.name for method in own_methods())}
+    own = {"solve_dae", "simulate", *(method.name for method in own_methods())}
     peer = cell.method not in own
     return Outcome(case=cell.case, method=cell.method, setting=cell.setting, peer=peer, failure=failure).as_dict()
 

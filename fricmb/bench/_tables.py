@@ -34,7 +34,7 @@ def scoreboard(cells: Rows) -> list[dict[str, Any]]:
     for case in dict.fromkeys(cell["case"] for cell in cells):
         mine = [cell for cell in cells if cell["case"] == case]
         for level in LEVELS:
-            auto = fastest([cell for cell in mine if cell["method"] in ("auto", "solve_dae")], level)
+            auto = fastest([cell for cell in mine if cell["method"] in ("auto", "solve_dae", "simulate")], level)
             own = fastest([cell for cell in mine if not cell["peer"]], level)
             peer = fastest([cell for cell in mine if cell["peer"]], level)
             board.append({"case": case, "level": level, "auto": auto, "own": own, "peer": peer})
