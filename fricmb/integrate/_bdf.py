@@ -16,7 +16,7 @@ from fricmb.integrate._factor import Factor, forget, jacobians
 from fricmb.integrate._field import Scratch, set_state, set_time
 from fricmb.integrate._history import History, history, spectrum, start_history
 from fricmb.integrate._instant import State
-from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._integrator import Integrator, Tolerance, odd_stages
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._modes import Rest
 from fricmb.integrate._onestep import Accuracy, OneStep
@@ -117,19 +117,24 @@ class Bdf(Integrator):
     Every transition is located; around transitions, at starts and near landing Radau IIA of ``stages`` stages
     steps, and wherever it gets on faster.
     The spectrum limits the order at a step size where a lightly damped oscillation would grow.
+    Bodies that turn and joints are run on the index-reduced system, with constraints restored after every step.
 
     Parameters
     ----------
     stages : int, optional
-        Of the one-step method, 2 to 9; by default from the tolerance.
+        Of the one-step method, 2 to 9; by default from the tolerance (bodies that turn and joints: odd, 5).
     """
 
     name: ClassVar[str] = "bdf"
     order: ClassVar[str] = "1 to 5"
-    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
     pauses: ClassVar[bool] = True
 
     stages: int | None = None
+
+    def refuses(self, problem: Problem) -> str | None:
+        """Why this integrator cannot run the problem, or None."""
+        return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
 
     def integrate(
         self,
@@ -144,6 +149,13 @@ class Bdf(Integrator):
         memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
+        if problem.mechanism is not None:
+            from fricmb.integrate import constrained
+
+            count = self.stages or constrained.MULTISTEP_STAGES
+            return constrained.run_mechanism(
+                problem, start, t_end, tolerance, count, progress, memory, multistep=True
+            )
         stages = stages_for(problem, tolerance.rtol, self.stages)
         run = Collector(problem, start, t_end, "start_history", "bdf_step")
         acc = accuracy(run, tolerance)

@@ -24,6 +24,13 @@ class Tolerance:
     atol_v: Floats | None = None
 
 
+def odd_stages(name: str, problem: Problem, stages: int | None) -> str | None:
+    """Why a number of stages does not do for a mechanism, or None."""
+    if problem.mechanism is None or stages is None or stages % 2 == 1:
+        return None
+    return f"{name} takes bodies that turn and joints with an odd number of stages, got stages={stages}"
+
+
 class Integrator(ABC):
     """Base of all integrators.  Subclass, give the facts as class attributes, implement :meth:`integrate`.
 
@@ -50,7 +57,7 @@ class Integrator(ABC):
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
         if "constraints" not in self.takes and problem.mechanism is not None:
-            return f"{self.name} does not take bodies that turn and joints; 'radau' does"
+            return f"{self.name} does not take bodies that turn and joints; 'radau' and 'bdf' do"
         if "nonlinear" not in self.takes and len(problem.elements.table.address):
             return f"{self.name} takes linear structures with contacts; this scene has nonlinear elements"
         return None

@@ -78,15 +78,18 @@ class Joints:
         Its friction among the contacts of the problem, or -1.
     one_sided : (k,) int8
         1: its single multiplier pushes only (lam >= 0); where it would pull, contact is lost.
+    hands_over : (k,) int8
+        1: where contact is lost the joint opens and the run goes on.
     names : tuple of str
     dropped : (m,) int8
-        1: a constraint that follows from the others; its multiplier is 0.
+        1: a constraint that follows from the others; its multiplier is 0.  2: a joint that is open.
     """
 
     table: Templates = field(default_factory=Templates)
     row: Ints = field(default_factory=lambda: _i(1))
     port: Ints = field(default_factory=lambda: _i(0))
     one_sided: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    hands_over: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     names: tuple[str, ...] = ()
     dropped: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
 

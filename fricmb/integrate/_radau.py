@@ -9,7 +9,7 @@ from typing import ClassVar
 from fricmb.integrate._advance import Clock
 from fricmb.integrate._collect import Collector, accuracy, one_step, run_loop, stages_for
 from fricmb.integrate._drive import drive
-from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._integrator import Integrator, Tolerance, odd_stages
 from fricmb.integrate._problem import Floats, Problem, Start
 from fricmb.integrate._tableau import radau
 from fricmb.integrate._trajectory import Trajectory
@@ -34,9 +34,7 @@ class Radau(Integrator):
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
-        if problem.mechanism is not None and self.stages is not None and self.stages % 2 == 0:
-            return f"radau takes bodies that turn and joints with an odd number of stages, got stages={self.stages}"
-        return super().refuses(problem)
+        return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
 
     def integrate(
         self,

@@ -230,6 +230,8 @@ MECHANISM = (
     "margins",
     "change_modes",
 )
+#: What came later to them.
+MECHANISM_STEPS = ("violated", "sigma_after", "record_step", "copy_state", "radau_step")
 FURTHER = (
     "start_history",
     "bdf_step",
@@ -264,6 +266,8 @@ FURTHER = (
     "newton_condensed",
     "review_balls",
     "take_step",
+    *MECHANISM_STEPS,
+    "multistep",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

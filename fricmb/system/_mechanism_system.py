@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Floats
+from fricmb.integrate._problem import Floats, Start
 from fricmb.integrate._trajectory import Samples
 from fricmb.system._evaluate import _each
 from fricmb.system._system import System
@@ -58,7 +58,8 @@ class MechanismSystem(System):
         """Multipliers of a joint (m, n_t) at states with their friction modes."""
         if joint not in self.mechanism.joints.names:
             raise unknown_name("joint", joint, self.mechanism.joints.names)
-        from fricmb.integrate.constrained._trajectory import complete_at
+        from fricmb.integrate.constrained._assemble import away
+        from fricmb.integrate.constrained._trajectory import complete_open
 
         joints, nc = self.mechanism.joints, self.problem.n_c
         count, m = samples.t.size, self.mechanism.n_rows
@@ -66,7 +67,10 @@ class MechanismSystem(System):
         force[:, m : m + nc] = samples.F.T
         force[:, m + nc :] = np.where(samples.F != 0.0, -np.sign(samples.F), np.sign(samples.g)).T
         q, v, z = (np.ascontiguousarray(x.T) for x in (samples.q, samples.v, samples.z))
-        found = complete_at(self.problem, samples.t, q, v, z, samples.mode.T, force)
+        opened = np.zeros((count, len(joints.port)), np.int8)
+        for k in range(count if joints.hands_over.any() else 0):
+            opened[k] = away(self.problem, Start(t=float(samples.t[k]), q=q[k], v=np.zeros_like(q[k]), z=z[k]))
+        found = complete_open(self.problem, opened, samples.t, q, v, z, samples.mode.T, force)
         lam = self._least_norm(samples, found[3])
         i = joints.names.index(joint)
         return lam[joints.row[i] : joints.row[i + 1]]
@@ -75,11 +79,12 @@ class MechanismSystem(System):
         """Without what redundant constraints may push against one another."""
         if not self.mechanism.joints.dropped.any():
             return lam
-        from fricmb.integrate.constrained._assemble import RANK, constraints_at
+        from fricmb.integrate.constrained._independent import RANK
+        from fricmb.integrate.constrained._least import constraints_at
 
         found = np.empty_like(lam)
         for i, t in enumerate(samples.t.tolist()):
-            G = constraints_at(self.problem, t, samples.q[:, i], samples.v[:, i]).G
+            G = constraints_at(self.problem, t, samples.q[:, i], samples.v[:, i]).G.toarray()
             found[:, i] = np.linalg.lstsq(G.T, G.T @ lam[:, i], rcond=RANK)[0]
         return found
 

@@ -64,11 +64,13 @@ def test_four_bar_keeps_energy_and_closes():
     np.testing.assert_allclose(sol["rocker.tip.x"], sol["coupler.tip.x"], atol=1e-14)
 
 
-def test_constraints_hold_over_many_periods():
+@pytest.mark.slow
+def test_constraints_hold_over_ten_thousand_periods():
     body = fm.RigidBody("bar", mass=1.0, inertia=1e-9, position=(1.0, 0.0), angle=0.0)
     pin = fm.Revolute("pin", body.point("end", (-1.0, 0.0)))
     spring = fm.TorsionSpring("spring", body, stiffness=1.0, angle=-0.5)
-    sol = fm.simulate(fm.Scene("rotor", [body, pin, spring]), t_end=2 * np.pi * 200, rtol=1e-6)
+    sol = fm.simulate(fm.Scene("rotor", [body, pin, spring]), t_end=2 * np.pi * 10_000, rtol=1e-5)
+    assert len(sol.t) > 40_000  # several steps a period
     assert np.abs(np.hypot(sol["bar.x"], sol["bar.y"]) - 1.0).max() < 1e-14
     radial = sol["bar.x"] * sol.velocity("bar.x") + sol["bar.y"] * sol.velocity("bar.y")
     assert np.abs(radial).max() < 1e-13

@@ -11,7 +11,7 @@ from fricmb.integrate._laws import coefficient
 from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints, Problem
 from fricmb.integrate._room import block, room
 from fricmb.integrate.constrained._band import spread_of_pivots
-from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._field import call_joint, friction_at, move
 from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
 from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
 
@@ -19,15 +19,24 @@ from fricmb.integrate.constrained._state import ALL, Instant, State, instant_mat
 class Watch(NamedTuple):
     """What is watched along a run.
 
-    ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``pivot`` (2,): smallest over
-    largest pivot now and at the start; ``trigger`` (n_c + n_j, 2): functions that must not fall below 0; ``size`` (2,)
-    running maxima of slip velocity and force.
+    ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` (1,) the least
+    principal minor of the same for several of them (``which``, ``A``, ``B`` room for it).  ``sigma`` (4,): least
+    singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak`` (m,) its direction.
+    ``trigger`` (2 n_c + n_j,): what must not fall below 0; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
+    there are; ``size`` (3,) running maxima of slip velocity, force and position.
     """
 
     margin: Floats
-    pivot: Floats
+    together: Floats
+    which: Ints
+    A: Floats
+    B: Floats
+    sigma: Floats
+    weak: Floats
     trigger: Floats
     old: Floats
+    gap: Floats
+    opened: Ints
     size: Floats
     lam: Floats
 
@@ -37,17 +46,26 @@ def watch_of(problem: Problem) -> Watch:
     m = mechanism_of(problem)
     count = 2 * problem.n_c + len(m.joints.port)
     return room(Watch(
-        np.ones(problem.n_c), np.zeros(2), np.ones(count), np.ones(count), np.zeros(2), np.zeros(m.n_rows + 1)
+        np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
+        np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count), np.ones(count),
+        np.zeros(len(m.joints.port)),
+        np.array([int((m.joints.dropped == 2).sum())]), np.zeros(3), np.zeros(m.n_rows + 1),
     ))  # fmt: skip
 
 
+#: Inverse iterations where nothing is known of the direction.
+TURNS = 20
+#: Joints that slip at once and are looked at together.
+MANY = 8
 #: Directions of the reaction for which the margin of a joint is looked at.
 AROUND = 16
 
 
 @block
-def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, address: Ints) -> float:
-    """Margins of all ports that slip; returns the least.
+def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool, address: Ints) -> float:
+    """Margins of all ports that slip; returns the least.  ``whole``: also of them together, after a change of modes.
+
+    In between the minors of all of them, and of all but one, cannot vanish unless a margin does.
 
     One port's force F follows its load, F = -mu n N(lam), and lam answers F by dlam/dF: the force is unique as long as
     1 + mu n dN/dlam dlam/dF > 0 for every direction that the reaction may take (for a single port: Genot and Brogliato
@@ -92,14 +110,112 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, address: In
                 answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
             out.margin[c] = min(out.margin[c], 1.0 + factor * y.n[c] * answer)
         least = min(least, out.margin[c])
+    if whole:
+        out.together[0] = least_minor(mech, k, w, y, out)
+    return float(min(least, out.together[0]))
+
+
+@kernel
+def rubs(mech: Mech, y: State, c: int) -> bool:
+    """Whether port c is a joint that slips under rigid friction."""
+    return bool(mech.port.joint[c] >= 0 and y.mode[c] == SLIP and mech.port.law[c] != LAW_SMOOTH)
+
+
+@kernel
+def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> float:
+    """Least principal minor of ``A = 1 + mu n dN/dF`` over the joints that slip, at most MANY of them; 1 for one.
+
+    With loads that cannot be negative, forces are unique for whatever loads act if and only if all are positive (a
+    P-matrix: Cottle, Pang and Stone 1992, theorem 3.3.7).
+    """
+    n, m = y.q.shape[0], y.lam.shape[0]
+    port, joint = mech.port, mech.joint
+    count = 0
+    for c in range(y.F.shape[0]):
+        if rubs(mech, y, c) and count < MANY:
+            out.which[count] = c
+            count += 1
+    if count < 2:
+        return 1.0
+    for i in range(count):
+        y.mode[out.which[i]] = OPEN
+    code = instant_matrix(mech, k, w, y, ALL, mech.address)
+    for j in range(count if code == 0 else 0):
+        for i in range(w.r.shape[0]):
+            w.r[i] = 0.0
+        w.r[n + m + out.which[j]] = 1.0
+        solve_instant(mech, w)
+        for i in range(count):
+            c = out.which[i]
+            owner = port.joint[c]
+            rows = joint.row[owner + 1] - joint.row[owner]
+            n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
+            at = friction_at(n_x, rows) + n_x + n_x * n_x
+            mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[c] * y.g[c], max(y.N[c], 0.0))  # type: ignore[arg-type]
+            answer = 0.0
+            for r in range(rows):
+                answer += k.out[at + 1 + r] * w.r[n + joint.row[owner] + r]
+            one = 1.0 if i == j else 0.0
+            out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * y.n[c] * answer
+    for i in range(count):
+        y.mode[out.which[i]] = SLIP
+    if code != 0:
+        return -1.0
+    least = 1.0
+    for subset in range(1, 1 << count):
+        least = min(least, minor(out, count, subset))
     return least
 
 
 @kernel
+def minor(out: Watch, count: int, subset: int) -> float:
+    """Determinant of the rows and columns of A in a subset (by its bits)."""
+    size = 0
+    for i in range(count):
+        if (subset >> i) & 1:
+            column = 0
+            for j in range(count):
+                if (subset >> j) & 1:
+                    out.B[size * MANY + column] = out.A[i * MANY + j]
+                    column += 1
+            size += 1
+    value = 1.0
+    for p in range(size):
+        best = p
+        for i in range(p + 1, size):
+            if abs(out.B[i * MANY + p]) > abs(out.B[best * MANY + p]):
+                best = i
+        pivot = out.B[best * MANY + p]
+        if pivot == 0.0:
+            return 0.0
+        value *= pivot if best == p else -pivot
+        for j in range(p, size):
+            x = out.B[best * MANY + j]
+            out.B[best * MANY + j] = out.B[p * MANY + j]
+            out.B[p * MANY + j] = x
+        for i in range(p + 1, size):
+            x = out.B[i * MANY + p] / pivot
+            for j in range(p, size):
+                out.B[i * MANY + j] -= x * out.B[p * MANY + j]
+    return value
+
+
+@kernel
+def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
+    """Distances of open joints at a state."""
+    joint = mech.joint
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    for j in range(joint.port.shape[0]):
+        if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
+            call_joint(mech, k, j, y.lam, 0, mech.address)
+            out.gap[j] = k.out[0]
+
+
+@kernel
 def triggers(
-    mech: Mech, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats
+    mech: Mech, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats, at_end: bool
 ) -> None:
-    """Functions that fall below 0 where a mode ends: two a port, one a joint."""
+    """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps)."""
     port, joint = mech.port, mech.joint
     n_c = mode.shape[0]
     for c in range(n_c):
@@ -115,9 +231,40 @@ def triggers(
             out.trigger[2 * c] = direction[c] * g[c]
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
+        if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
+            out.trigger[2 * n_c + j] = out.gap[j] if at_end else 1.0
 
 
 @kernel
 def pivots_of(mech: Mech, w: Instant) -> float:
     """Smallest over largest pivot of the factored matrix of the instant."""
     return spread_of_pivots(mech.order.sizes, w.ab)
+
+
+@kernel
+def least_singular(mech: Mech, w: Instant, out: Watch, turns: int) -> float:
+    """Least singular value of ``G M^-1/2`` by inverse iteration; the matrix without friction is factored.
+
+    One turn follows its direction from step to step.  It is proportional to the distance from a singular position.
+    """
+    m = out.weak.shape[0]
+    if m == 0:
+        return 1.0
+    n = mech.order.place.shape[0] - mech.port.joint.shape[0] - mech.port.z_start[-1] - m
+    length = 0.0
+    for _ in range(turns):
+        length = 0.0
+        for i in range(m):
+            if mech.joint.dropped[i] != 0:
+                out.weak[i] = 0.0
+            length += out.weak[i] * out.weak[i]
+        for i in range(w.r.shape[0]):
+            w.r[i] = 0.0
+        for i in range(m):
+            w.r[n + i] = out.weak[i] / np.sqrt(max(length, 1e-300))
+        solve_instant(mech, w)
+        length = 0.0
+        for i in range(m):
+            out.weak[i] = w.r[n + i]
+            length += out.weak[i] * out.weak[i]
+    return float(length**-0.25) if length > 0.0 else 1.0

@@ -96,21 +96,6 @@ def solve_complex_band(address: Ints, sizes: Pivots, pivots: Pivots, ab: Complex
 
 
 @kernel
-def determinant_sign(sizes: Pivots, pivots: Pivots, ab: Floats) -> float:
-    """Sign of the determinant of a factored matrix (0 where a pivot vanished)."""
-    n, ldab = sizes[0], sizes[3]
-    diagonal = sizes[1] + sizes[2]
-    sign = 1.0
-    for j in range(n):
-        value = ab[j * ldab + diagonal]
-        if value == 0.0:
-            return 0.0
-        if (value < 0.0) != (pivots[j] != j + 1):
-            sign = -sign
-    return sign
-
-
-@kernel
 def spread_of_pivots(sizes: Pivots, ab: Floats) -> float:
     """Smallest over largest pivot magnitude of a factored matrix: a cheap sign of near singularity."""
     n, ldab = sizes[0], sizes[3]

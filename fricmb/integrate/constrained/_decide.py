@@ -125,6 +125,13 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
     port = mech.port
     for c in range(y.F.shape[0]):
         part[c] = 0
+        j = port.joint[c]
+        if j >= 0 and mech.joint.dropped[mech.joint.row[j]] == 2:
+            y.mode[c] = OPEN
+            y.F[c] = 0.0
+            continue
+        if j >= 0 and y.mode[c] == OPEN:
+            y.mode[c] = SLIP
         if port.normal[c] == NORMAL_LAW:
             if y.N[c] <= 0.0:
                 y.mode[c] = OPEN

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP
-from fricmb.integrate.constrained._accept import Watch, margins, triggers
+from fricmb.integrate._problem import SLIP, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._accept import Watch, gaps, least_singular, margins, triggers
+from fricmb.integrate.constrained._field import move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import EPS
+from fricmb.integrate.constrained._record import copy_state
 from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import Instant, State
+from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
 from fricmb.integrate.constrained._step import Control, end_step, try_step
 
 
@@ -19,19 +22,32 @@ def is_slip(j: int, y: State) -> bool:
 
 
 @kernel
-def violated(mech: Mech, out: Watch, end: State, st: Stages) -> int:
+def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
+    """Round-off of trigger j: of a slip velocity, a distance or a force."""
+    n_c = y.F.shape[0]
+    if is_slip(j, y):
+        return float(1e-13 * out.size[0])
+    if j >= 2 * n_c and mech.joint.dropped[mech.joint.row[j - 2 * n_c]] == 2:
+        return float(1e-13 * out.size[2])
+    return float(1e-13 * out.size[1])
+
+
+@block
+def violated(mech: Mech, k: Moving, out: Watch, end: State, st: Stages, address: Ints) -> int:
     """The trigger that is furthest below 0 at the end of the step or inside it, or -1; values at the end stay."""
     s = st.tab.c.shape[0]
     worst, least = -1, 0.0
+    if out.opened[0] > 0:
+        gaps(mech, k, end, out)
     for i in range(s):
         last = i == s - 1
         if last:
-            triggers(mech, out, end.mode, end.n, end.F, end.N, end.g, end.lam)
+            triggers(mech, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
         else:
-            triggers(mech, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i])
+            triggers(mech, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
         for j in range(out.trigger.shape[0]):
             value = out.trigger[j]
-            limit = 1e-12 * (out.size[0] if is_slip(j, end) else out.size[1])
+            limit = 10.0 * grain(mech, out, j, end)
             if value < -limit and value / max(limit, 1e-290) < least:
                 worst, least = j, value / max(limit, 1e-290)
     return worst
@@ -46,10 +62,14 @@ def locate_trigger(
     Regula falsi (Illinois) on steps of variable length; a step at whose end another trigger is below 0 replaces the
     upper bound.  Length 0 where a step could not be made.
     """
-    triggers(mech, out, y.mode, y.n, y.F, y.N, y.g, y.lam)
+    if out.opened[0] > 0:
+        gaps(mech, k, y, out)
+    triggers(mech, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
     low, f_low = 0.0, max(out.trigger[j], 0.0)
-    triggers(mech, out, end.mode, end.n, end.F, end.N, end.g, end.lam)
+    if out.opened[0] > 0:
+        gaps(mech, k, end, out)
+    triggers(mech, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     high, f_high = h, min(out.trigger[j], 0.0)
     side = 0
     step = h
@@ -63,9 +83,9 @@ def locate_trigger(
             try_step(mech, k, y, st, c, step, mech.address) and end_step(mech, k, w, y, end, st, c, step, mech.address)
         ):
             return 0.0, j
-        worst = violated(mech, out, end, st)
+        worst = violated(mech, k, out, end, st, mech.address)
         value = out.trigger[j]
-        limit = 1e-13 * (out.size[0] if is_slip(j, end) else out.size[1])
+        limit = grain(mech, out, j, end)
         if worst >= 0 and worst != j and out.trigger[j] >= -limit:
             j = worst
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
@@ -96,7 +116,7 @@ def last_unique(
         made = try_step(mech, k, y, st, c, middle, mech.address) and end_step(
             mech, k, w, y, end, st, c, middle, mech.address
         )
-        if made and margins(mech, k, w, end, out, mech.address) > 0.0:
+        if made and margins(mech, k, w, end, out, False, mech.address) > 0.0:
             low = middle
         else:
             high = middle
@@ -104,5 +124,65 @@ def last_unique(
             break
     if low > 0.0 and try_step(mech, k, y, st, c, low, mech.address):
         end_step(mech, k, w, y, end, st, c, low, mech.address)
-        margins(mech, k, w, end, out, mech.address)
+        margins(mech, k, w, end, out, False, mech.address)
     return low
+
+
+#: A least singular value that a step can bring down to this part of what it was at the start: a singular position.
+REACHED = 3e-6
+
+
+@kernel
+def nears_singular(out: Watch, h: float) -> bool:
+    """Whether a step h might meet a singular position, the least singular value falling on."""
+    fall = out.sigma[2] - out.sigma[0]
+    return bool(out.sigma[3] > 0.0 and fall > 0.0 and out.sigma[0] * out.sigma[3] <= 4.0 * fall * h)
+
+
+@kernel
+def dips(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, out: Watch, h: float) -> bool:
+    """Whether the least singular value falls to less than half at a stage of the step just solved."""
+    copy_state(y, end, mech.address)
+    for i in range(st.tab.c.shape[0]):
+        move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+        if instant_matrix(mech, k, w, end, NONE, mech.address) != 0:
+            return True
+        if least_singular(mech, w, out, 1) < 0.5 * out.sigma[0]:
+            return True
+    return False
+
+
+@kernel
+def step_to_singular(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float
+) -> float:
+    """Length of a step of at most h to a singular position, left in ``end``; 0: there is none.  Golden section."""
+    low, high = 0.0, h
+    for _ in range(50):
+        a = low + 0.381966 * (high - low)
+        b = low + 0.618034 * (high - low)
+        first = sigma_after(mech, k, w, y, end, st, c, out, a, mech.address)
+        if first <= REACHED * out.sigma[1]:
+            return a
+        second = sigma_after(mech, k, w, y, end, st, c, out, b, mech.address)
+        if second <= REACHED * out.sigma[1]:
+            return b
+        if first < second or first > 1e299:
+            high = b
+        else:
+            low = a
+        if high - low < 1e-2 * h and min(first, second) > 0.2 * out.sigma[0]:
+            break
+    return 0.0
+
+
+@block
+def sigma_after(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch,
+    h: float, address: Ints,
+) -> float:  # fmt: skip
+    """Least singular value of the constraints after a step h, left in ``end``; a large one where none can be made."""
+    made = try_step(mech, k, y, st, c, h, mech.address) and end_step(mech, k, w, y, end, st, c, h, mech.address)
+    if not made or instant_matrix(mech, k, w, end, NONE, mech.address) != 0:
+        return 1e300
+    return float(least_singular(mech, w, out, 1))

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import Problem
-from fricmb.integrate.constrained._assemble import singular_joints
-from fricmb.integrate.constrained._drive import (
+from fricmb.integrate._problem import SLIP, Problem
+from fricmb.integrate.constrained._codes import (
+    FAIL_HIT,
     FAIL_LOST,
     FAIL_MARGIN,
     FAIL_NONE,
@@ -17,6 +17,7 @@ from fricmb.integrate.constrained._drive import (
     FAIL_SINGULAR,
     FAIL_STEP,
 )
+from fricmb.integrate.constrained._independent import singular_joints
 from fricmb.integrate.constrained._pack import mechanism_of
 
 
@@ -25,6 +26,12 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
     names, joints = problem.contact_names, mechanism_of(problem).joints
     port = int(np.argmin(out.margin)) if problem.n_c else -1
     least = float(out.margin.min(initial=1.0))
+    if code == FAIL_MARGIN and float(out.together[0]) <= 0.0 < least:
+        together = ", ".join(repr(names[c]) for c in np.flatnonzero(np.asarray(y.mode) == SLIP))
+        return (
+            f"the friction of {together} together has no single solution: a principal minor of 1 + mu dN/dF over them"
+            f" is {float(out.together[0]):.3g}, and all have to be positive (jamming: each presses on the other)"
+        )
     if code == FAIL_MARGIN or (code in (FAIL_STEP, FAIL_NONE) and least < 0.02):
         return (
             f"the friction of {names[port]!r} has no single solution: 1 + mu dN/dF has fallen to {least:.3g} and has"
@@ -35,13 +42,17 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
         return "no combination of stick and slip satisfies friction and reactions together"
     if code == FAIL_SEVERAL:
         return "several combinations of stick and slip satisfy friction and reactions together"
+    row = joints.row[:-1]
     if code == FAIL_LOST:
-        forces = [float(y.lam[joints.row[j]]) if joints.one_sided[j] else np.inf for j in range(len(joints.port))]
-        name = joints.names[int(np.argmin(forces))]
+        held = (joints.one_sided != 0) & (joints.hands_over == 0)
+        name = joints.names[int(np.argmin(np.where(held, y.lam[np.minimum(row, len(y.lam) - 1)], np.inf)))]
         return f"contact of {name!r} is lost: its reaction has fallen to 0 and it can only push"
+    if code == FAIL_HIT:
+        name = joints.names[int(np.argmin(np.where(joints.dropped[row] == 2, out.gap, np.inf)))]
+        return f"contact of {name!r} is made again, and impacts are not computed"
     if code == FAIL_SINGULAR:
         names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t[0]), y.q, y.v))
-        risen = float(out.pivot[1]) / max(float(out.pivot[0]), 1e-300)
+        risen = (float(out.sigma[1]) / max(float(out.sigma[0]), 1e-300)) ** 2
         return (
             f"singular position: the constraints of {names_now} depend on one another (the condition of G M^-1 G^T has"
             f" risen by {risen:.1e} since the start)"

@@ -12,7 +12,7 @@ from fricmb.integrate._lapack import addresses
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._pack import Spread, Table, _table
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
-from fricmb.integrate._room import MECHANISM, room
+from fricmb.integrate._room import MECHANISM, MECHANISM_STEPS, PLACES, block_address, room
 from fricmb.integrate.constrained._band import band_addresses, band_sizes
 from fricmb.integrate.constrained._pattern import ordering
 
@@ -63,6 +63,7 @@ class Joint(NamedTuple):
     n_x: Ints
     port: Ints
     one_sided: Codes
+    hands_over: Codes
     dropped: Codes
 
 
@@ -134,7 +135,7 @@ def _pack(problem: Problem) -> Mech:
     table = _table(m.joints.table)
     rows = np.diff(m.joints.row)
     n_x = np.diff(table.x_start) // 2
-    joint = Joint(table, m.joints.row, n_x, m.joints.port, m.joints.one_sided, m.joints.dropped)
+    joint = Joint(table, m.joints.row, n_x, m.joints.port, m.joints.one_sided, m.joints.hands_over, m.joints.dropped)
     port_joint = np.full(problem.n_c, -1, np.int64)
     for j in np.flatnonzero(m.joints.port >= 0):
         port_joint[m.joints.port[j]] = j
@@ -183,7 +184,14 @@ def _blocks() -> tuple[str, ...]:
     """Names of this package's blocks, their modules imported."""
     from fricmb.integrate.constrained import _drive  # noqa: F401  (its import makes the blocks known)
 
-    return MECHANISM
+    return MECHANISM + MECHANISM_STEPS
+
+
+def add_blocks(*names: str) -> None:
+    """Put further blocks, whose modules are imported, into the table of addresses that all mechanisms share."""
+    table = addresses(*_blocks())
+    for name in names:
+        table[PLACES.index(name)] = block_address(name)
 
 
 class Moving(NamedTuple):
@@ -234,4 +242,4 @@ def moving_of(problem: Problem) -> Moving:
     ))  # fmt: skip
 
 
-__all__ = ["NORMAL_LAW", "Joint", "Mech", "Moving", "Port", "mech_of", "mechanism_of", "moving_of"]
+__all__ = ["NORMAL_LAW", "Joint", "Mech", "Moving", "Port", "add_blocks", "mech_of", "mechanism_of", "moving_of"]

@@ -8,8 +8,8 @@ import numpy as np
 
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import Codes2, Floats2, Floats3, Ints, Problem
-from fricmb.integrate._room import room
-from fricmb.integrate.constrained._pack import mechanism_of
+from fricmb.integrate._room import block, room
+from fricmb.integrate.constrained._pack import Mech, mechanism_of
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import State
 from fricmb.integrate.constrained._step import Control
@@ -19,7 +19,8 @@ class Record(NamedTuple):
     """Room for steps.
 
     ``span`` (k, 2): start and length; ``values`` (k, s+1, 2n + n_z + n_c + 2): [q, v, z, work] at 0, c; ``force``
-    (k, m + 2 n_c): [lam, F, n] at the start; ``mode`` (k, n_c); ``after`` (k,) 1 where a transition follows the step;
+    (k, m + 2 n_c): [lam, F, n] at the start; ``mode`` (k, n_c); ``opened`` (k, n_j) 1 for joints without contact;
+    ``after`` (k,) 1 where a transition follows the step;
     ``event`` (n_e, 3): time, contact, kind; ``used`` (2,) steps and events.
     """
 
@@ -27,6 +28,7 @@ class Record(NamedTuple):
     values: Floats3
     force: Floats2
     mode: Codes2
+    opened: Codes2
     after: Ints
     event: Floats2
     used: Ints
@@ -37,13 +39,16 @@ def record_of(problem: Problem, stages: int, capacity: int) -> Record:
     m, nc = mechanism_of(problem), problem.n_c
     return room(Record(
         np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, 2 * m.n + problem.n_z + nc + 2)),
-        np.zeros((capacity, m.n_rows + 2 * nc)), np.zeros((capacity, nc), np.int8), np.zeros(capacity, np.int64),
+        np.zeros((capacity, m.n_rows + 2 * nc)), np.zeros((capacity, nc), np.int8),
+        np.zeros((capacity, len(mechanism_of(problem).joints.port)), np.int8), np.zeros(capacity, np.int64),
         np.zeros((capacity + 8 * nc + 8, 3)), np.zeros(2, np.int64),
     ))  # fmt: skip
 
 
-@kernel
-def record_step(out: Record, y: State, end: State, st: Stages, c: Control, h: float) -> None:
+@block
+def record_step(
+    mech: Mech, out: Record, y: State, end: State, st: Stages, c: Control, h: float, address: Ints
+) -> None:
     """Add the step from y to end."""
     i = out.used[0]
     n, nz, nw, m, n_c = y.q.shape[0], y.z.shape[0], y.work.shape[0], y.lam.shape[0], y.F.shape[0]
@@ -70,6 +75,8 @@ def record_step(out: Record, y: State, end: State, st: Stages, c: Control, h: fl
         out.force[i, m + a] = y.F[a]
         out.force[i, m + n_c + a] = y.n[a]
         out.mode[i, a] = y.mode[a]
+    for j in range(mech.joint.port.shape[0]):
+        out.opened[i, j] = 1 if mech.joint.dropped[mech.joint.row[j]] == 2 else 0
     out.used[0] = i + 1
 
 
@@ -89,8 +96,8 @@ def crowded(out: Record, n_c: int) -> bool:
     return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + n_c + 2 > out.event.shape[0])
 
 
-@kernel
-def copy_state(a: State, b: State) -> None:
+@block
+def copy_state(a: State, b: State, address: Ints) -> None:
     """Put state a into b."""
     b.t[0] = a.t[0]
     for source, target in ((a.q, b.q), (a.v, b.v), (a.a, b.a), (a.z, b.z), (a.lam, b.lam)):

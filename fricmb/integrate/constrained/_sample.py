@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate._kernel import entry
-from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2
+from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2, Ints
 from fricmb.integrate.constrained._field import call_joint, forces, move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_positions, project_velocities
@@ -57,13 +57,14 @@ def instants(
 @entry
 def constraints(
     mech: Mech, k: Moving, t: float, q: Floats, v: Floats, lam: Floats, F: Floats, N: Floats, g: Floats, phi: Floats,
-    rate: Floats, G: Floats2,
-) -> None:  # fmt: skip
-    """Constraints (m,), their rates (m,) and their Jacobian G (m, n) at an instant."""
+    rate: Floats, Gi: Ints, Gj: Ints, G: Floats,
+) -> int:  # fmt: skip
+    """Constraints (m,), their rates (m,) and entries of their Jacobian G at an instant; the number of entries."""
     move(mech, k, t, q, v, mech.address)
     forces(mech, k, lam, F, 0, 0, N, g, mech.address)
     joint, table, place = mech.joint, mech.joint.table, mech.place
     n_y = k.ddy.shape[0]
+    count = 0
     for j in range(joint.n_x.shape[0]):
         n_x = call_joint(mech, k, j, lam, 0, mech.address)
         m = joint.row[j + 1] - joint.row[j]
@@ -76,8 +77,12 @@ def constraints(
                 first = table.x_start[j] + a
                 for i in range(table.form_start[first], table.form_start[first + 1]):
                     e = table.form_index[i] - 1
-                    if 0 <= e < n_y:
-                        for b in range(place.y_start[e], place.y_start[e + 1]):
-                            at = place.y_at[b]
-                            grad = 1.0 if at < 0 else k.grad[at]
-                            G[row, place.y_dof[b]] += slope * table.form_coefficient[i] * grad
+                    if not 0 <= e < n_y:
+                        continue
+                    for b in range(place.y_start[e], place.y_start[e + 1]):
+                        at = place.y_at[b]
+                        Gi[count] = row
+                        Gj[count] = place.y_dof[b]
+                        G[count] = slope * table.form_coefficient[i] * (1.0 if at < 0 else k.grad[at])
+                        count += 1
+    return count

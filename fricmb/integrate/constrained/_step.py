@@ -178,6 +178,16 @@ def error_of(c: Control, y: State, st: Stages) -> float:
     return float(last * ratio / c.rtol[0])
 
 
+@kernel
+def settle(mech: Mech, k: Moving, w: Instant, end: State) -> bool:
+    """Move the end of a step onto the constraints; accelerations, reactions and friction forces that hold there."""
+    return bool(
+        project_positions(mech, k, w, end, mech.address)
+        and project_velocities(mech, k, w, end, True, False, mech.address)
+        and react(mech, k, w, end, True, mech.address)
+    )
+
+
 @block
 def end_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float, address: Ints
@@ -198,12 +208,7 @@ def end_step(
         end.F[a] = st.F[s - 1, a]
         end.mode[a] = y.mode[a]
         end.n[a] = y.n[a]
-    if not (
-        project_positions(mech, k, w, end, mech.address)
-        and project_velocities(mech, k, w, end, True, False, mech.address)
-    ):
-        return False
-    if not react(mech, k, w, end, True, mech.address):
+    if not settle(mech, k, w, end):
         return False
     # energies: the stages' powers, integrated by the formula itself
     for i in range(s):

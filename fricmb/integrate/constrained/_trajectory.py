@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fricmb.integrate._problem import Codes, Floats, Ints, Problem, Start
@@ -22,6 +24,7 @@ class StepTrajectory(Trajectory):
         values: Floats,
         force: Floats,
         mode: Codes,
+        opened: Codes,
         after: Ints,
         transitions: Transitions,
         counters: Counters,
@@ -35,7 +38,7 @@ class StepTrajectory(Trajectory):
         self.end = end
         self.failure = failure
         self._span, self._values, self._force, self._mode, self._after = span, values, force, mode, after
-        self._nodes = nodes
+        self._nodes, self._opened = nodes, opened
         # every step's end, the start of the run, and right-hand values after transitions
         steps = np.arange(len(span))
         last = len(span) - 1
@@ -76,7 +79,9 @@ class StepTrajectory(Trajectory):
 
     def _only_start(self, count: int = 1) -> Samples:
         values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self.problem.n_c + 2)])
-        m, nc = mechanism_of(self.problem).n_rows, self.problem.n_c
+        joints, nc = mechanism_of(self.problem).joints, self.problem.n_c
+        m = int(joints.row[-1])
+        self._opened = np.zeros((1, len(joints.port)), np.int8)
         self._force = np.zeros((1, m + 2 * nc))
         self._mode = np.ones((1, nc), np.int8) if self.end.mode is None else self.end.mode[None]
         if self.end.direction is not None:
@@ -87,12 +92,44 @@ class StepTrajectory(Trajectory):
         problem = self.problem
         n, nz, nc = problem.n, problem.n_z, problem.n_c
         q, v, z, work = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
-        found = complete_at(problem, t, q, v, z, self._mode[step], self._force[step], project=project)
+        found = complete_open(
+            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project
+        )
         return Samples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
             mode=np.ascontiguousarray(self._mode[step].T), friction_loss=work[:, :nc].T.copy(),
             damping_loss=work[:, nc].copy(), input=work[:, nc + 1].copy(),
         )  # fmt: skip
+
+
+def with_open(problem: Problem, opened: Codes) -> Problem:
+    """The problem with some joints open (n_j,), on arrays of its own."""
+    m = mechanism_of(problem)
+    dropped = m.joints.dropped.copy()
+    dropped[m.joints.row[:-1][opened != 0]] = 2
+    return replace(problem, mechanism=replace(m, joints=replace(m.joints, dropped=dropped)))
+
+
+def complete_open(
+    problem: Problem, opened: Codes, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats,
+    *, project: bool = False,
+) -> tuple[Floats, ...]:  # fmt: skip
+    """As :func:`complete_at`, ``opened`` (n_t, n_j) saying which joints are open."""
+    if not opened.any():
+        return complete_at(problem, t, q, v, z, mode, force, project=project)
+    patterns, which = np.unique(opened, axis=0, return_inverse=True)
+    found: list[Floats] = []
+    for i, pattern in enumerate(patterns):
+        mine = np.flatnonzero(which.ravel() == i)
+        q_here, v_here = q[mine], v[mine]
+        part = complete_at(
+            with_open(problem, pattern), t[mine], q_here, v_here, z[mine], mode[mine], force[mine], project=project
+        )
+        q[mine], v[mine] = q_here, v_here
+        found = found or [np.zeros((len(x), len(t))) for x in part]
+        for whole, x in zip(found, part, strict=True):
+            whole[:, mine] = x
+    return tuple(found)
 
 
 def complete_at(

@@ -1,0 +1,160 @@
+"""One step of the one-step method: tried, tested, cut at the first transition, taken."""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import Codes, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._accept import Watch, least_singular, margins
+from fricmb.integrate.constrained._change import change_modes
+from fricmb.integrate.constrained._codes import (
+    ACCEPTED,
+    CHANGED,
+    DONE,
+    FAIL_MARGIN,
+    FAIL_SINGULAR,
+    FAIL_STEP,
+    REJECTED,
+)
+from fricmb.integrate.constrained._locate import (
+    dips,
+    last_unique,
+    locate_trigger,
+    nears_singular,
+    step_to_singular,
+    violated,
+)
+from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._project import EPS
+from fricmb.integrate.constrained._record import Record, copy_state, record_step
+from fricmb.integrate.constrained._stages import Stages
+from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
+from fricmb.integrate.constrained._step import Control, end_step, error_of, remember, try_step
+
+#: A step ends a try at this part of the span.
+SMALLEST = 1e-14
+#: A least singular value this small beside what it was: the constraints are as good as dependent.
+SINGULAR = 1e-9
+
+
+@kernel
+def grow(c: Control, out: Watch, y: State) -> None:
+    """Running maxima."""
+    for i in range(y.v.shape[0]):
+        c.v[i] = max(c.v[i], abs(y.v[i]))
+    for i in range(y.z.shape[0]):
+        c.z[i] = max(c.z[i], abs(y.z[i]))
+    for i in range(y.q.shape[0]):
+        out.size[2] = max(out.size[2], abs(y.q[i]))
+    for i in range(y.F.shape[0]):
+        out.size[0] = max(out.size[0], abs(y.g[i]))
+        out.size[1] = max(out.size[1], abs(y.F[i]))
+    for i in range(y.lam.shape[0]):
+        out.size[1] = max(out.size[1], abs(y.lam[i]))
+
+
+@kernel
+def is_there(y: State, stop: float) -> bool:
+    """Whether a time to step to is reached to round-off."""
+    return bool(stop - y.t[0] <= 20.0 * EPS * max(abs(y.t[0]), abs(stop)))
+
+
+@kernel
+def arrive(
+    mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes,
+    stop: float,
+) -> int:  # fmt: skip
+    """At a breakpoint, or at the end of the span: modes are decided anew."""
+    y.t[0] = stop
+    if stop >= c.span[1]:
+        return DONE
+    code = change_modes(mech, k, w, y, before, c, out, rec, part, -1, mech.address)
+    if rec.used[0] > 0:
+        rec.after[rec.used[0] - 1] = 1
+    return CHANGED if code == DONE else code
+
+
+@kernel
+def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: float) -> bool:
+    """Whether the constraints are as good as dependent at y, which has just been completed by a step h."""
+    out.sigma[2] = out.sigma[0]
+    out.sigma[3] = h
+    # without friction the factors of the projection are those of the instant
+    if y.F.shape[0] > 0 and instant_matrix(mech, k, w, y, NONE, mech.address) != 0:
+        return True
+    out.sigma[0] = least_singular(mech, w, out, 1)
+    return bool(out.sigma[0] < SINGULAR * out.sigma[1])
+
+
+@block
+def radau_step(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
+    rec: Record, part: Codes, stop: float, address: Ints,
+) -> int:  # fmt: skip
+    """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
+    s = st.tab.c.shape[0]
+    t = y.t[0]
+    left = stop - t
+    h = c.h[0]
+    if h >= left:
+        h = left
+    elif h > 0.5 * left:
+        h = 0.5 * left
+    if h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t):
+        margins(mech, k, w, y, out, False, mech.address)
+        return FAIL_STEP
+    c.made[0] = 0.0
+    made = try_step(mech, k, y, st, c, h, mech.address)
+    if nears_singular(out, h) and (not made or dips(mech, k, w, y, end, st, out, h)):
+        reached = step_to_singular(mech, k, w, y, end, st, c, out, h)
+        if reached > 0.0:
+            record_step(mech, rec, y, end, st, c, reached, mech.address)
+            copy_state(end, y, mech.address)
+            near_singular(mech, k, w, y, out, reached)
+            return FAIL_SINGULAR
+        out.sigma[3] = 0.0
+        c.made[0] = 0.0
+        made = try_step(mech, k, y, st, c, h, mech.address)
+    if not made:
+        c.counts[1] += 1
+        c.h[0] = 0.4 * h
+        return REJECTED
+    error = error_of(c, y, st)
+    factor = 0.85 * max(error, 1e-12) ** (-1.0 / (s + 1))
+    if error > 1.0:
+        c.counts[1] += 1
+        c.h[0] = h * max(0.2, factor)
+        return REJECTED
+    if not end_step(mech, k, w, y, end, st, c, h, mech.address):
+        c.counts[1] += 1
+        c.h[0] = 0.4 * h
+        return REJECTED
+    if margins(mech, k, w, end, out, False, mech.address) <= 0.0:
+        h = last_unique(mech, k, w, y, end, st, c, out, h)
+        if h > 0.0:
+            record_step(mech, rec, y, end, st, c, h, mech.address)
+            copy_state(end, y, mech.address)
+        return FAIL_MARGIN
+    worst = violated(mech, k, out, end, st, mech.address)
+    if worst >= 0:
+        h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
+        if h == 0.0:
+            c.counts[1] += 1
+            c.h[0] *= 0.3
+            return REJECTED
+    record_step(mech, rec, y, end, st, c, h, mech.address)
+    if h == left:
+        end.t[0] = stop
+    remember(c, y, st, h)
+    c.counts[0] += 1
+    copy_state(end, y, mech.address)
+    grow(c, out, y)
+    if worst < 0 and (h < left or factor < 1.0):
+        c.h[0] = h * min(3.0, max(0.3, factor))
+    if near_singular(mech, k, w, y, out, h):
+        return FAIL_SINGULAR
+    if worst >= 0:
+        rec.after[rec.used[0] - 1] = 1
+        code = change_modes(mech, k, w, y, before, c, out, rec, part, worst, mech.address)
+        return CHANGED if code == DONE else code
+    return ACCEPTED

@@ -1,0 +1,149 @@
+"""Going through a transition or a breakpoint: modes and reactions decided together, events."""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import (
+    EVENT_CLOSE,
+    EVENT_OPEN,
+    EVENT_REVERSAL,
+    EVENT_SLIP,
+    EVENT_STICK,
+    OPEN,
+    SLIP,
+    STICK,
+    Codes,
+    Ints,
+)
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._accept import TURNS, Watch, least_singular, margins
+from fricmb.integrate.constrained._codes import (
+    DONE,
+    FAIL_HIT,
+    FAIL_LOST,
+    FAIL_MARGIN,
+    FAIL_NONE,
+    FAIL_PROJECT,
+    FAIL_SEVERAL,
+)
+from fricmb.integrate.constrained._decide import FOUND, SEVERAL, decide
+from fricmb.integrate.constrained._field import move
+from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._project import EPS, project_velocities
+from fricmb.integrate.constrained._record import Record, copy_state, record_event
+from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix, react
+from fricmb.integrate.constrained._step import Control
+
+
+@kernel
+def next_stop(c: Control, t: float) -> float:
+    """The next time that has to be stepped to exactly; sees to it that functions of time are taken from inside."""
+    stop = c.span[1]
+    for i in range(c.stops.shape[0]):
+        if c.stops[i] > t + 4.0 * EPS * abs(t) and c.stops[i] < stop:
+            stop = c.stops[i]
+    return float(stop)
+
+
+@kernel
+def set_window(k: Moving, c: Control, t: float) -> None:
+    """Evaluate functions of time inside the present interval between breakpoints."""
+    low, high = -1e300, 1e300
+    for i in range(c.stops.shape[0]):
+        edge = c.stops[i]
+        if edge <= t + 4.0 * EPS * abs(t):
+            low = max(low, edge + 2.0 * EPS * abs(edge) + 1e-300)
+        else:
+            high = min(high, edge - 2.0 * EPS * abs(edge) - 1e-300)
+    k.s.window[0] = low
+    k.s.window[1] = high
+
+
+@kernel
+def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> int:
+    """Open joint i where contact is lost, if it is declared so; an open one that has come back ends the run."""
+    joint = mech.joint
+    row = joint.row[i]
+    if joint.hands_over[i] == 0:
+        return FAIL_LOST
+    if joint.dropped[row] == 2:
+        return FAIL_HIT
+    joint.dropped[row] = 2
+    y.lam[row] = 0.0
+    out.opened[0] += 1
+    c = joint.port[i]
+    if c >= 0:
+        y.mode[c] = OPEN
+        y.F[c] = 0.0
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    instant_matrix(mech, k, w, y, NONE, mech.address)
+    out.sigma[0] = out.sigma[1] = least_singular(mech, w, out, TURNS)
+    out.sigma[3] = 0.0
+    return DONE
+
+
+@block
+def change_modes(
+    mech: Mech,
+    k: Moving,
+    w: Instant,
+    y: State,
+    before: State,
+    c: Control,
+    out: Watch,
+    rec: Record,
+    part: Codes,
+    j: int,
+    address: Ints,
+) -> int:
+    """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
+    n_c = y.F.shape[0]
+    copy_state(y, before, mech.address)
+    if j >= 2 * n_c:
+        code = let_go(mech, k, w, y, out, j - 2 * n_c)
+        if code != DONE:
+            return code
+    set_window(k, c, y.t[0])
+    for i in range(n_c):
+        part[i] = 1 if y.mode[i] == STICK else 0
+        if y.mode[i] == SLIP and abs(y.g[i]) <= 1e-11 * out.size[0]:
+            part[i] = 1
+    forced = -1
+    if 0 <= j < 2 * n_c:
+        port = j // 2
+        if j % 2 == 1:
+            y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
+            if y.mode[port] == SLIP:
+                y.n[port] = 1.0 if y.g[port] > 0.0 else -1.0
+                part[port] = 1 if abs(y.g[port]) <= 1e-11 * out.size[0] else 0
+        elif y.mode[port] == STICK:
+            forced = port
+        else:
+            part[port] = 1
+    code = decide(mech, k, w, y, part, forced, mech.address)
+    if code != FOUND:
+        return FAIL_SEVERAL if code == SEVERAL else FAIL_NONE
+    for i in range(n_c):
+        was, now = before.mode[i], y.mode[i]
+        kind = -1
+        if was == SLIP and now == STICK:
+            kind = EVENT_STICK
+        elif was == STICK and now == SLIP:
+            kind = EVENT_SLIP
+        elif was != OPEN and now == OPEN:
+            kind = EVENT_OPEN
+        elif was == OPEN and now != OPEN:
+            kind = EVENT_CLOSE
+        elif was == SLIP and now == SLIP and before.n[i] != y.n[i]:
+            kind = EVENT_REVERSAL
+        if kind >= 0:
+            record_event(rec, y.t[0], i, kind)
+    if not project_velocities(mech, k, w, y, False, True, mech.address):
+        return FAIL_PROJECT
+    if not react(mech, k, w, y, False, mech.address):
+        return FAIL_NONE
+    c.h[1] = 0.0
+    c.made[0] = 0.0
+    if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
+        return FAIL_MARGIN
+    return DONE

@@ -1,0 +1,125 @@
+"""Constraints that depend on one another: found loop by loop, before a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate._mechanism import Mechanism
+from fricmb.integrate._problem import Floats, Ints, Problem, Start
+from fricmb.integrate.constrained._assemble import closed, consistent_start, listed
+from fricmb.integrate.constrained._least import Least, constraints_at, mass_of, names_of_rows, unit_rows
+from fricmb.integrate.constrained._pack import mechanism_of
+
+#: Singular values this small beside the largest count as 0.
+RANK = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Redundancy:
+    """Rows that follow from the others, and the joints whose reactions are not determined for it."""
+
+    rows: Ints
+    joints: tuple[str, ...]
+
+
+def redundancy(problem: Problem, start: Start, groups: Sequence[Sequence[str]] = ()) -> Redundancy:
+    """Find constraints that depend on others throughout (not in this position alone).
+
+    Rank by the singular values of ``G M^-1/2``; the rows to leave out by QR with column pivoting.  Where the rank is
+    higher in a neighbouring position, the mechanism is in a singular position.
+
+    Parameters
+    ----------
+    groups : sequence of sequences of str
+        Joints whose constraints can depend on one another, by name (loops that share a joint); the others are looked
+        at one by one.  The work is the sum of the cubes of the groups' sizes.
+
+    Raises
+    ------
+    SceneError
+        For a singular position at the start.
+    """
+    from scipy.linalg import qr
+
+    m = mechanism_of(problem)
+    if not m.n_rows:
+        return Redundancy(rows=np.zeros(0, np.int64), joints=())
+    start, _ = consistent_start(problem, start)
+    weight = 1.0 / np.sqrt(mass_of(m))
+    G = constraints_at(problem, start.t, start.q, start.v).G
+    J = unit_rows(G, weight)[0]
+    dropped: list[Ints] = []
+    touched: list[str] = []
+    nearby: Any = None
+    for rows in _rows_of(m, groups):
+        block = _dense(J, rows)
+        rank = _rank(block)
+        if rank == len(rows):
+            continue
+        left = np.linalg.svd(block, full_matrices=True)[0][:, rank:]
+        names = names_of_rows(m, rows[np.abs(left).max(axis=1) > 1e-6])
+        nearby = _nearby(problem, start, J, weight) if nearby is None else nearby
+        if _rank(_dense(nearby, rows)) > rank:
+            raise SceneError(
+                f"the mechanism starts in a singular position: the constraints of {listed(names)} depend on one "
+                "another there, and not in positions nearby; start it from another one"
+            )
+        order = qr(block.T, mode="r", pivoting=True)[1]
+        dropped.append(rows[order[rank:]])
+        touched += names
+    rows_left = np.sort(np.concatenate(dropped)).astype(np.int64) if dropped else np.zeros(0, np.int64)
+    return Redundancy(rows=rows_left, joints=tuple(dict.fromkeys(touched)))
+
+
+def _rows_of(m: Mechanism, groups: Sequence[Sequence[str]]) -> list[Ints]:
+    """Rows of each group, and of every joint in none."""
+    joints = m.joints
+    place = {name: i for i, name in enumerate(joints.names)}
+    together = [[place[name] for name in group if name in place] for group in groups]
+    grouped = {i for group in together for i in group}
+    together += [[i] for i in range(len(joints.names)) if i not in grouped]
+    rows = [np.concatenate([np.arange(joints.row[i], joints.row[i + 1]) for i in group]) for group in together if group]
+    return [found for found in rows if found.size]
+
+
+def _dense(J: Any, rows: Ints) -> Floats:
+    """The rows as a dense matrix over the columns that they touch."""
+    some = J[rows]
+    columns = np.unique(some.indices)
+    block: Floats = some[:, columns].toarray() if columns.size else np.zeros((len(rows), 1))
+    return block
+
+
+def _rank(J: Floats) -> int:
+    values = np.linalg.svd(J, compute_uv=False)
+    return int((values > RANK * values.max(initial=0.0)).sum())
+
+
+def _nearby(problem: Problem, start: Start, J: Any, weight: Floats) -> Any:
+    """J after a small motion that the constraints allow (the same, where they allow none)."""
+    m = mechanism_of(problem)
+    free = np.random.default_rng(1).standard_normal(problem.n)
+    free -= Least(J).change(J @ free)
+    direction = weight * free
+    if np.abs(free).max() < 1e-9:
+        return J
+    length = 1e-3 * max(float(np.abs(start.q).max(initial=0.0)), 1e-300) / np.abs(direction).max()
+    try:
+        q = closed(problem, m, start.t, start.q + length * direction, start.v, weight)
+    except SceneError:
+        return J
+    return unit_rows(constraints_at(problem, start.t, q, start.v).G, weight)[0]
+
+
+def singular_joints(problem: Problem, t: float, q: Floats, v: Floats) -> list[str]:
+    """Joints whose constraints are nearest to depending on one another."""
+    m = mechanism_of(problem)
+    kept = np.flatnonzero(m.joints.dropped == 0)
+    J = unit_rows(constraints_at(problem, t, q, v).G, 1.0 / np.sqrt(mass_of(m)))[0]
+    left = np.abs(Least(J[kept]).weakest())
+    return names_of_rows(m, kept[np.flatnonzero(left > 0.1 * left.max())])

@@ -1,0 +1,106 @@
+"""The constraints at a state as a sparse matrix, and the least change that satisfies them: before a run, in scipy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.sparse import bmat, csr_matrix, diags, eye
+from scipy.sparse.linalg import splu
+
+from fricmb.integrate._mechanism import Mechanism
+from fricmb.integrate._problem import Floats, Ints, Problem
+from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained._sample import constraints
+
+#: What keeps the equations regular where constraints depend on one another, beside rows of length 1.
+REGULAR = 1e-10
+#: Corrections that take its effect away again: a factor REGULAR / sigma^2 each, sigma the singular values.
+REFINED = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constrained:
+    """Constraints phi (m,), their rates (m,) and Jacobian G (m, n), sparse, at a state."""
+
+    phi: Floats
+    rate: Floats
+    G: Any
+
+
+def constraints_at(problem: Problem, t: float, q: Floats, v: Floats) -> Constrained:
+    """The constraints at a state."""
+    mechanism, mech, nc = mechanism_of(problem), mech_of(problem), problem.n_c
+    m = mechanism.n_rows
+    phi, rate = np.zeros(m), np.zeros(m)
+    count = _entries(mech, mechanism)
+    row, column, value = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count)
+    F, N, g = np.zeros(nc), np.zeros(nc), np.zeros(nc)
+    q, v = (np.array(x, dtype=float) for x in (q, v))
+    used = constraints(
+        mech, moving_of(problem), float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value
+    )  # fmt: skip
+    entries = (value[:used], (row[:used], column[:used]))
+    return Constrained(phi=phi, rate=rate, G=csr_matrix(entries, shape=(m, problem.n)))
+
+
+def _entries(mech: Any, m: Mechanism) -> int:
+    """Upper bound of the number of entries of G, repeated ones included."""
+    table, joint = mech.joint.table, mech.joint
+    dofs = np.append(np.diff(mech.place.y_start), 0)
+    index = np.asarray(table.form_index) - 1
+    width = dofs[np.where((index >= 0) & (index < m.n_y), index, -1)]
+    total = np.concatenate(([0], np.cumsum(width)))
+    first, n_x = np.asarray(table.x_start[:-1]), np.asarray(joint.n_x)
+    start = np.asarray(table.form_start)
+    per_joint = total[start[first + n_x]] - total[start[first]]
+    return int((per_joint * np.diff(joint.row)).sum()) + 1
+
+
+def mass_of(m: Mechanism) -> Floats:
+    """Diagonal of the mass matrix (n,)."""
+    mass = np.zeros(m.n)
+    on = m.M.row == m.M.column
+    np.add.at(mass, m.M.row[on], m.M.value[on])
+    return mass
+
+
+def names_of_rows(m: Mechanism, rows: Ints) -> list[str]:
+    """Joints that own the rows, each once."""
+    owner = np.searchsorted(m.joints.row, rows, side="right") - 1
+    return list(dict.fromkeys(m.joints.names[i] for i in owner))
+
+
+def unit_rows(G: Any, weight: Floats) -> tuple[Any, Floats]:
+    """``G diag(weight)`` with rows of length 1, and their lengths (1 for a row of zeros)."""
+    J = csr_matrix(G.multiply(weight))
+    length = np.sqrt(np.asarray(J.multiply(J).sum(axis=1)).ravel())
+    length = np.where(length > 0.0, length, 1.0)
+    return csr_matrix(diags(1.0 / length) @ J), length
+
+
+class Least:
+    """Changes x of least norm with ``J x = r``, in the sense of least squares where J (m, n) lacks rank; rows of 1."""
+
+    def __init__(self, J: Any) -> None:
+        m, n = J.shape
+        self.J = J
+        self._factors = splu(bmat([[eye(n), J.T], [J, -REGULAR * eye(m)]], format="csc"))
+
+    def change(self, r: Floats) -> Floats:
+        """The change x (n,) for a right-hand side (m,)."""
+        n = self.J.shape[1]
+        x = np.zeros(n)
+        for _ in range(REFINED):
+            x += self._factors.solve(np.concatenate([np.zeros(n), r - self.J @ x]))[:n]
+        return x
+
+    def weakest(self) -> Floats:
+        """The unit vector (m,) for which ``|J^T y|`` is least, by inverse iteration."""
+        m, n = self.J.shape
+        y = np.random.default_rng(1).standard_normal(m)
+        for _ in range(20):
+            y = self._factors.solve(np.concatenate([np.zeros(n), y / np.linalg.norm(y)]))[n:]
+        unit: Floats = y / np.linalg.norm(y)
+        return unit

@@ -1,0 +1,224 @@
+"""A BDF step of a mechanism: one stage of the one-step method's equations, from what the formula keeps of the past.
+
+With gamma_k = 1 + 1/2 + ... + 1/k the formula reads y = psi + (h/gamma_k) y' (see ``integrate._bdf_step``).
+Velocities, multipliers and friction forces are solved for on the level of velocities; positions and velocities are then
+moved onto their constraints, and what has been moved enters the history (Eich 1993: BDF with projection keeps its
+order).
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate._bdf_step import GROWTH, ladder, predict
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._orders import MAX_ORDER
+from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._accept import Watch, margins
+from fricmb.integrate.constrained._advance import grow, near_singular
+from fricmb.integrate.constrained._codes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
+from fricmb.integrate.constrained._locate import nears_singular, violated
+from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._past import Past, put, rescale
+from fricmb.integrate.constrained._record import Record, copy_state, record_step
+from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained._state import Instant, State
+from fricmb.integrate.constrained._step import Control, measure, settle
+
+#: Newton stops at this part of the error that a step may make.
+NEWTON = 0.03
+#: Rate of convergence at which the Jacobian is made anew.
+SLOW = 0.2
+
+
+@kernel
+def take(values: Floats, y: State, rate: Floats) -> None:
+    """The reverse of ``put``."""
+    i = 0
+    for part in (y.q, y.v, y.z, rate, y.lam, y.F, y.N, y.g):
+        for j in range(part.shape[0]):
+            part[j] = values[i]
+            i += 1
+
+
+@kernel
+def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past: Past) -> bool:
+    """Solve the step's equations from the prediction; ``end`` serves as the point of the Jacobian."""
+    one, base = past.one, past.base
+    h = past.h[0]
+    beta_h = h / past.gamma[past.status[0]]
+    n = y.q.shape[0]
+    copy_state(y, base, mech.address)
+    for i in range(n):
+        base.q[i] = past.new[i]
+        base.v[i] = past.new[n + i]
+        one.V[0, i] = past.guess[n + i]
+    for i in range(y.z.shape[0]):
+        base.z[i] = past.new[2 * n + i]
+    base.t[0] = y.t[0] + h - beta_h
+    measure(c, y, h, one.scale)
+    accuracy = max(NEWTON * c.rtol[0] * min(1.0, h * past.unit[0]), 1e-13)
+    for _ in range(2):
+        copy_state(y, end, mech.address)
+        take(past.guess, end, end.rate)
+        fresh = past.made[0] != beta_h
+        if fresh:
+            end.t[0] = y.t[0] + h
+            linearise(mech, k, end, one, mech.address)
+            c.counts[3] += 1
+            c.counts[4] += 1
+            if not factor_stages(mech, one, beta_h, mech.address):
+                past.made[0] = 0.0
+                return False
+            past.made[0] = beta_h
+        for i in range(n):
+            one.V[0, i] = end.v[i]
+        for part, target in ((end.lam, one.lam[0]), (end.F, one.F[0]), (end.z, one.Z[0])):
+            for i in range(part.shape[0]):
+                target[i] = part[i]
+        used = iterate_stages(mech, k, base, one, beta_h, accuracy, y.mode, mech.address)
+        c.counts[2] += max(used, 1)
+        if used == 0 or one.found[0] > SLOW:
+            past.made[0] = 0.0
+        if used > 0:
+            return True
+        if fresh:
+            return False
+    return False
+
+
+@kernel
+def scaled(y: State, c: Control, past: Past, error: Floats, weight: float) -> float:
+    """Largest of weight * error by signal against rtol and the share of it that this step may use.
+
+    Positions count against the way that the run has gone: they may lie anywhere.
+    """
+    n = y.q.shape[0]
+    worst = 0.0
+    share = max(c.rtol[0] * min(1.0, past.h[0] * past.unit[0]), 4e-15)
+    for i in range(n):
+        size = max(past.reach[i], abs(past.new[i] - past.origin[i]), past.h[0] * past.one.scale[i], 1e-290)
+        worst = max(worst, abs(error[n + i]) / past.one.scale[i], abs(error[i]) / size)
+    for i in range(y.z.shape[0]):
+        worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), 1e-290))
+    return float(weight * worst / share)
+
+
+@kernel
+def update(past: Past) -> None:
+    """Bring the differences to the end of the step, whose correction is ``d``."""
+    k = past.status[0]
+    for i in range(past.D.shape[1]):
+        past.D[k + 2, i] = past.d[i] - past.D[k + 1, i]
+        past.D[k + 1, i] = past.d[i]
+        for j in range(k, -1, -1):
+            past.D[j, i] += past.D[j + 1, i]
+    past.status[1] += 1
+    past.status[3] = 0
+    past.status[6] += 1
+    past.good[0] = past.h[0]
+    for i in range(past.reach.shape[0]):
+        past.reach[i] = max(past.reach[i], abs(past.D[0, i] - past.origin[i]))
+
+
+@kernel
+def select_order(y: State, c: Control, past: Past, error: float) -> None:
+    """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder."""
+    k = past.status[0]
+    if past.status[1] <= k:
+        return
+    best_k = k
+    best = 0.9 * max(error, 1e-16) ** (-1.0 / k)
+    if k > 1:
+        factor = 0.9 * max(scaled(y, c, past, past.D[k], 1.0 / k), 1e-16) ** (-1.0 / (k - 1))
+        if factor > best:
+            best_k, best = k - 1, factor
+    if k < MAX_ORDER:
+        factor = 0.9 * max(scaled(y, c, past, past.D[k + 2], 1.0 / (k + 2)), 1e-16) ** (-1.0 / (k + 1))
+        if factor > best:
+            best_k, best = k + 1, factor
+    step = ladder(min(best, GROWTH))
+    if best_k != k or step > 1.3 or step < 1.0:
+        past.status[0] = best_k
+        rescale(past, step)  # type: ignore[arg-type]
+
+
+@kernel
+def inside(y: State, st: Stages, c: Control, past: Past) -> None:
+    """Values of the formula's polynomial over the step at the nodes of the one-step method, as if it had stepped.
+
+    With s = x - 1 in steps back from the end:  y(x) = sum_j D_j s (s+1) ... (s+j-1) / j!.
+    """
+    k = past.status[0]
+    for l in range(st.tab.c.shape[0]):
+        s = st.tab.c[l] - 1.0
+        i = 0
+        for part in (st.Q[l], st.V[l], st.Z[l], c.power[l], st.lam[l], st.F[l], st.N[l], st.g[l]):
+            for a in range(part.shape[0]):
+                value = past.D[0, i]
+                factor = 1.0
+                for j in range(1, k + 1):
+                    factor *= (s + j - 1.0) / j
+                    value += factor * past.D[j, i]
+                part[a] = value
+                i += 1
+
+
+@block
+def multistep(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, rec: Record,
+    past: Past, left: float, address: Ints,
+) -> int:  # fmt: skip
+    """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), HANDOVER, or FAIL_SINGULAR.
+
+    A step at whose end, or inside which, a mode changes or friction is no longer unique is left to the one-step method.
+    """
+    h, order = past.h[0], past.status[0]
+    if h > left or past.status[3] > (3 if past.status[6] > 0 else 8) or nears_singular(out, h):
+        return HANDOVER
+    predict(past)  # type: ignore[arg-type]
+    if not solve_formula(mech, k, y, end, c, past):
+        past.status[3] += 2
+        c.counts[1] += 1
+        rescale(past, 0.5)  # type: ignore[arg-type]
+        past.made[0] = 0.0
+        return REJECTED
+    one = past.one
+    copy_state(y, end, mech.address)
+    end.t[0] = y.t[0] + h
+    for part, target in ((one.Q[0], end.q), (one.V[0], end.v), (one.acc, end.a), (one.Z[0], end.z)):
+        for i in range(target.shape[0]):
+            target[i] = part[i]
+    for part, target in ((one.lam[0], end.lam), (one.F[0], end.F)):
+        for i in range(target.shape[0]):
+            target[i] = part[i]
+    if not settle(mech, k, w, end):
+        return HANDOVER
+    put(end, end.rate, past.new)
+    for i in range(past.d.shape[0]):
+        past.d[i] = past.new[i] - past.guess[i]
+    error = scaled(y, c, past, past.d, 1.0 / (order + 1))
+    if not error <= 1.0:
+        past.status[3] += 1
+        c.counts[1] += 1
+        if not error < 1e300:
+            return HANDOVER
+        # at the start nothing is known of the step but that of the other method
+        least = 0.2 if past.status[6] > 0 else 1e-4
+        rescale(past, ladder(max(least, 0.9 * error ** (-1.0 / order))))  # type: ignore[arg-type]
+        return REJECTED
+    update(past)
+    inside(y, st, c, past)
+    if margins(mech, k, w, end, out, False, mech.address) <= 0.0 or violated(mech, k, out, end, st, mech.address) >= 0:
+        return HANDOVER
+    for i in range(y.work.shape[0]):
+        for l in range(st.tab.c.shape[0]):
+            end.work[i] += h * st.tab.b[l] * c.power[l, i]
+    record_step(mech, rec, y, end, st, c, h, mech.address)
+    copy_state(end, y, mech.address)
+    c.counts[0] += 1
+    c.h[1] = 0.0
+    grow(c, out, y)
+    if near_singular(mech, k, w, y, out, h):
+        return FAIL_SINGULAR
+    select_order(y, c, past, error)
+    return ACCEPTED

@@ -1,0 +1,129 @@
+"""Points on surfaces that can only push, several joints that rub at once, singular positions."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+
+G = 9.81
+
+
+def lifted(**options):
+    """A block on the floor, pulled up with a force that grows: lost at t = 0.5, y = 10/6 (t - 0.5)^3 afterwards."""
+    block = fm.RigidBody("block", mass=1.0, inertia=1.0, velocity=(2.0, 0.0))
+    return fm.Scene(
+        "lift",
+        [
+            block,
+            fm.RollerOnLine("floor", block, push_only=True, friction=fm.laws.Coulomb(mu_s=0.2), **options),
+            fm.Force("pull", block, axis="y", value=10.0 * fm.t),
+            fm.Gravity("g", acceleration={"y": -5.0}),
+        ],
+    )
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_joint_declared_to_open_lets_go(method):
+    sol = fm.simulate(lifted(when_lost="open"), t_end=1.0, rtol=1e-8, method=method)
+    assert [(e.kind, e.contact) for e in sol.events] == [("open", "floor")]
+    assert sol.events.t[0] == pytest.approx(0.5, abs=1e-9)
+    times = np.array([0.2, 0.5, 0.6, 0.9])
+    at = sol.at(times)
+    np.testing.assert_allclose(at["block.y"], 10 / 6 * np.maximum(times - 0.5, 0.0) ** 3, atol=1e-8)
+    # rubbing takes mu times the impulse of the load, 1.25
+    assert sol.velocity("block.x")[-1] == pytest.approx(2.0 - 0.2 * 1.25, abs=1e-7)
+    assert sol.normal_force("floor")[-1] == 0.0
+    assert sol.reaction("floor")[0, [0, -1]] == pytest.approx([5.0, 0.0], abs=1e-9)
+    assert np.abs(sol.energy.residual).max() < 1e-6
+    further = fm.simulate(lifted(when_lost="open"), t_end=1.2, rtol=1e-8, method=method, initial=sol)
+    assert further["block.y"][-1] == pytest.approx(10 / 6 * 0.7**3, abs=1e-6)
+
+
+def test_a_joint_not_declared_to_open_ends_the_run():
+    with pytest.raises(fm.IntegrationError, match="contact of 'floor' is lost"):
+        fm.simulate(lifted(), t_end=1.0)
+    with pytest.raises(fm.SceneError, match="when_lost"):
+        lifted(when_lost="bounce")
+
+
+def test_contact_made_again_ends_the_run():
+    ball = fm.RigidBody("ball", mass=1.0, inertia=1.0, position=(0.0, 1.0), velocity=(1.0, 0.0))
+    floor = fm.RollerOnLine("floor", ball, push_only=True, when_lost="open")
+    with pytest.raises(fm.IntegrationError, match="'floor' is made again, and impacts are not computed") as caught:
+        fm.simulate(fm.Scene("drop", [ball, floor, fm.Gravity("g")]), t_end=1.0)
+    assert caught.value.t == pytest.approx(np.sqrt(2.0 / G), abs=1e-9)
+
+
+def test_a_bead_leaves_the_top_of_a_circle_where_galileo_says():
+    """From rest near the top of a smooth circle a point leaves it at cos = 2/3 of the height it started from."""
+    start = 0.1
+    bead = fm.Body("bead", mass=1.0, axes="xy", position={"x": np.sin(start), "y": np.cos(start)})
+    wheel = fm.RollerOnCircle("wheel", bead, radius=1.0, push_only=True)
+    with pytest.raises(fm.IntegrationError, match="contact of 'wheel' is lost") as caught:
+        fm.simulate(fm.Scene("wheel", [bead, wheel, fm.Gravity("g")]), t_end=5.0, rtol=1e-10)
+    assert caught.value.partial["bead.y"][-1] == pytest.approx(2.0 / 3.0 * np.cos(start), abs=1e-8)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.3])
+def test_a_bead_that_rubs_on_a_circle(mu):
+    """Without gravity the speed on a rough circle falls by exp(-mu angle)."""
+    bead = fm.Body("bead", mass=2.0, axes="xy", position={"x": 1.5}, velocity={"y": 2.0})
+    law = fm.laws.Coulomb(mu_s=mu) if mu else None
+    sol = fm.simulate(
+        fm.Scene("wire", [bead, fm.RollerOnCircle("wire", bead, radius=1.5, friction=law)]), t_end=2.0, rtol=1e-10
+    )
+    angle = np.unwrap(np.arctan2(sol["bead.y"], sol["bead.x"]))[-1]
+    turned = np.log1p(mu * 2.0 * 2.0 / 1.5) / mu if mu else 2.0 * 2.0 / 1.5
+    assert angle == pytest.approx(turned, abs=1e-8)
+    assert np.hypot(sol.velocity("bead.x")[-1], sol.velocity("bead.y")[-1]) == pytest.approx(
+        2.0 * np.exp(-mu * turned), abs=1e-8
+    )
+
+
+def wedged(speed):
+    """A body on two lines whose frictions press on one another: each margin is positive given the other's, and yet.
+
+    With A = 1 + mu n dN/dF the minors are about -3.6, -1.8 and -1.4.
+    """
+    points = {"one": (0.98, -0.74), "two": (-0.52, -0.95)}
+    motion = speed * np.array([-0.71930492, -0.01165314, 0.69459675])
+    body = fm.RigidBody(
+        "body", mass=1.0, inertia=0.0433, points=points, velocity=tuple(motion[:2]), angular_velocity=motion[2]
+    )
+    lines = [
+        fm.RollerOnLine(name, body.point(name), fm.ground_point(*points[name]), angle=angle, push_only=True,
+                        friction=fm.laws.Coulomb(mu_s=mu))
+        for name, angle, mu in (("one", 5.0135, 1.925), ("two", 4.5564, 1.1727))
+    ]  # fmt: skip
+    loads = [
+        fm.Force("fx", body, axis="x", value=-0.73), fm.Force("fy", body, axis="y", value=3.39),
+        fm.Torque("turn", body, value=-5.19),
+    ]  # fmt: skip
+    return fm.Scene("wedge", [body, *lines, *loads])
+
+
+def test_joints_that_jam_one_another_are_found_together():
+    with pytest.raises(fm.IntegrationError, match="'one', 'two' together has no single solution"):
+        fm.simulate(wedged(1.0), t_end=0.01)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("t_end", [0.7, 1.0])
+def test_a_singular_position_ends_the_run_where_it_is(method, t_end):
+    """A parallelogram that turns steadily lies flat after a quarter of a turn."""
+    legs = [
+        fm.RigidBody(f"leg{i}", mass=1.0, inertia=0.1, position=(float(i), 0.5), angle=np.pi / 2, velocity=(-1.5, 0.0),
+                     angular_velocity=3.0, points={"foot": (-0.5, 0.0), "head": (0.5, 0.0)})
+        for i in range(2)
+    ]  # fmt: skip
+    ends = {"l": (-0.5, 0.0), "r": (0.5, 0.0)}
+    top = fm.RigidBody("top", mass=1.0, inertia=0.3, position=(0.5, 1.0), velocity=(-3.0, 0.0), points=ends)
+    parts = [
+        *legs, top, *(fm.Revolute(f"foot{i}", leg.point("foot"), fm.ground_point(float(i), 0.0))
+                      for i, leg in enumerate(legs)),
+        fm.Revolute("left", top.point("l"), legs[0].point("head")),
+        fm.Revolute("right", top.point("r"), legs[1].point("head")),
+    ]  # fmt: skip
+    with pytest.raises(fm.IntegrationError, match=r"singular position.*'left'") as caught:
+        fm.simulate(fm.Scene("parallelogram", parts), t_end=t_end, rtol=1e-6, method=method)
+    assert caught.value.t == pytest.approx(np.pi / 6, abs=1e-5)
