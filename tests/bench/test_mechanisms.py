@@ -45,7 +45,7 @@ def test_the_same_accelerations_as_the_bodies():
 @pytest.mark.parametrize("method", [method for method in dae_methods() if method.name != "solve_dae"], ids=str)
 def test_methods_reach_the_published_digits(method):
     found = measure_dae(CASE, method, Setting(rtol=1e-6))
-    assert found.metrics.state < (1e-6 if method.name == "simulate" else 1e-2)
+    assert found.metrics.state < (1e-5 if method.name == "simulate" else 1e-2)
 
 
 def test_a_chain_of_links_is_measured_by_the_step():

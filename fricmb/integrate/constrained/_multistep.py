@@ -41,6 +41,12 @@ def take(values: Floats, y: State, rate: Floats) -> None:
 
 
 @kernel
+def share_of(c: Control, past: Past) -> float:
+    """What of the error this step may make: in proportion to its length, but for the few short steps of a start."""
+    return float(max(c.rtol[0] * min(1.0, max(past.h[0] * past.unit[0], 0.01)), 4e-15))
+
+
+@kernel
 def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past: Past) -> bool:
     """Solve the step's equations from the prediction; ``end`` serves as the point of the Jacobian."""
     one, base = past.one, past.base
@@ -56,7 +62,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         base.z[i] = past.new[2 * n + i]
     base.t[0] = y.t[0] + h - beta_h
     measure(c, y, h, one.scale)
-    accuracy = max(NEWTON * c.rtol[0] * min(1.0, h * past.unit[0]), 1e-13)
+    accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
         copy_state(y, end, mech.address)
         take(past.guess, end, end.rate)
@@ -94,7 +100,7 @@ def scaled(y: State, c: Control, past: Past, error: Floats, weight: float) -> fl
     """
     n = y.q.shape[0]
     worst = 0.0
-    share = max(c.rtol[0] * min(1.0, past.h[0] * past.unit[0]), 4e-15)
+    share = share_of(c, past)
     for i in range(n):
         size = max(past.reach[i], abs(past.new[i] - past.origin[i]), past.h[0] * past.one.scale[i], 1e-290)
         worst = max(worst, abs(error[n + i]) / past.one.scale[i], abs(error[i]) / size)

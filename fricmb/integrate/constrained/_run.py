@@ -23,7 +23,7 @@ from fricmb.integrate.constrained._record import Record, record_of
 from fricmb.integrate.constrained._stages import stages_of
 from fricmb.integrate.constrained._state import instant_of, state_of
 from fricmb.integrate.constrained._step import control_of
-from fricmb.integrate.constrained._trajectory import StepTrajectory, nodes_of, with_open
+from fricmb.integrate.constrained._trajectory import StepTrajectory, complete_at, nodes_of, with_open
 
 CHUNK = 1024
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
@@ -76,6 +76,8 @@ def run_mechanism(
     go_on = _bdf_loop(problem, start, t_end, rooms) if multistep else lambda: drive(*rooms)
     code = begin(mech, k, w, y, control, out, record, part, start.mode is not None, small)
     if code == DONE:
+        if not np.any(y.v) and not np.any(y.a):
+            control.floor_v[:] = np.maximum(floor, _speed_to_come(problem, start, t_end))
         control.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
         code = FULL
     while code == FULL:
@@ -120,6 +122,20 @@ def _taken(record: Record) -> tuple[Any, ...]:
     taken = (*(np.array(x[:i]) for x in parts), record.event[:e].copy())
     record.used[:] = 0
     return taken
+
+
+def _speed_to_come(problem: Problem, start: Start, t_end: float) -> float:
+    """A speed that counts as 1 where everything is at rest and no force acts yet: from accelerations a little later."""
+    m, nc, span = mechanism_of(problem), problem.n_c, t_end - start.t
+    force = np.zeros((1, int(m.joints.row[-1]) + 2 * nc))
+    z = np.array(start.z, float)[None]
+    for part in (1e-3, 1e-2, 1e-1, 1.0):
+        q, v = np.array(start.q, float)[None], np.zeros((1, m.n))
+        t = np.array([start.t + part * span])
+        a = complete_at(problem, t, q, v, z, np.ones((1, nc), np.int8), force)[4]
+        if np.isfinite(a).all() and a.any():
+            return float(1e-3 * part * span * np.abs(a).max())
+    return 0.0
 
 
 def _first_step(v: Floats, a: Floats, span: float) -> float:
