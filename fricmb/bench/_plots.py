@@ -10,15 +10,21 @@ import numpy as np
 
 Rows = Sequence[dict[str, Any]]
 
-_OWN = {"auto": "k", "bdf": "C0", "radau": "C2", "collocation": "C3", "bdf2-paper": "C5"}
-_MORE = ("C4", "C6", "C8", "C9")
-_PEERS = {"scipy LSODA": "s", "scipy BDF": "^", "scipy Radau": "v", "scipy DOP853": "d", "CVODE": "P", "IDA": "X"}
+_OWN = {
+    "auto": "k", "bdf": "C0", "radau": "C2", "collocation": "C3", "bdf2-paper": "C5", "taylor": "C9",
+    "timestepping": "C1",
+}  # fmt: skip
+_MORE = ("C4", "C6", "C8")
+_PEERS = {
+    "scipy LSODA": "s", "scipy BDF": "^", "scipy Radau": "v", "scipy DOP853": "d", "CVODE": "P", "IDA": "X",
+    "numbalsoda lsoda": "h", "numbalsoda dop853": "8", "Exudyn": "p", "Siconos": "D",
+}  # fmt: skip
 
 
 def _style(method: str, peer: bool) -> dict[str, Any]:
     if peer:
         marker = _PEERS.get(method, "*")
-        grey = 0.45 + 0.08 * (list(_PEERS).index(method) if method in _PEERS else 6) / 2
+        grey = 0.4 + 0.04 * (list(_PEERS).index(method) if method in _PEERS else 10)
         return {"color": str(grey), "marker": marker, "linestyle": ":", "linewidth": 1.0, "markersize": 5}
     colour = _OWN.get(method) or _MORE[sum(method.encode()) % len(_MORE)]
     if method == "auto":
@@ -55,7 +61,7 @@ def _lines(axes: Any, rows: Rows, x: str, quantity: str) -> None:
             axes.loglog(values, np.maximum(errors, 1e-16), label=method, zorder=1 if peer else 2, **style)
 
 
-def work_precision(rows: Rows, title: str) -> Any:
+def work_precision(rows: Rows) -> Any:
     """State error and transition-time error against processor time."""
     has_times = any(row["metrics"] and row["metrics"]["time"] is not None for row in rows)
     figure = _figure(9.6 if has_times else 6.4)
@@ -67,9 +73,20 @@ def work_precision(rows: Rows, title: str) -> Any:
         axes.set_ylabel(label)
         axes.grid(True, which="major", linewidth=0.3)
     handles, names = panels[0].get_legend_handles_labels()
+    _widen(panels[0])
     figure.legend(handles, names, loc="outside right upper", fontsize=8, frameon=False)
-    figure.suptitle(title, fontsize=10)
     return figure
+
+
+def _widen(axes: Any) -> None:
+    """At least a decade of time, with labels on powers of ten alone: closer ones would lie on each other."""
+    from matplotlib.ticker import NullFormatter
+
+    low, high = axes.get_xlim()
+    if high < 10.0 * low:
+        middle = (low * high) ** 0.5
+        axes.set_xlim(middle / 10.0**0.5 / 1.1, middle * 10.0**0.5 * 1.1)
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def convergence(rows: Rows, family: str) -> Any:
