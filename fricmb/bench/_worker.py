@@ -67,6 +67,16 @@ def _listen(stream: IO[bytes], answers: queue.Queue[Any]) -> None:
             return
 
 
+def _ready() -> None:
+    """Import what every cell needs: a fresh process is not to be charged for it."""
+    import fricmb.bench.stability
+    import fricmb.integrate._kernel  # noqa: F401
+
+
+#: Seconds that a process may take to start.
+START = 300.0
+
+
 class Worker:
     """One process for many cells, so that each kernel is loaded once; started again after a cell that ended it."""
 
@@ -90,12 +100,12 @@ class Worker:
         CellEnded
             Where it took more than ``limit`` seconds, raised an exception, or the process died.
         """
+        fresh = self._process is None
         process = self._started()
         try:
-            if process.stdin is not None:
-                pickle.dump((function, arguments), process.stdin)
-                process.stdin.flush()
-            answer = self._answers.get(timeout=limit)
+            if fresh:
+                self._ask(_ready, (), START)
+            answer = self._ask(function, arguments, limit)
         except queue.Empty:
             self.end()
             raise CellEnded(f"not done after {limit:g} s") from None
@@ -109,6 +119,14 @@ class Worker:
         if not fine:
             raise CellEnded(value)
         return value
+
+    def _ask(self, function: Callable[..., Any], arguments: tuple[Any, ...], limit: float) -> Any:
+        """Hand a job over and wait for its answer."""
+        process = self._started()
+        if process.stdin is not None:
+            pickle.dump((function, arguments), process.stdin)
+            process.stdin.flush()
+        return self._answers.get(timeout=limit)
 
     def warm(self, *jobs: tuple[Callable[..., Any], tuple[Any, ...]]) -> None:
         """Run jobs whose only purpose is to fill the cache: no limit, and failures do not matter."""

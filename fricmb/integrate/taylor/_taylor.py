@@ -134,7 +134,7 @@ def set_start(
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
     net.x[:] = 0.0
     net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest
-    net.x[TOL], net.x[CUT] = 0.02 * tolerance.rtol, 0.0
+    net.x[TOL], net.x[CUT] = 0.1 * tolerance.rtol, 0.0
     net.x[STEP] = longest
     net.x[NOISE] = 1e-13 * speed
     net.i[:] = 0
