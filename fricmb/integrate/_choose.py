@@ -6,10 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from fricmb.integrate._bdf import Bdf
 from fricmb.integrate._bdf2_paper import Bdf2Paper
 from fricmb.integrate._exact import Exact
 from fricmb.integrate._integrator import Integrator, Tolerance
+from fricmb.integrate._pack import packed_of
 from fricmb.integrate._problem import Floats, Problem, Start
 from fricmb.integrate._radau import Radau
 from fricmb.integrate._trajectory import Trajectory
@@ -93,6 +96,21 @@ def many_rows(rtol: float) -> int:
     return int(max(24.0, 30.0 * (1e-6 / rtol) ** 0.28))
 
 
+#: Degrees of freedom up to which steps with dense matrices are bearable, and from which on banded steps are faster than
+#: exact structure (measured with uncoupled modes).
+BEARABLE, WIDE = 1024, 100
+
+
+def contact_rows(problem: Problem) -> int:
+    """Rows of friction and of varying normal forces."""
+    return problem.m + int(np.sum(problem.contacts.normal != 0))
+
+
+def is_banded(problem: Problem) -> bool:
+    """Whether implicit steps keep banded factors."""
+    return int(packed_of(problem).structure.half[0]) >= 0
+
+
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
     if problem.mechanism is not None:
@@ -100,13 +118,15 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
+    many = GuardedTaylor()
+    if problem.n_c > 1 and many.refuses(problem) is None:
+        return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+    if problem.n >= WIDE and 0 < contact_rows(problem) <= many_rows(rtol) and is_banded(problem):
+        return Bdf(), "few contacts on a structure that is a narrow band: the general method, transitions located"
     fast = Guarded()
     refusal = fast.refuses(problem) if is_single(problem) else "several ports"
     if refusal is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
-    many = GuardedTaylor()
-    if problem.n_c > 1 and many.refuses(problem) is None:
-        return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
     # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
     reason = against(problem, rtol) or fast.refuses(problem)
     if reason is None:
@@ -116,4 +136,6 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     if problem.m > many_rows(rtol) and stepping.refuses(problem) is None:
         crowd = f"{problem.m} rows of contacts, more than {many_rows(rtol)}: implicit steps over transitions"
         return stepping, f"{crowd}; {many.refuses(problem)}"
+    if problem.n > BEARABLE and problem.n_c and not is_banded(problem) and stepping.refuses(problem) is None:
+        return stepping, f"{problem.n} degrees of freedom in no narrow band: implicit steps over transitions"
     return Bdf(), f"the general method: {reason}"

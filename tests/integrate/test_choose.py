@@ -86,3 +86,19 @@ def test_a_run_that_stops_is_done_by_the_general_method_and_says_so(monkeypatch)
     with pytest.raises(fm.IntegrationError, match="fell to nothing"):
         fm.simulate(scene, t_end=5.0, method="collocation")
     assert Guarded().name == "collocation"
+
+
+def plate(modes, contacts):
+    shapes = {f"p{i}": np.sin(np.arange(1, modes + 1) * (i + 1)) for i in range(contacts)}
+    body = fm.ModalBody("plate", frequencies=np.arange(1.0, modes + 1), damping_ratios=0.01, shapes=shapes)
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    pads = [fm.Contact(f"c{i}", body.point(f"p{i}"), belt, law=COULOMB, normal_force=1.0) for i in range(contacts)]
+    return fm.Scene("plate", [body, belt, *pads])
+
+
+@pytest.mark.parametrize(("modes", "contacts", "method"), [(20, 3, "collocation"), (120, 3, "bdf"), (600, 3, "bdf")])
+def test_many_modes_under_few_contacts_are_run_in_a_band(modes, contacts, method):
+    sol = fm.simulate(plate(modes, contacts), t_end=0.5)
+    assert sol.stats.method == method
+    if method == "bdf":
+        assert "transitions located" in sol.stats.why
