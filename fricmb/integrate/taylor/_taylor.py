@@ -130,7 +130,10 @@ def set_start(
     net = with_arrays(net, stops=np.append(inside, t_end))
     span = t_end - start.t
     w = fastest(problem)
-    longest = min(span, reach / w) if w > 0.0 else span
+    degree = net.Q.shape[0] - 1
+    # what a break-away early in a step leaves beyond the last degree is seen after the step alone
+    unseen = math.exp((math.log(tolerance.rtol) + math.lgamma(degree + 1.0)) / degree)
+    longest = min(span, min(reach, unseen) / w) if w > 0.0 else span
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
     net.x[:] = 0.0
     net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest

@@ -174,3 +174,17 @@ def test_a_crowd_of_transitions_is_an_error_that_says_so():
         fm.simulate(scene, t_end=20.0, rtol=1e-6, method=Taylor(crowd=0))
     assert caught.value.partial.t_end > 10.0
     assert "taylor" in integrators
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-6, 1e-8])
+def test_stick_that_is_only_grazed_is_met(rtol):
+    """With mu_s/mu_k = 1.001 slip ends 5e-6 past the speed of the belt: errors of a step's start would pass it by."""
+    ratio, speed = 1.001, 0.1
+    scene = fm.models.belt_oscillator(mu_s=ratio, mu_k=1.0, belt=speed)
+    # a swing about x = 1 from x = 1.001 on, until its speed is the belt's again; then along with the belt
+    slip = 2 * np.pi - 2 * np.arctan2(ratio - 1, speed)
+    stick = 2 * (ratio - 1) / speed
+    breaks = ratio / speed + (slip + stick) * np.arange(3)
+    sol = fm.simulate(scene, t_end=breaks[-1] + 0.5, rtol=rtol, method="taylor")
+    assert [event.kind for event in sol.events] == ["slip", "stick"] * 2 + ["slip"]
+    assert sol.events.of(kind="slip").t == pytest.approx(breaks, abs=1e3 * rtol)
