@@ -52,8 +52,11 @@ class RoomType(types.Type):
     def __init__(self, title: str, fields: tuple[tuple[str, Any], ...]) -> None:
         self.at: dict[str, int] = {}
         self.of: dict[str, Any] = dict(fields)
+        #: What each field takes: dtype and number of axes of an array, None for a room.
+        self.wanted: list[tuple[str, tuple[Any, int] | None]] = []
         words = 0
         for name, kind in fields:
+            self.wanted.append((name, None if isinstance(kind, RoomType) else (np.dtype(str(kind.dtype)), kind.ndim)))
             self.at[name] = words * _WORD
             words += 1 if isinstance(kind, RoomType) else 1 + kind.ndim
         inside = ", ".join(f"{name}: {kind}" for name, kind in fields)
@@ -86,16 +89,15 @@ class Room:
         self.room_type: RoomType = _inner(type(values))
         words: list[int] = []
         self._rooms = []
-        for name, value in zip(values._fields, values, strict=True):
-            kind = self.room_type.of[name]
-            if isinstance(kind, RoomType):
+        for (name, wanted), value in zip(self.room_type.wanted, values, strict=True):
+            if wanted is None:
                 inner = value if isinstance(value, Room) else Room(value)
                 self._rooms.append(inner)
                 words.append(inner.address)
                 continue
-            wanted = np.dtype(str(kind.dtype))
-            if value.dtype != wanted or value.ndim != kind.ndim or not value.flags.c_contiguous:
-                raise TypeError(f"{name} is {value.dtype} with {value.ndim} axes; expected {kind}")
+            if value.dtype != wanted[0] or value.ndim != wanted[1] or not value.flags.c_contiguous:
+                expected = self.room_type.of[name]
+                raise TypeError(f"{name} is {value.dtype} with {value.ndim} axes; expected {expected}")
             words.append(value.ctypes.data)
             words.extend(value.shape)
         self._memory = np.array(words, dtype=np.int64)

@@ -238,9 +238,21 @@ def test_wrong_elements_are_named(kind, named):
     assert str(caught.value).startswith(f"{kind.__name__} 'own': ")
 
 
+#: What a formula must not use: it is no field, so that nobody knows when it changes.
+SHAPES = {"of": sympy.sin}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Shaped(Own):
-    """A formula that uses a function held in a field: one template serves all numbers, not all functions."""
+    """A formula that uses what stands outside the declaration: kept formulas do not follow it."""
+
+    def define_potential(self, x):
+        return self.strength * SHAPES["of"](x[0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Held(Own):
+    """A formula that uses a function in a field."""
 
     shape: Callable[..., Any]
 
@@ -248,10 +260,16 @@ class Shaped(Own):
         return self.strength * self.shape(x[0])
 
 
-def test_a_formula_that_depends_on_more_than_parameters_is_found():
-    check_element(Shaped(name="first", shape=sympy.sin))
+def test_a_formula_that_depends_on_more_than_fields_is_found(monkeypatch):
+    check_element(Shaped(name="first"))
+    monkeypatch.setitem(SHAPES, "of", sympy.cos)
     with pytest.raises(ConformanceError, match="does a formula use what is neither a parameter"):
-        check_element(Shaped(name="second", shape=sympy.cos))
+        check_element(Shaped(name="second"))
+
+
+def test_functions_in_fields_are_formulas_of_their_own():
+    check_element(Held(name="first", shape=sympy.sin))
+    check_element(Held(name="second", shape=sympy.cos))
 
 
 def test_a_wrong_template_is_found(monkeypatch):
