@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import sympy
-
 import fricmb as fm
 
 
@@ -49,6 +47,8 @@ def car_axis(*, eps: float = 1e-2, mass: float = 10.0, gravity: float = 1.0, bum
     m, length, natural = mass * eps**2 / 2, 1.0, 0.5
     left = fm.Body("left", mass=m, axes="xy", position={"x": 0.0, "y": natural}, velocity={"x": -natural / length})
     right = fm.Body("right", mass=m, axes="xy", position={"x": length, "y": natural}, velocity={"x": -natural / length})
+    import sympy  # takes half a second, which no other model should wait for
+
     road = bump * sympy.sin(10 * fm.t)
     wheel = fm.Driven("wheel", position={"x": sympy.sqrt(length**2 - road**2), "y": road}, axes="xy")
     return fm.Scene(

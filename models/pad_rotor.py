@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 
 import fricmb as fm
 
@@ -49,6 +48,8 @@ class PadRotorModes:
             return shapes[:, 0, 0]
         found = np.empty((2, shapes.shape[-1]))
         place = np.array([r]), np.array([phi])
+        from scipy.interpolate import RectBivariateSpline  # slow to import, and no other model needs it
+
         for i, j in np.ndindex(*found.shape):
             found[i, j] = RectBivariateSpline(self.radii, self.angles, shapes[i, :, :, j]).ev(*place)[0]
         return found

@@ -241,3 +241,13 @@ def test_break_away_follows_the_normal_force(method):
     assert sol.events[0].t == pytest.approx(5.0, abs=1e-8)
     # v' = 2 - 6 N/(10 + N) = -4 + 60/(20 - t)
     assert sol.velocity("block.x")[-1] == pytest.approx(-8.0 + 60.0 * np.log(15.0 / 13.0), rel=1e-7)
+
+
+def test_a_state_at_its_limit_is_drawn_within_it():
+    """Between steps a bristle that has met its limit is not drawn far beyond it, at tight tolerances not at all."""
+    block, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.1})
+    contact = fm.Contact("sole", block, belt, law=fm.laws.Jenkins(stiffness=1e4, mu=0.3), normal_force=10.0)
+    scene = fm.Scene("belt", [block, belt, fm.Spring("k", block, axis="x", stiffness=100.0), contact])
+    for rtol, beyond in ((1e-6, 0.05), (1e-9, 1e-3)):
+        sol = fm.simulate(scene, t_end=1.0, rtol=rtol, method="radau").at(np.linspace(0.0, 1.0, 2001))
+        assert np.abs(sol.force("sole")).max() < 3.0 * (1.0 + beyond)
