@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
-
-import numpy as np
+from typing import Any, ClassVar
 
 from fricmb.integrate._bdf import Bdf
 from fricmb.integrate._bdf2_paper import Bdf2Paper
@@ -28,9 +26,11 @@ integrators: dict[str, type[Integrator]] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class Guarded(Collocation):
-    """Collocation as ``auto`` takes it: a run that it cannot finish is done by the general method, and says so."""
+class Guard(Integrator):
+    """An integrator as ``auto`` takes it: a run that it cannot finish is done by another, and says so."""
+
+    #: Who does such a run.
+    reserve: ClassVar[type[Integrator]]
 
     def integrate(
         self,
@@ -46,44 +46,29 @@ class Guarded(Collocation):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
-        run = super().integrate(problem, start, t_end, **options)
+        run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # that of the class behind
         if run.failure is None:
             return run
-        other = Bdf()
-        why = f"collocation stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
-        run = other.integrate(problem, start, t_end, **options)
-        run.counters = replace(run.counters, notes=(*run.counters.notes, why))
-        run.instead = (other.name, why)
-        return run
+        other = self.reserve()
+        why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
+        instead = other.integrate(problem, start, t_end, **options)
+        instead.counters = replace(instead.counters, notes=(*instead.counters.notes, why))
+        instead.instead = (other.name, why)
+        return instead
 
 
 @dataclass(frozen=True, kw_only=True)
-class GuardedTaylor(Taylor):
-    """Taylor steps as ``auto`` takes them: where transitions crowd, time stepping does the run, and says so."""
+class Guarded(Guard, Collocation):
+    """Collocation; in reserve the general method."""
 
-    def integrate(
-        self,
-        problem: Problem,
-        start: Start,
-        t_end: float,
-        *,
-        tolerance: Tolerance,
-        step: float | None = None,
-        t_eval: Floats | None = None,
-        progress: Callable[[float], None] | None = None,
-        memory: float | None = None,
-    ) -> Trajectory:
-        """See :class:`Integrator`."""
-        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
-        run = super().integrate(problem, start, t_end, **options)
-        if run.failure is None:
-            return run
-        other = TimeStepping()
-        why = f"taylor stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
-        stepped = other.integrate(problem, start, t_end, **options)
-        stepped.counters = replace(stepped.counters, notes=(*stepped.counters.notes, why))
-        stepped.instead = (other.name, why)
-        return stepped
+    reserve: ClassVar[type[Integrator]] = Bdf
+
+
+@dataclass(frozen=True, kw_only=True)
+class GuardedTaylor(Guard, Taylor):
+    """Taylor steps; in reserve, where transitions crowd, time stepping."""
+
+    reserve: ClassVar[type[Integrator]] = TimeStepping
 
 
 def many_rows(rtol: float) -> int:
@@ -101,11 +86,6 @@ def many_rows(rtol: float) -> int:
 BEARABLE, WIDE = 1024, 100
 
 
-def contact_rows(problem: Problem) -> int:
-    """Rows of friction and of varying normal forces."""
-    return problem.m + int(np.sum(problem.contacts.normal != 0))
-
-
 def is_banded(problem: Problem) -> bool:
     """Whether implicit steps keep banded factors."""
     return int(packed_of(problem).structure.half[0]) >= 0
@@ -121,7 +101,7 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     many = GuardedTaylor()
     if problem.n_c > 1 and many.refuses(problem) is None:
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
-    if problem.n >= WIDE and 0 < contact_rows(problem) <= many_rows(rtol) and is_banded(problem):
+    if problem.n >= WIDE and 0 < problem.m + problem.n_v <= many_rows(rtol) and is_banded(problem):
         return Bdf(), "few contacts on a structure that is a narrow band: the general method, transitions located"
     fast = Guarded()
     refusal = fast.refuses(problem) if is_single(problem) else "several ports"

@@ -136,7 +136,7 @@ def stages_for(problem: Problem, rtol: float, wanted: int | None) -> int:
 
 def cost(problem: Problem, stages: int) -> float:
     """Cost of a step of so many stages, about in microseconds (measured; only ratios are used)."""
-    u = stages * (problem.m + problem.n_z + int(np.sum(problem.contacts.normal != 0)))
+    u = stages * (problem.m + problem.n_z + problem.n_v)
     ports = 0.02 * u**2 + 0.0005 * u**3
     if packed_of(problem).structure.half[0] >= 0:  # vectors count, not matrices
         return 1.5 + 0.1 * (stages + 1.5) * problem.n + ports

@@ -59,7 +59,7 @@ SLOTS, SLOT_BYTES = 24, 6.4e7
 def factor(problem: Problem, tableau: Tableau) -> Factor:
     """Room for factors."""
     n, s, levels = problem.n, len(tableau.c), len(tableau.lam)
-    nv = int(np.sum(problem.contacts.normal != 0))
+    nv = problem.n_v
     mi = problem.m + nv
     structure = packed_of(problem).structure
     half, entries = int(structure.half[0]), len(structure.column)
@@ -77,7 +77,7 @@ def factor(problem: Problem, tableau: Tableau) -> Factor:
 
 def changes(problem: Problem) -> bool:
     """Whether the Jacobian changes with the state: nonlinear elements or varying normal forces."""
-    return len(problem.elements.table.address) > 0 or bool(np.any(problem.contacts.normal != 0))
+    return len(problem.elements.table.address) > 0 or problem.n_v > 0
 
 
 @kernel

@@ -58,7 +58,7 @@ class PortState(NamedTuple):
 def port_state(problem: Problem, s: int) -> PortState:
     """Room for the ports of a problem at s stages."""
     m, nc, nz = problem.m, problem.n_c, problem.n_z
-    nv = int(np.sum(problem.contacts.normal != 0))
+    nv = problem.n_v
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0))
     unknowns = s * (m + nz + nv)
     shapes = [

@@ -276,6 +276,11 @@ class Problem:
         return int(self.contacts.row[-1])
 
     @property
+    def n_v(self) -> int:
+        """Number of contacts whose normal force varies."""
+        return int(np.sum(self.contacts.normal != NORMAL_CONSTANT))
+
+    @property
     def n_z(self) -> int:
         """Number of internal states of laws."""
         return int(self.contacts.z_start[-1])

@@ -93,7 +93,7 @@ def _exact(problem: Problem, s: int) -> Exact:
     slots = np.full(RUNGS + 1, -1, np.int64)
     slots[-1] = 0
     xs, ys, nf = forms.element_x, forms.normal_x, forms.element_f
-    nv = int(np.sum(problem.contacts.normal != 0))
+    nv = problem.n_v
     inner = xs * s
     flags = [n_in, n_o, part.modal and not co[0].any(), _has_ledger(problem), forms.unknown, xs, ys, nf]
     made: dict[str, Any] = {
