@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate._integrator import Integrator
 from fricmb.integrate._problem import Floats, Problem, Start
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate._trajectory import Counters, SampledTrajectory, Samples, Trajectory, Transitions
 
 #: Bytes of rows that a run keeps for its dense output where the times that are asked for are known.
 MEMORY = 6.4e7
@@ -26,31 +26,11 @@ class Losses:
     input: float = 0.0
 
 
-class KeptTrajectory(Trajectory):
+class KeptTrajectory(SampledTrajectory):
     """A run of which the values at certain times are kept, and nothing between.
 
     ``samples`` hold the first and the last time of the run.
     """
-
-    def __init__(
-        self, problem: Problem, samples: Samples, transitions: Transitions, counters: Counters, end: Start,
-        failure: str | None,
-    ) -> None:  # fmt: skip
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
-        self._samples = samples
-
-    @property
-    def t(self) -> Floats:
-        """Times that are kept."""
-        return self._samples.t
-
-    def rows(self) -> Samples:
-        """Values at the times that are kept."""
-        return self._samples
 
     def sample(self, t: Floats) -> Samples:
         """Values at some of the times that are kept.

@@ -9,7 +9,8 @@ import numpy as np
 
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
 from fricmb.integrate._room import room
-from fricmb.integrate._structure import Structure, inverse_mass, pack_structure
+from fricmb.integrate._sparse import Csr
+from fricmb.integrate._structure import Structure, pack_structure
 
 
 class Table(NamedTuple):
@@ -109,7 +110,8 @@ def _pack(problem: Problem) -> Packed:
     varies = contacts.normal != NORMAL_CONSTANT
     var = np.where(varies, np.cumsum(varies) - 1, -1).astype(np.int64)
     W = solid(contacts.W)
-    D = solid(W.T @ (inverse_mass(problem) @ W))
+    Minv = Csr((problem.n, problem.n), structure.Minv_start, structure.Minv_index, structure.Minv)
+    D = solid(W.T @ (Minv @ W))
     ports = Ports(
         solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu), D,
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -113,6 +114,19 @@ class Csr:
     def row_sums(self) -> _Floats:
         """Sum of the magnitudes in each row."""
         return np.bincount(self.rows, np.abs(self.value), self.shape[0]).astype(float)
+
+
+def on_one_pattern(matrices: Sequence[Csr], *also: tuple[_Ints, _Ints]) -> tuple[_Ints, _Ints, list[_Floats]]:
+    """Matrices of one shape over their joint pattern, places ``also`` in it: start, index, values of each."""
+    rows = np.concatenate([*(A.rows for A in matrices), *(i for i, _ in also)])
+    columns = np.concatenate([*(A.index for A in matrices), *(j for _, j in also)])
+    pattern = Csr.of_entries(rows, columns, np.zeros(len(rows)), matrices[0].shape)
+    width = max(pattern.shape[1], 1)
+    key = pattern.rows * width + pattern.index
+    values = [np.zeros(len(key)) for _ in matrices]
+    for A, value in zip(matrices, values, strict=True):
+        value[np.searchsorted(key, A.rows * width + A.index)] = A.value
+    return pattern.start, pattern.index, values
 
 
 class LazyMatrices:

@@ -21,19 +21,25 @@ def is_narrow(n: int, half: int) -> bool:
     return n >= SMALL and 3 * half + 1 <= NARROW * n
 
 
+def narrow_order(rows: Ints, columns: Ints, n: int) -> tuple[Ints, int]:
+    """Place (n,) of each of n unknowns in an order that keeps a matrix narrow, and its half-bandwidth there.
+
+    By reverse Cuthill-McKee; ``rows``, ``columns``: places of the entries.
+    """
+    pattern = csr_array((np.ones(len(rows)), (rows, columns)), shape=(n, n))
+    found = reverse_cuthill_mckee(pattern, symmetric_mode=False)
+    place = np.empty(n, np.int64)
+    place[found] = np.arange(n)
+    return place, int(np.abs(place[rows] - place[columns]).max(initial=0))
+
+
 def band_order(start: Ints, index: Ints) -> tuple[Ints, int]:
     """Place (n,) of each degree of freedom in a band, and its half-bandwidth; -1 where a dense matrix is cheaper.
 
     ``start``, ``index``: the pattern by rows.
     """
     n = len(start) - 1
-    place = np.arange(n)
     if n < SMALL:
-        return place, -1
-    row = np.repeat(place, np.diff(start))
-    pattern = csr_array((np.ones(len(index)), index, start), shape=(n, n))
-    found = reverse_cuthill_mckee(pattern.tocsr(), symmetric_mode=True)
-    place = np.empty(n, np.int64)
-    place[found] = np.arange(n)
-    half = int(np.abs(place[row] - place[index]).max(initial=0))
+        return np.arange(n), -1
+    place, half = narrow_order(np.repeat(np.arange(n), np.diff(start)), index, n)
     return place, half if is_narrow(n, half) else -1

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate._problem import Floats, Floats2, Ints, Problem
-from fricmb.integrate._sparse import Csr
+from fricmb.integrate._sparse import Csr, on_one_pattern
 from fricmb.integrate._storage import band_order
 
 
@@ -99,26 +99,16 @@ def pack_structure(problem: Problem) -> Structure:
     own, others = slice(0, n), slice(n, n + problem.n_u)
     Kx, Cx, M = linear.csr("Kx"), linear.csr("Cx"), linear.csr("M")
     K, C = Kx.block(own, own), Cx.block(own, own)
-    parts = [M, K, C, K.transposed()]
-    feel, on = coupled(problem)
-    rows = np.concatenate([*(part.rows for part in parts), np.arange(n), feel])
-    columns = np.concatenate([*(part.index for part in parts), np.arange(n), on])
-    pattern = Csr.of_entries(rows, columns, np.zeros(len(rows)), (n, n))
-    key = pattern.rows * max(n, 1) + pattern.index
-
-    def on_pattern(part: Csr) -> Floats:
-        values = np.zeros(len(key))
-        values[np.searchsorted(key, part.rows * max(n, 1) + part.index)] = part.value
-        return values
-
+    diagonal = np.arange(n)
+    first, column, (m, k, c, turned) = on_one_pattern([M, K, C, K.transposed()], (diagonal, diagonal), coupled(problem))
+    whole = Csr((n, n), first, column, k)
     Minv = inverse_mass(problem)
-    place, half = band_order(pattern.start, pattern.index)
+    place, half = band_order(first, column)
     solid = np.ascontiguousarray
-    tie, alone = ties(Csr(pattern.shape, pattern.start, pattern.index, on_pattern(K)), np.asarray(problem.omega, float))
-    k, k_turned = on_pattern(K), on_pattern(K.transposed())
+    tie, alone = ties(whole, np.asarray(problem.omega, float))
     return Structure(
-        first=pattern.start, column=solid(pattern.index), M=on_pattern(M), K=k, C=on_pattern(C),
-        Ka=0.5 * (k - k_turned), own=np.flatnonzero(pattern.rows == pattern.index), tie=tie, alone=alone,
+        first=first, column=solid(column), M=m, K=k, C=c, Ka=0.5 * (k - turned),
+        own=np.flatnonzero(whole.rows == column), tie=tie, alone=alone,
         Minv_start=Minv.start, Minv_index=solid(Minv.index), Minv=solid(Minv.value),
         mobility=Minv.diagonal(), place=place, half=np.array([half]), Ku=Kx.block(own, others).dense(),
         Cu=Cx.block(own, others).dense(), f=solid(linear.fx[:n]), B=solid(linear.csr("B").dense()),

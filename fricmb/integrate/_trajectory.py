@@ -109,3 +109,27 @@ class Trajectory(ABC):
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "problem"}
+
+
+class SampledTrajectory(Trajectory):
+    """A run that is kept as samples; what lies between them is for subclasses to say."""
+
+    def __init__(
+        self, problem: Problem, samples: Samples, transitions: Transitions, counters: Counters, end: Start,
+        failure: str | None,
+    ) -> None:  # fmt: skip
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._samples = samples
+
+    @property
+    def t(self) -> Floats:
+        """Times of the samples."""
+        return self._samples.t
+
+    def rows(self) -> Samples:
+        """The samples."""
+        return self._samples

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._problem import Ints, Problem, Templates
+from fricmb.integrate._storage import narrow_order
 
 
 def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int]:
@@ -20,12 +19,7 @@ def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tupl
         held = sorted(group)
         pairs.update((i, j) for i in held for j in held)
     rows, columns = np.array(sorted(pairs), dtype=np.int64).T
-    matrix = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(size, size)).tocsr()
-    found = reverse_cuthill_mckee(matrix, symmetric_mode=True)
-    place = np.empty(size, np.int64)
-    place[found] = np.arange(size)
-    half = int(np.abs(place[rows] - place[columns]).max(initial=0))
-    return place, half
+    return narrow_order(rows, columns, size)
 
 
 def _groups(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> Iterator[set[int]]:

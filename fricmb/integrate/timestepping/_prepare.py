@@ -9,9 +9,10 @@ import numpy as np
 from fricmb.integrate._kept import kept
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._pack import _table
-from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Floats, Ints, Problem
+from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
 from fricmb.integrate._room import room
-from fricmb.integrate._sparse import Csr
+from fricmb.integrate._sparse import on_one_pattern
+from fricmb.integrate._storage import narrow_order
 from fricmb.integrate.timestepping._run import Run
 
 #: Most contact rows that may be condensed, and numbers that a factorisation may hold.
@@ -33,42 +34,6 @@ def _refusal(problem: Problem) -> str | None:
     return None
 
 
-def _joint(matrices: list[Csr], n: int) -> tuple[Ints, Ints, list[Floats]]:
-    """Matrices over their joint pattern with a full diagonal: start, index, values of each."""
-    diagonal = np.arange(n)
-    rows = np.concatenate([diagonal, *(A.rows for A in matrices)])
-    columns = np.concatenate([diagonal, *(A.index for A in matrices)])
-    width = matrices[0].shape[1]
-    found = []
-    for k in range(len(matrices)):
-        parts = [np.zeros(n)] + [A.value if j == k else np.zeros(len(A.value)) for j, A in enumerate(matrices)]
-        found.append(Csr.of_entries(rows, columns, np.concatenate(parts), (n, width)))
-    return found[0].start, found[0].index, [A.value for A in found]
-
-
-def _over(matrices: list[Csr]) -> tuple[Ints, Ints, list[Floats]]:
-    """The same for matrices of any shape, without a diagonal."""
-    rows = np.concatenate([A.rows for A in matrices])
-    columns = np.concatenate([A.index for A in matrices])
-    found = []
-    for k in range(len(matrices)):
-        values = np.concatenate([A.value if j == k else np.zeros(len(A.value)) for j, A in enumerate(matrices)])
-        found.append(Csr.of_entries(rows, columns, values, matrices[0].shape))
-    return found[0].start, found[0].index, [A.value for A in found]
-
-
-def _order(rows: Ints, columns: Ints, n: int) -> Ints:
-    """Places of the dofs that keep the band narrow (reverse Cuthill-McKee)."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-    pattern = csr_array((np.ones(len(rows)), (rows, columns)), shape=(n, n))
-    listed = reverse_cuthill_mckee(pattern, symmetric_mode=False)
-    place = np.empty(n, dtype=np.int64)
-    place[listed] = np.arange(n)
-    return place
-
-
 def _contact_pairs(problem: Problem) -> tuple[Ints, Ints]:
     """Pairs of dofs that a contact ties together."""
     W = problem.contacts.csr("W").transposed()
@@ -83,10 +48,6 @@ def _contact_pairs(problem: Problem) -> tuple[Ints, Ints]:
     return np.concatenate(rows), np.concatenate(columns)
 
 
-def _band(rows: Ints, columns: Ints, place: Ints) -> int:
-    return int(np.abs(place[rows] - place[columns]).max(initial=0))
-
-
 def _band_cost(n: int, width: int) -> float:
     """Operations of a factorisation and a few solutions in a band of that half width."""
     return 2.0 * n * width * (width + 1.0) + n * (12.0 * width + 6.0)
@@ -95,8 +56,7 @@ def _band_cost(n: int, width: int) -> float:
 def _storage(problem: Problem, rows: Ints, columns: Ints, contacts: str | None) -> tuple[Ints, int, bool]:
     """Order of the dofs, half width of the band, and whether contacts are condensed: by operations a step."""
     n, m = problem.n, problem.m
-    alone = _order(rows, columns, n)
-    narrow = _band(rows, columns, alone)
+    alone, narrow = narrow_order(rows, columns, n)
     nnz = len(problem.contacts.csr("W").value)
     slim = n * (4.0 * narrow + 2.0) + 4.0 * nnz + 2.0 * m * n + 3.0 * m**3
     # the dofs of one contact are neighbours of each other: a lower bound of the width
@@ -105,8 +65,7 @@ def _storage(problem: Problem, rows: Ints, columns: Ints, contacts: str | None) 
         return alone, narrow, True
     extra = _contact_pairs(problem)
     both_rows, both_columns = np.concatenate([rows, extra[0]]), np.concatenate([columns, extra[1]])
-    together = _order(both_rows, both_columns, n)
-    wide = _band(both_rows, both_columns, together)
+    together, wide = narrow_order(both_rows, both_columns, n)
     if contacts is None and m <= CONDENSABLE and slim < _band_cost(n, wide):
         return alone, narrow, True
     return together, wide, False
@@ -118,13 +77,15 @@ def _statics(problem: Problem, contacts: str | None) -> dict[str, Any]:
     Kx, Cx, B = linear.csr("Kx"), linear.csr("Cx"), linear.csr("B")
     K = Kx.block(inside, inside)
     mirrored = K.transposed()
-    start, index, (mass, stiff, visc, other) = _joint([linear.csr("M"), K, Cx.block(inside, inside), mirrored], n)
+    start, index, (mass, stiff, visc, other) = on_one_pattern(
+        [linear.csr("M"), K, Cx.block(inside, inside), mirrored], (np.arange(n), np.arange(n))
+    )
     rows = np.repeat(np.arange(n), np.diff(start))
     order, band, condensed = _storage(problem, rows, index, contacts)
     skew = 0.5 * (stiff - other)
     Ku, Cu = Kx.block(inside, drivers), Cx.block(inside, drivers)
-    in_start, in_signal, (in_b, in_k, in_c) = _over([B, Ku, Cu])
-    back_start, back_dof, (back_k, back_c) = _over([Kx.block(drivers, inside), Cx.block(drivers, inside)])
+    in_start, in_signal, (in_b, in_k, in_c) = on_one_pattern([B, Ku, Cu])
+    back_start, back_dof, (back_k, back_c) = on_one_pattern([Kx.block(drivers, inside), Cx.block(drivers, inside)])
     outside = np.zeros((3, n_u, n_u))
     outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
     outside[2, :, :1] = linear.fx[n:, None]

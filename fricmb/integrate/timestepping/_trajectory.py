@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import SLIP, Codes, Floats, Problem, Start
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate._problem import SLIP, Codes, Floats, Start
+from fricmb.integrate._trajectory import SampledTrajectory, Samples
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,32 +22,12 @@ class SteppedStart(Start):
     known: Codes
 
 
-class SteppedRun(Trajectory):
+class SteppedRun(SampledTrajectory):
     """Rows are the ends of steps."""
-
-    def __init__(
-        self, problem: Problem, rows: Samples, transitions: Transitions, counters: Counters, end: Start,
-        failure: str | None,
-    ) -> None:  # fmt: skip
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
-        self._rows = rows
-
-    @property
-    def t(self) -> Floats:
-        """Ends of the steps."""
-        return self._rows.t
-
-    def rows(self) -> Samples:
-        """Values there."""
-        return self._rows
 
     def sample(self, t: Floats) -> Samples:
         """Values at any times within the run."""
-        rows = self._rows
+        rows = self._samples
         t = np.ascontiguousarray(t, dtype=float)
         if len(rows.t) < 2:
             return _take(rows, np.zeros(len(t), dtype=int), t)
@@ -72,7 +52,7 @@ class SteppedRun(Trajectory):
 
     def _losses(self, k: np.ndarray, s: Floats) -> Floats:
         """Friction losses within steps: in proportion to the way slipped."""
-        rows = self._rows
+        rows = self._samples
         left = rows.friction_loss[:, k]
         r0, r1 = self._speeds(k), self._speeds(k + 1)
         way = 0.5 * (r0 + r1)
@@ -81,7 +61,7 @@ class SteppedRun(Trajectory):
 
     def _belt_work(self, k: np.ndarray, s: Floats) -> Floats:
         """What the work of belts within steps is beside a straight line, where holding forces rise or fall."""
-        rows, contacts = self._rows, self.problem.contacts
+        rows, contacts = self._samples, self.problem.contacts
         owner = np.repeat(np.arange(self.problem.n_c), np.diff(contacts.row))
         same = (rows.mode[:, k] == rows.mode[:, k + 1])[owner]
         W = contacts.csr("W")
@@ -98,12 +78,12 @@ class SteppedRun(Trajectory):
     def _speeds(self, k: np.ndarray) -> Floats:
         """Slip speeds (n_c, n_t) in rows."""
         first = self.problem.contacts.row[:-1]
-        squares = self._rows.g[:, k] ** 2
+        squares = self._samples.g[:, k] ** 2
         return np.sqrt(np.add.reduceat(squares, first, axis=0) if len(first) else squares)
 
     def _forces(self, k: np.ndarray, s: Floats, g: Floats) -> Floats:
         """Forces within steps: lines where a contact's mode stays, along the slip; else those before the transition."""
-        rows, row = self._rows, self.problem.contacts.row
+        rows, row = self._samples, self.problem.contacts.row
         if len(row) < 2:
             return rows.F[:, k]
         owner = np.repeat(np.arange(self.problem.n_c), np.diff(row))
