@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from math import isfinite
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.errors import FricmbError, LawError
-from fricmb.laws._check import check_cone, field_value, required_numbers
+from fricmb.laws._check import check_cone, field_value, no_fields, required_numbers
 from fricmb.laws._regimes import Regimes
 from fricmb.values import Declaration
+from fricmb.values._declaration import field_names
 
 Floats: TypeAlias = NDArray[np.float64]
 LawKind: TypeAlias = Literal["constant", "coefficient", "smooth"]
@@ -230,20 +232,21 @@ class FrictionLaw(Regimes, Declaration):
 
     def check(self) -> None:
         """Bring the fields to their form and check them; raises :class:`LawError`."""
-        annotated = [n for n, a in vars(type(self)).get("__annotations__", {}).items() if "ClassVar" not in str(a)]
-        if missing := set(annotated) - {f.name for f in fields(self)}:
+        if missing := no_fields(type(self)):
             raise LawError(
-                f"{self._label()}: {', '.join(sorted(missing))} is no field; decorate the class with"
+                f"{self._label()}: {', '.join(missing)} is no field; decorate the class with"
                 " @dataclass(frozen=True, kw_only=True)"
             )
-        for field in fields(self):
-            self._set(field.name, field_value(self, field.name, field.type))
+        for name in field_names(type(self)):
+            value = getattr(self, name)
+            if type(value) is not float or not isfinite(value):
+                self._set(name, field_value(self, name))
         if self.kind == "coefficient" and not self.has_coefficient:
             raise LawError(f"{self._label()}: must define define_coefficient(self, r) or define_force(self, v, N, z)")
         if self.states and self.kind != "smooth":
             raise LawError(f"{self._label()}: a law with states must define define_force(self, v, N, z)")
         self._check_positive()
-        numbers = self.numeric()
+        numbers = self if self.only_numbers() else self.numeric()
         numbers.validate()
         if self.kind != "smooth":
             check_cone(numbers)

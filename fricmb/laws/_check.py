@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import MISSING, fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,21 @@ def required_numbers(kind: Any) -> dict[str, float]:
     return {f.name: 0.5 for f in fields(kind) if f.default is MISSING and f.default_factory is MISSING}
 
 
-def field_value(law: Any, name: str, annotation: Any) -> Any:
+@cache
+def no_fields(kind: type) -> tuple[str, ...]:
+    """Annotated names of a type that are no fields: its author forgot the decorator."""
+    annotated = [name for name, a in vars(kind).get("__annotations__", {}).items() if "ClassVar" not in str(a)]
+    return tuple(sorted(set(annotated) - {f.name for f in fields(kind)}))
+
+
+@cache
+def _annotations(kind: Any) -> dict[str, Any]:
+    return {f.name: f.type for f in fields(kind)}
+
+
+def field_value(law: Any, name: str) -> Any:
     """A field in its form: a number, a tuple of numbers, an inner law, an option."""
-    value = getattr(law, name)
+    value, annotation = getattr(law, name), _annotations(type(law))[name]
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
     if isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1:
         return tuple(law._number(f"{name}[{i}]", entry) for i, entry in enumerate(value))

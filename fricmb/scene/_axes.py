@@ -53,6 +53,8 @@ def is_end(owner: Part, argument: str, value: Any) -> End:
 def check_ends(owner: Part, a: Any, b: Any) -> tuple[End, End]:
     """Two different ends of which at least one can move."""
     a, b = is_end(owner, "a", a), is_end(owner, "b", b)
+    if (a.movable or b.movable) and a.end_name != b.end_name:
+        return a, b
     names = f"{a.end_name!r} and {b.end_name!r}"
     if not (a.movable or b.movable):
         raise SceneError(f"{owner._label()}: one end must have degrees of freedom; of a, b = {names} none has")
@@ -84,6 +86,8 @@ def _is_scalar(value: Any) -> bool:
 def components(owner: Part, argument: str, axis: Any, a: End, b: End) -> tuple[tuple[str, float], ...]:
     """Unit components along letters of an axis that both ends have."""
     if isinstance(axis, str):
+        if a.has_axis(axis) and b.has_axis(axis):
+            return ((axis, 1.0),)
         vector = {axis: 1.0}
     else:
         letters = reference_letters(a, b)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from fricmb.errors import SceneError, UnknownNameError, unknown_name
 from fricmb.scene._expressions import Uses
 from fricmb.scene._matrix import MatrixElement
-from fricmb.scene._part import GROUND, Ground, Part
+from fricmb.scene._part import GROUND, End, Ground, Part
 
 if TYPE_CHECKING:
     from fricmb.scene._scene import Scene
@@ -16,35 +17,36 @@ if TYPE_CHECKING:
 def check_scene(scene: Scene) -> None:
     """Names, references, motions in expressions, named parameters."""
     label = f"Scene {scene.name!r}"
-    seen: set[str] = set()
     for part in scene.parts:
         if not isinstance(part, Part) or isinstance(part, Ground):
             raise SceneError(f"{label}: parts must hold parts (Body, Spring, Contact, ...), got {part!r}")
-        if part.name in seen:
-            raise SceneError(f"{label}: the name {part.name!r} is used twice; names must be unique")
-        seen.add(part.name)
+    held = {part.name: part for part in scene.parts}
+    if len(held) < len(scene.parts):
+        name, _ = Counter(part.name for part in scene.parts).most_common(1)[0]
+        raise SceneError(f"{label}: the name {name!r} is used twice; names must be unique")
     if not scene.dof_names:
         raise SceneError(f"{label}: parts must hold at least one Body or ModalBody")
     for part in scene.parts:
-        _check_ends(scene, part, label)
+        for end in part.ends():
+            if held.get(end.owner.name) is not end.owner:
+                _check_end(scene, part, end, label)
     values: dict[str, float] = {}
     for part in scene.parts:
         uses = part.uses()
-        _check_motions(scene, part, uses)
-        _check_parameters(part, uses, values, label)
+        if uses or isinstance(part, MatrixElement):
+            _check_motions(scene, part, uses)
+            _check_parameters(part, uses, values, label)
 
 
-def _check_ends(scene: Scene, part: Part, label: str) -> None:
-    for end in part.ends():
-        owner = end.owner
-        if owner is GROUND:
-            continue
-        if owner.name not in scene:
-            error = unknown_name(f"end of {part._label()}", end.end_name, [p.name for p in scene.bodies + scene.driven])
-            raise UnknownNameError(f"{label}: {error}; every body must be among the parts of the scene")
-        held = scene[owner.name]
-        if held is not owner and held != owner:
-            raise SceneError(f"{label}: {part._label()} refers to another {owner.name!r} than the one among the parts")
+def _check_end(scene: Scene, part: Part, end: End, label: str) -> None:
+    owner = end.owner
+    if owner is GROUND:
+        return
+    if owner.name not in scene:
+        error = unknown_name(f"end of {part._label()}", end.end_name, [p.name for p in scene.bodies + scene.driven])
+        raise UnknownNameError(f"{label}: {error}; every body must be among the parts of the scene")
+    if scene[owner.name] != owner:
+        raise SceneError(f"{label}: {part._label()} refers to another {owner.name!r} than the one among the parts")
 
 
 def _check_motions(scene: Scene, part: Part, all_uses: dict[str, Uses]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
 from itertools import combinations
+from math import inf
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -62,10 +63,11 @@ class Contact(Part):
         self._check_normal()
         if self.axes is not None:
             self._set("axes", self._checked_axes())
-        directions = self.directions()
-        self._check_directions(directions)
+        letters = self.letters_along()
+        if letters is None or self.normal_kind != "constant" or len(letters) not in self.law.dimensions:
+            self._check_directions(self.directions())
         if self.slide is not None:
-            self._set("slide", self._checked_slide(len(directions)))
+            self._set("slide", self._checked_slide(len(self.labels())))
 
     # -- normal force -------------------------------------------------------------------------------------------
     def _check_normal(self) -> None:
@@ -76,12 +78,16 @@ class Contact(Part):
             return
         if isinstance(self.normal_force, type | FrictionLaw):
             self._refuse("normal_force", self.normal_force, "a number, an expression or a law of fm.normal")
+        if type(self.normal_force) is float and 0.0 <= self.normal_force < inf:
+            return
         value = check_expression(self, "normal_force", self.normal_force, motions=True, minimum=0.0)
         self._set("normal_force", value)
 
     @property
     def normal_kind(self) -> Literal["constant", "expression", "law"]:
         """What the normal force is."""
+        if type(self.normal_force) is float:
+            return "constant"
         if isinstance(self.normal_force, NormalLaw):
             return "law"
         return "constant" if expression_uses(self.normal_force).constant else "expression"
@@ -110,9 +116,26 @@ class Contact(Part):
 
     def shared_letters(self) -> tuple[str, ...]:
         """Axes that the ends with degrees of freedom share (and to which a driven end is not closed)."""
-        held = [end.letters for end in sorted((self.a, self.b), key=lambda e: not e.movable) if end.letters is not None]
-        first, *others = held
-        return tuple(c for c in first if all(c in letters for letters in others))
+        first, second = (self.a, self.b) if self.a.movable else (self.b, self.a)
+        if first.letters is None:
+            first, second = second, first
+        letters = first.letters or ()
+        return letters if second.letters is None else tuple([c for c in letters if second.has_axis(c)])
+
+    def letters_along(self) -> tuple[str, ...] | None:
+        """The letters of the tangential directions; None where these are no letters, or a normal-force law's matter."""
+        if isinstance(self.normal_force, NormalLaw):
+            return None
+        if self.axes is None:
+            return self.shared_letters()
+        for axis in self.axes:
+            if not isinstance(axis, str) or not (self.a.has_axis(axis) and self.b.has_axis(axis)):
+                return None
+        return self.axes if len(set(self.axes)) == len(self.axes) else None
+
+    def labels(self) -> tuple[str, ...]:
+        """Labels of the tangential directions."""
+        return self.letters_along() or tuple(direction.label for direction in self.directions())
 
     def directions(self) -> tuple[Direction, ...]:
         """Tangential directions, one or two, each with the motion of a less that of b along it (without slide)."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from math import isfinite
 from typing import Any, ClassVar
 
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import Part
 from fricmb.values import Parameter, is_expression, is_plain
+from fricmb.values._declaration import slot_fields
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,12 +45,12 @@ class Element(Part):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in self._fixed or self._takes_expression(field.name):
+        for name in slot_fields(type(self)):
+            value = getattr(self, name)
+            if (type(value) is float and isfinite(value)) or self._takes_expression(name):
                 continue
             if is_plain(value) or isinstance(value, Parameter) or is_expression(value):
-                self._set(field.name, self._number(field.name, value))
+                self._set(name, self._number(name, value))
         self._check_positive()
 
     def _takes_expression(self, field: str) -> bool:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, ClassVar, Self
 
 from fricmb.errors import SceneError
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._forms import LinearForm
 from fricmb.values import Declaration, is_expression
-from fricmb.values._declaration import field_names
+from fricmb.values._declaration import field_names, values_of
 
 LETTERS = ("x", "y", "z")
 
@@ -32,6 +34,8 @@ class Part(Declaration):
 
     def __post_init__(self) -> None:
         name = self.name
+        if type(name) is str and name.isascii() and name.isidentifier():
+            return
         if not isinstance(name, str) or not name or "." in name or name != name.strip() or not name.isprintable():
             raise SceneError(f"{type(self).__name__}: name must be a non-empty string without dots, got {name!r}")
 
@@ -40,12 +44,11 @@ class Part(Declaration):
 
     def ends(self) -> tuple[End, ...]:
         """Ends that this part acts on, in the order of its fields."""
-        values = [getattr(self, name) for name in field_names(type(self))]
-        return tuple([value for value in values if isinstance(value, End)])
+        return tuple([value for value in _field_values(type(self))(self) if isinstance(value, End)])
 
     def expressions(self) -> dict[str, Any]:
         """Slots that hold SymPy expressions of time or motions: path -> expression."""
-        if self.plain_numbers() is not None:
+        if self.only_numbers():
             return {}
         return {
             path: value
@@ -55,7 +58,7 @@ class Part(Declaration):
 
     def uses(self) -> dict[str, Uses]:
         """What each slot depends on, for slots that are no plain numbers."""
-        if self.plain_numbers() is not None:
+        if self.only_numbers():
             return {}
         found = {path: expression_uses(value) for path, value in self._entries() if not isinstance(value, float)}
         return {path: uses for path, uses in found.items() if uses != Uses()}
@@ -81,6 +84,11 @@ class Part(Declaration):
         return dataclasses.replace(self, **new) if new else self
 
 
+@cache
+def _field_values(kind: type) -> Callable[[Any], tuple[Any, ...]]:
+    return values_of(kind, field_names(kind))
+
+
 class End:
     """Something an element or contact can act on: a body, a driven body, a point of a modal body, the ground."""
 
@@ -103,6 +111,10 @@ class End:
     def movable(self) -> bool:
         """Whether forces move it."""
         raise NotImplementedError
+
+    def has_axis(self, letter: str) -> bool:
+        """Whether it has a motion along an axis, be it rest."""
+        return self.letters is None or letter in self.letters
 
     def motion(self, letter: str) -> LinearForm:
         """The coordinate along an axis."""

@@ -23,6 +23,9 @@ from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.values import value_of
 
+#: Parts with degrees of freedom.
+BODIES = (Body, ModalBody, RigidBody)
+
 
 class Scene:
     """Bodies, elements and contacts; immutable.
@@ -69,8 +72,8 @@ class Scene:
         put(self, "name", name)
         put(self, "parts", tuple(parts))
         put(self, "_by_name", {part.name: part for part in self.parts if isinstance(part, Part)})
-        bodies = (part for part in self.parts if isinstance(part, Body | ModalBody | RigidBody))
-        put(self, "dof_names", tuple(name for body in bodies for name in body.dof_names))
+        bodies = [part for part in self.parts if isinstance(part, BODIES)]
+        put(self, "dof_names", tuple([name for body in bodies for name in body.dof_names]))
         put(self, "_motions", None)
         put(self, "_cache", {})
         put(self, "_shared", shared)

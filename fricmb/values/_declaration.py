@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
+from math import isfinite
+from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, ClassVar, NoReturn, Self
 
@@ -42,6 +45,19 @@ def slot_fields(kind: type[Declaration]) -> tuple[str, ...]:
     return found
 
 
+def values_of(kind: type, names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
+    """A function that reads the named attributes of an object of that type, in one call."""
+    if len(names) > 1:
+        return attrgetter(*names)
+    return (lambda held: (getattr(held, names[0]),)) if names else (lambda held: ())
+
+
+@cache
+def slot_values(kind: type[Declaration]) -> Callable[[Any], tuple[Any, ...]]:
+    """A function that reads the fields that may hold slots."""
+    return values_of(kind, slot_fields(kind))
+
+
 class Declaration:
     """Base of the frozen dataclasses that a scene is made of.
 
@@ -72,7 +88,7 @@ class Declaration:
 
     def _number(self, argument: str, value: Any, *, above: float | None = None, minimum: float | None = None) -> Number:
         """A checked number: float, Parameter, or expression of parameters."""
-        if type(value) is float and finite(value):
+        if type(value) is float and isfinite(value):
             good = (above is None or value > above) and (minimum is None or value >= minimum)
             if good:
                 return value
@@ -87,6 +103,13 @@ class Declaration:
         if isinstance(value, Parameter) or (is_expression(value) and value.free_symbols):
             return value
         return plain
+
+    def _settle(self, *fields: str) -> None:
+        """Fields that hold one finite number each, in their form."""
+        for name in fields:
+            value = getattr(self, name)
+            if type(value) is not float or not isfinite(value):
+                self._set(name, self._number(name, value))
 
     def _check_positive(self) -> None:
         """The fields in :attr:`positive` hold numbers > 0."""
@@ -129,8 +152,27 @@ class Declaration:
 
     def plain_numbers(self) -> tuple[float, ...] | None:
         """The slots' values where every field that may hold slots is a float, else None."""
-        values = tuple([getattr(self, name) for name in slot_fields(type(self))])
-        return values if all(type(value) is float for value in values) else None
+        values = slot_values(type(self))(self)
+        for value in values:
+            if type(value) is not float:
+                return None
+        return values
+
+    def only_numbers(self) -> bool:
+        """Whether every slot is a float, those inside fields included: no parameter, expression or array."""
+        for value in slot_values(type(self))(self):
+            if type(value) is float or value is None:
+                continue
+            if isinstance(value, Declaration):
+                if not (value._referred or value.only_numbers()):
+                    return False
+            elif isinstance(value, Mapping):
+                for held in value.values():
+                    if type(held) is not float:
+                        return False
+            elif not isinstance(value, str | bool):
+                return False
+        return True
 
     def numeric_slots(self) -> dict[str, Any]:
         """:meth:`slots` with numbers in place of parameters; expressions of time or coordinates are left out."""

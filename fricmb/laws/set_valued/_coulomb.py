@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from fricmb.laws._base import FrictionLaw, LawKind
+from fricmb.values import value_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,8 +53,11 @@ class Coulomb(FrictionLaw):
 
     def slip_limit(self, normal_force: float = 1.0) -> float:
         """mu_k."""
-        numbers = self.numeric_slots()
-        return float(numbers.get("mu_k", numbers["mu_s"]))
+        return float(value_of(self.mu_s if self.mu_k is None else self.mu_k))
+
+    def break_away(self, normal_force: float = 1.0) -> float:
+        """mu_s."""
+        return float(value_of(self.mu_s))
 
     def coefficient(self, r: Any, normal_force: Any = 1.0) -> Any:
         """mu_k at every slip speed."""
