@@ -18,6 +18,7 @@ from fricmb.equations._expressions import (
     value_expression,
 )
 from fricmb.equations._facts import ElementFacts, element_facts
+from fricmb.equations._groups import Group, element_groups
 from fricmb.equations._store import folder, function
 from fricmb.equations._templates import (
     Template,
@@ -47,10 +48,12 @@ __all__ = [
     "ElementFacts",
     "Expression",
     "ForceTerms",
+    "Group",
     "Signal",
     "Template",
     "derivations",
     "element_facts",
+    "element_groups",
     "element_template",
     "folder",
     "force_expression",

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from fricmb.equations._expressions import force_terms
-from fricmb.equations._templates import element_template
+from fricmb.equations._templates import Template, Terms, element_template
 from fricmb.equations._values import numbers
 from fricmb.scene import Force
 
@@ -48,7 +48,11 @@ def element_facts(element: Any, driven: bool = False) -> ElementFacts:
         )
     template = element_template(element, driven=driven)
     p = numbers(element)
-    left = template.terms(p)
+    return facts_of(template.terms(p), template)
+
+
+def facts_of(left: Terms, template: Template) -> ElementFacts:
+    """Facts of what is left of a template for some numbers."""
     return _facts(bool(left.K), bool(left.C), bool(left.f), left.rest, template.facts["compiled"])
 
 

@@ -232,12 +232,13 @@ class FrictionLaw(Regimes, Declaration):
 
     def check(self) -> None:
         """Bring the fields to their form and check them; raises :class:`LawError`."""
-        if missing := no_fields(type(self)):
+        kind: Any = type(self)
+        if missing := no_fields(kind):
             raise LawError(
                 f"{self._label()}: {', '.join(missing)} is no field; decorate the class with"
                 " @dataclass(frozen=True, kw_only=True)"
             )
-        for name in field_names(type(self)):
+        for name in field_names(kind):
             value = getattr(self, name)
             if type(value) is not float or not isfinite(value):
                 self._set(name, field_value(self, name))

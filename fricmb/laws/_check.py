@@ -18,7 +18,7 @@ def required_numbers(kind: Any) -> dict[str, float]:
 
 
 @cache
-def no_fields(kind: type) -> tuple[str, ...]:
+def no_fields(kind: Any) -> tuple[str, ...]:
     """Annotated names of a type that are no fields: its author forgot the decorator."""
     annotated = [name for name, a in vars(kind).get("__annotations__", {}).items() if "ClassVar" not in str(a)]
     return tuple(sorted(set(annotated) - {f.name for f in fields(kind)}))
@@ -31,7 +31,8 @@ def _annotations(kind: Any) -> dict[str, Any]:
 
 def field_value(law: Any, name: str) -> Any:
     """A field in its form: a number, a tuple of numbers, an inner law, an option."""
-    value, annotation = getattr(law, name), _annotations(type(law))[name]
+    kind: Any = type(law)
+    value, annotation = getattr(law, name), _annotations(kind)[name]
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
     if isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1:
         return tuple(law._number(f"{name}[{i}]", entry) for i, entry in enumerate(value))

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from fricmb.plan._links import Link
-from fricmb.scene import Contact, MatrixElement
+from fricmb.plan._links import Flags, Links
+from fricmb.scene import MatrixElement
 from fricmb.values import value_of
 
 Pairs = NDArray[np.int64]
@@ -20,29 +21,26 @@ Pairs = NDArray[np.int64]
 WIDE = 64
 
 
-def coupling(links: Sequence[Link], dof_names: Sequence[str]) -> Pairs | None:
+def coupling(links: Links, inside: Flags, dof_names: Sequence[str]) -> Pairs | None:
     """Places of degrees of freedom that elements couple directly, (2, n_pairs); None: all with all.
 
     Contacts apart: their forces stand outside the structure.
     """
-    found: list[Pairs] = []
-    pairs: list[tuple[int, int]] = []
-    place = {name: i for i, name in enumerate(dof_names)}
-    for link in links:
-        if link.idle or isinstance(link.part, Contact):
-            continue
-        if isinstance(link.part, MatrixElement):
-            found.append(_pattern(link.part, place))
-            continue
-        dofs = (*link.acts, *link.reads)
-        if len(dofs) > WIDE:
-            return None
-        pairs.extend(combinations(dofs, 2))
-    found.append(np.array(pairs, dtype=np.int64).reshape(-1, 2).T)
-    return np.concatenate(found, axis=1)
+    acting = inside & ~links.idle & ~links.rubs
+    matrices = [i for i in np.flatnonzero(acting).tolist() if isinstance(links.parts[i], MatrixElement)]
+    place = {name: i for i, name in enumerate(dof_names)} if matrices else {}
+    found: list[Pairs] = [_pattern(links.parts[i], place) for i in matrices]
+    acting[matrices] = False
+    sizes = np.where(acting, np.diff(links.start), 0)
+    if sizes.max(initial=0) > WIDE:
+        return None
+    for size in np.unique(sizes[sizes > 1]).tolist():
+        dofs = links.dofs[links.start[:-1][sizes == size][:, None] + np.arange(size)]
+        found.extend(dofs[:, pair].T for pair in combinations(range(size), 2))
+    return np.concatenate([np.zeros((2, 0), dtype=np.int64), *found], axis=1)
 
 
-def _pattern(part: MatrixElement, place: dict[str, int]) -> Pairs:
+def _pattern(part: Any, place: dict[str, int]) -> Pairs:
     dofs = np.array([place[name] for name in part.dofs])
     held = [value_of(value).nonzero() for value in (part.M, part.C, part.K) if value is not None]
     pairs = np.concatenate([np.array([rows, columns], dtype=np.int64) for rows, columns in held], axis=1)
@@ -72,7 +70,7 @@ def narrow_order(pairs: Pairs | None, dofs: Sequence[int]) -> tuple[list[int], i
     back = np.empty(len(dofs), dtype=np.int64)
     back[found] = declared
     narrow = _bandwidth(back[local])
-    return ([int(i) for i in found], narrow) if narrow < width else (declared, width)
+    return (found.tolist(), narrow) if narrow < width else (declared, width)
 
 
 def _bandwidth(pairs: Pairs) -> int:

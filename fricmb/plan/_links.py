@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from fricmb.plan._rest import can_start
-from fricmb.scene import Body, Contact, Element, Force, Gravity, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
+from fricmb.scene import (
+    Body,
+    Contact,
+    Driven,
+    Element,
+    Force,
+    Gravity,
+    Joint,
+    MatrixElement,
+    ModalBody,
+    Part,
+    RigidBody,
+    Scene,
+)
+from fricmb.scene._lines import MOVING, Rows, lines_of, parts_at
 from fricmb.values import value_of
+
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,67 +61,219 @@ class Link:
     starts: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Links:
-    """All parts of a scene that act, with what they act on."""
+    """All parts of a scene that act, with what they act on, in arrays over them.
 
-    links: tuple[Link, ...]
+    Attributes
+    ----------
+    n : int
+        Degrees of freedom of the scene.
+    parts : list of Part
+        In the order of the scene; Gravity once for each body.
+    at : (k,) int
+        Their places in the scene.
+    start, dofs : (k+1,), (nnz,) int
+        Degrees of freedom of each: those that feel it, then those that it only looks at (see :class:`Link`).
+    acts : (k,) int
+        How many feel it.
+    idle, starts, rubs : (k,) bool
+        It acts on nothing; it may set bodies in motion; it is a contact.
+    kinds : tuple of ElementFacts
+    kind : (k,) int
+        Of an element: which of ``kinds``; else -1.
+    """
+
     n: int
+    parts: list[Part]
+    at: Ints
+    start: Ints
+    dofs: Ints
+    acts: Ints
+    idle: Flags
+    starts: Flags
+    rubs: Flags
+    kinds: tuple[Any, ...]
+    kind: Ints
 
     @cached_property
-    def acting(self) -> list[list[Link]]:
-        """Links that act on each degree of freedom."""
-        found: list[list[Link]] = [[] for _ in range(self.n)]
-        for link in self.links:
-            for dof in () if link.idle else link.acts:
-                found[dof].append(link)
+    def owner(self) -> Ints:
+        """Link of every entry of ``dofs``."""
+        return np.repeat(np.arange(len(self.parts)), np.diff(self.start))
+
+    @cached_property
+    def first(self) -> Ints:
+        """A degree of freedom that feels each link, -1 where none does."""
+        found = np.full(len(self.parts), -1, dtype=np.int64)
+        has = (self.acts > 0) & ~self.idle
+        found[has] = self.dofs[self.start[:-1][has]]
         return found
+
+    def named(self, names: Collection[str]) -> Flags:
+        """Which links belong to parts of the given names."""
+        if not names:
+            return np.zeros(len(self.parts), dtype=np.bool_)
+        return np.array([part.name in names for part in self.parts], dtype=np.bool_)
+
+    def touched(self, which: Flags) -> set[int]:
+        """Degrees of freedom of some links."""
+        return set(self.dofs[which[self.owner]].tolist())
 
     def reaching(self, targets: Iterable[int]) -> list[int]:
         """Degrees of freedom that can influence the given ones, and these: backwards along the links."""
-        seen = set(targets)
-        waiting = list(seen)
-        used: set[int] = set()
-        while waiting:
-            for link in self.acting[waiting.pop()]:
-                if id(link) in used:
-                    continue
-                used.add(id(link))
-                new = {*link.acts, *link.reads} - seen
-                seen |= new
-                waiting.extend(new)
-        return sorted(seen)
+        n, k = self.n, len(self.parts)
+        acting = np.arange(self.dofs.size) - self.start[:-1][self.owner] < self.acts[self.owner]
+        acting &= ~self.idle[self.owner]
+        given = np.array(sorted(set(targets)), dtype=np.int64)
+        # from what feels a link to the link, from there to all that it depends on; the root is before the given ones
+        source = np.concatenate([self.dofs[acting], n + self.owner, np.full(given.size, n + k)])
+        target = np.concatenate([n + self.owner[acting], self.dofs, given])
+        graph = coo_array((np.ones(source.size, dtype=np.int8), (source, target)), shape=(n + k + 1, n + k + 1))
+        found = breadth_first_order(graph.tocsr(), n + k, return_predecessors=False)
+        return np.sort(found[found < n]).tolist()  # type: ignore[no-any-return]
 
-    def groups(self, dofs: Sequence[int]) -> list[list[int]]:
+    def labels(self) -> Ints:
+        """A number for each degree of freedom, the same for those that parts tie together (n,)."""
+        bound = self.first[self.owner] >= 0
+        pairs = self.first[self.owner[bound]], self.dofs[bound]
+        graph = coo_array((np.ones(pairs[0].size, dtype=np.int8), pairs), shape=(self.n, self.n))
+        found: Ints = connected_components(graph, directed=False)[1].astype(np.int64)
+        return found
+
+    def groups(self, dofs: Sequence[int]) -> list[Ints]:
         """The given degrees of freedom in groups that parts tie together, in the order of the scene."""
-        kept = set(dofs)
-        pairs = [
-            (held[0], other)
-            for link in self.links
-            if not link.idle and link.acts and link.acts[0] in kept
-            for held in [(*link.acts, *link.reads)]
-            for other in held[1:]
-        ]
-        rows, columns = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-        graph = coo_array((np.ones(len(pairs), dtype=np.int8), (rows, columns)), shape=(self.n, self.n))
-        _, label = connected_components(graph, directed=False)
-        found: dict[int, list[int]] = {}
-        for dof in dofs:
-            found.setdefault(int(label[dof]), []).append(dof)
-        return list(found.values())
+        return split_by(np.asarray(dofs, dtype=np.int64), self.labels()[np.asarray(dofs, dtype=np.int64)])
+
+
+def split_by(values: Ints, labels: Ints) -> list[Ints]:
+    """Values in groups of equal labels, groups in the order of their first values."""
+    if not values.size:
+        return []
+    _, first, inverse = np.unique(labels, return_index=True, return_inverse=True)
+    rank = np.empty(first.size, dtype=np.int64)
+    rank[np.argsort(first)] = np.arange(first.size)
+    group = rank[inverse.ravel()]
+    ends = np.cumsum(np.bincount(group))[:-1]
+    return np.split(values[np.argsort(group, kind="stable")], ends)
 
 
 def links_of(scene: Scene) -> Links:
-    """The links of a scene; those of parts that another scene of its family has as well are taken from there."""
+    """The links of a scene: lines in bulk, others one by one."""
     place = {name: i for i, name in enumerate(scene.dof_names)}
+    lines = lines_of(scene)
+    at, links = _single(scene, lines.others, place)
+    tables = [_table(at, links), _element_table(scene, lines.elements), _contact_table(scene, lines.contacts)]
+    kinds: dict[Any, int] = {}
+    numbers = [[-1 if f is None else kinds.setdefault(f, len(kinds)) for f in table.facts] for table in tables]
+    kind = np.concatenate(
+        [np.array(number, dtype=np.int64)[table.which] for number, table in zip(numbers, tables, strict=True)]
+    )
+    where = np.concatenate([table.at for table in tables])
+    order = np.argsort(where, kind="stable")
+    rank = np.empty(order.size, dtype=np.int64)
+    rank[order] = np.arange(order.size)
+    shift = np.cumsum([0, *(table.at.size for table in tables)])
+    owner = rank[np.concatenate([table.owner + by for table, by in zip(tables, shift, strict=False)])]
+    entries = np.argsort(owner, kind="stable")
+    start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=order.size))]).astype(np.int64)
+    parts = scene.parts
+
+    def together(name: str) -> Any:
+        return np.concatenate([getattr(table, name) for table in tables])[order]
+
+    return Links(
+        n=len(place), parts=[parts[i] for i in where[order].tolist()], at=where[order], start=start,
+        dofs=np.concatenate([table.dofs for table in tables])[entries], acts=together("acts"),
+        idle=together("idle"), starts=together("starts"), rubs=together("rubs"), kinds=tuple(kinds), kind=kind[order],
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Table:
+    """Some of the links; ``which`` of ``facts`` each has, ``owner`` the link of each of ``dofs``."""
+
+    at: Ints
+    owner: Ints
+    dofs: Ints
+    acts: Ints
+    idle: Flags
+    starts: Flags
+    rubs: Flags
+    facts: Sequence[Any]
+    which: Ints
+
+
+def _table(at: list[int], links: list[Link]) -> _Table:
+    sizes = [len(link.acts) + len(link.reads) for link in links]
+    return _Table(
+        at=np.array(at, dtype=np.int64),
+        owner=np.repeat(np.arange(len(links)), sizes),
+        dofs=np.array([dof for link in links for dof in (*link.acts, *link.reads)], dtype=np.int64),
+        acts=np.array([len(link.acts) for link in links], dtype=np.int64),
+        idle=np.array([link.idle for link in links], dtype=np.bool_),
+        starts=np.array([link.starts for link in links], dtype=np.bool_),
+        rubs=np.array([isinstance(link.part, Contact) for link in links], dtype=np.bool_),
+        facts=[link.facts for link in links],
+        which=np.arange(len(links)),
+    )
+
+
+def _ends(rows: Rows) -> tuple[Ints, Ints, Ints]:
+    """Parts of rows, and degrees of freedom that these act on, rising in each: parts, owner, dofs."""
+    at, part = np.unique(rows.at, return_inverse=True)
+    owner = np.concatenate([part, part])
+    dofs = np.concatenate([rows.a, rows.b])
+    owner, dofs = owner[dofs >= 0], dofs[dofs >= 0]
+    order = np.lexsort((dofs, owner))
+    return at, owner[order], dofs[order]
+
+
+def _element_table(scene: Scene, rows: Rows) -> _Table:
+    from fricmb.equations import element_groups
+
+    at, owner, dofs = _ends(rows)
+    facts: list[Any] = []
+    which = np.zeros(at.size, dtype=np.int64)
+    for group in element_groups(scene):
+        which[group.index] = len(facts) + group.which
+        facts += group.facts()
+    idle = np.array([f.empty for f in facts], dtype=np.bool_)[which]
+    starts = np.array([f.constant or f.nonlinear for f in facts], dtype=np.bool_)[which]
+    none = np.zeros(at.size, dtype=np.bool_)
+    acts = np.bincount(owner, minlength=at.size)
+    return _Table(
+        at=at, owner=owner, dofs=dofs, acts=acts, idle=idle, starts=starts & ~idle, rubs=none, facts=facts, which=which
+    )
+
+
+def _contact_table(scene: Scene, rows: Rows) -> _Table:
+    at, owner, dofs = _ends(rows)
+    idle = np.array([is_idle(part) for part in parts_at(scene, at)], dtype=np.bool_)  # type: ignore[arg-type]
+    part = np.searchsorted(at, rows.at)
+    moved = np.bincount(part, weights=(rows.a <= MOVING) | (rows.b <= MOVING), minlength=at.size) > 0
+    acts = np.bincount(owner, minlength=at.size)
+    return _Table(
+        at=at, owner=owner, dofs=dofs, acts=acts, idle=idle, starts=moved & ~idle,
+        rubs=np.ones(at.size, dtype=np.bool_), facts=[None], which=np.zeros(at.size, dtype=np.int64),
+    )  # fmt: skip
+
+
+def _single(scene: Scene, others: list[int], place: dict[str, int]) -> tuple[list[int], list[Link]]:
+    """Links of parts looked at one by one; those that another scene of its family has as well are taken from there."""
     names, shared = scene._shared.get("links", ((), {}))
     if names != scene.dof_names:  # links hold places of degrees of freedom
         shared = {}
         scene._shared["links"] = scene.dof_names, shared
-    links = []
-    for part in scene.parts:
+    at: list[int] = []
+    links: list[Link] = []
+    for i in others:
+        part = scene.parts[i]
+        if isinstance(part, Body | Driven):
+            continue
         if isinstance(part, Gravity):
-            links.extend(_weights(scene, part, place))
+            weights = _weights(scene, part, place)
+            links.extend(weights)
+            at.extend([i] * len(weights))
             continue
         if not isinstance(part, Element | Contact | MatrixElement | Joint) and not couples_modes(part):
             continue
@@ -113,7 +283,8 @@ def links_of(scene: Scene) -> Links:
             if not part.uses():  # expressions name motions whose forms belong to other parts
                 shared[part.name] = found
         links.append(found)
-    return Links(tuple(links), len(place))
+        at.append(i)
+    return at, links
 
 
 def couples_modes(part: Part) -> bool:

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from fricmb.errors import unknown_name
 from fricmb.integrate._storage import is_narrow
 from fricmb.plan._graph import coupling, narrow_order
-from fricmb.plan._links import Link, Links, links_of
+from fricmb.plan._links import Flags, Links, links_of
 from fricmb.plan._plan import Island, Plan
 from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
 from fricmb.plan._tree import topology
 from fricmb.plan._truncate import truncated
-from fricmb.scene import Body, Contact, Driven, Element, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
+from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene
+from fricmb.scene._scene import BODIES
 
 
 @dataclass
@@ -65,25 +68,28 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
 def _make(scene: Scene, wanted: Wanted | None) -> Plan:
     links = links_of(scene)
     kept = list(range(links.n)) if wanted is None else links.reaching(_sources(links, wanted))
-    inside, parts = _inside(scene, links, set(kept), wanted)
-    dofs = tuple(scene.dof_names[i] for i in kept)
-    islands = _islands(scene, links, kept)
+    held = np.zeros(links.n, dtype=np.bool_)
+    held[kept] = True
+    inside = _inside(links, held, wanted)
+    parts = _parts(scene, links, held, inside)
+    dofs = scene.dof_names if len(kept) == links.n else tuple([scene.dof_names[i] for i in kept])
+    islands = _islands(scene, links, kept, dofs)
     still = resting(scene, islands)
-    idle = tuple(link.part.name for link in inside if link.idle and isinstance(link.part, Contact))
-    order, bandwidth = narrow_order(coupling(inside, scene.dof_names), kept)
+    idle = tuple([links.parts[i].name for i in np.flatnonzero(inside & links.idle & links.rubs).tolist()])
+    order, bandwidth = narrow_order(coupling(links, inside, scene.dof_names), kept)
     joined = topology(scene, (part.name for part in parts))
     return Plan(
         scene=scene.name,
         dofs=dofs,
-        parts=tuple(part.name for part in parts),
+        parts=tuple([part.name for part in parts]),
         islands=islands,
         idle=idle,
-        counts=counts(parts, inside, len(dofs), len(islands), len(still)),
-        left_out=(*outside(scene, links, set(kept), inside), *empty(inside)),
+        counts=counts(parts, links, inside, len(dofs), len(islands), len(still)),
+        left_out=(*outside(scene, links, held, inside), *empty(links, inside)),
         resting=tuple(still),
-        notes=(*unloaded(idle), *vanishing(inside)),
+        notes=(*unloaded(idle), *vanishing(links, inside)),
         cautions=tuple(redundant(scene, islands)),
-        order=tuple(dofs[i] for i in order),
+        order=tuple([dofs[i] for i in order]),
         bandwidth=bandwidth,
         storage=_storage(len(dofs), bandwidth),
         tree=joined.tree,
@@ -116,47 +122,58 @@ def _targets(scene: Scene, names: tuple[str, ...]) -> Wanted:
 
 def _sources(links: Links, wanted: Wanted) -> set[int]:
     """Degrees of freedom that are asked for, those of parts included."""
-    return wanted.dofs | {
-        dof for link in links.links if link.part.name in wanted.parts for dof in (*link.acts, *link.reads)
-    }
+    return wanted.dofs | links.touched(links.named(wanted.parts))
 
 
-def _inside(scene: Scene, links: Links, kept: set[int], wanted: Wanted | None) -> tuple[list[Link], list[Part]]:
-    """Links that are built, and all parts with bodies and driven bodies."""
-    named = set() if wanted is None else wanted.parts
-    inside = []
-    for link in links.links:
-        touched = (*link.acts, *link.reads) if link.idle else link.acts
-        if link.part.name in named or (touched and (kept.issuperset(touched) if link.idle else touched[0] in kept)):
-            inside.append(link)
-    acting = {link.part.name for link in inside}
-    held = {scene.dof_names[i] for i in kept}
-    parts = [
-        part
-        for part in scene.parts
-        if isinstance(part, Driven)
-        or part.name in acting
-        or (isinstance(part, Body | ModalBody | RigidBody) and not held.isdisjoint(part.dof_names))
-    ]
-    return inside, parts
+def _inside(links: Links, kept: Flags, wanted: Wanted | None) -> Flags:
+    """Which links are built: those that act on what is kept; what is idle, where all that it touches is."""
+    inside = links.named(() if wanted is None else wanted.parts)
+    touching = np.bincount(links.owner, minlength=inside.size)
+    here = np.bincount(links.owner, weights=kept[links.dofs], minlength=inside.size)
+    inside |= links.idle & (touching > 0) & (here == touching)
+    return inside | ((links.first >= 0) & kept[links.first])
 
 
-def _islands(scene: Scene, links: Links, kept: Sequence[int]) -> tuple[Island, ...]:
-    owner = {name: body.name for body in scene.bodies for name in body.dof_names}
-    place = {part.name: i for i, part in enumerate(scene.parts)}
+def _parts(scene: Scene, links: Links, kept: Flags, inside: Flags) -> list[Part]:
+    """Parts that are built, with bodies and all driven bodies."""
+    acting = np.zeros(len(scene.parts), dtype=np.bool_)
+    acting[links.at[inside]] = True
     found = []
-    for group in links.groups(kept):
-        held = {id(link): link for dof in group for link in links.acting[dof]}
-        inside = sorted(held.values(), key=lambda link: place[link.part.name])
-        dofs = tuple(scene.dof_names[i] for i in group)
-        bodies = tuple(dict.fromkeys(owner[name] for name in dofs))
+    place = 0
+    for part, acts in zip(scene.parts, acting.tolist(), strict=True):
+        if isinstance(part, BODIES):
+            count = len(part.dof_names)
+            acts = acts or bool(kept[place : place + count].any())
+            place += count
+        if acts or isinstance(part, Driven):
+            found.append(part)
+    return found
+
+
+def _islands(scene: Scene, links: Links, kept: Sequence[int], dofs: tuple[str, ...]) -> tuple[Island, ...]:
+    owner = [body.name for body in scene.bodies for _ in body.dof_names]
+    label = links.labels()
+    groups = links.groups(kept)
+    island = np.full(links.n, -1, dtype=np.int64)  # of each label
+    for number, group in enumerate(groups):
+        island[label[group[0]]] = number
+    mine = np.full(links.first.size, -1, dtype=np.int64)
+    mine[links.first >= 0] = island[label[links.first[links.first >= 0]]]
+    acting = np.argsort(mine, kind="stable")[np.count_nonzero(mine < 0) :]
+    ends = np.searchsorted(mine[acting], np.arange(len(groups) + 1))
+    found = []
+    for number, group in enumerate(groups):
+        places = acting[ends[number] : ends[number + 1]]
+        inside = [links.parts[i] for i in places.tolist()]
+        names = dofs if len(groups) == 1 else tuple([scene.dof_names[i] for i in group.tolist()])
+        bodies = tuple(dict.fromkeys([owner[i] for i in group.tolist()]))
         found.append(
             Island(
-                dofs=dofs,
-                parts=tuple(link.part.name for link in inside),
+                dofs=names,
+                parts=tuple(dict.fromkeys([part.name for part in inside])),
                 bodies=bodies,
-                inert=not any(link.starts for link in inside),
-                held=is_held(scene, bodies, [link.part for link in inside]),
+                inert=not links.starts[places].any(),
+                held=not links.rubs[places].all() or is_held(scene, bodies),
             )
         )
     return tuple(found)

@@ -49,9 +49,7 @@ def _contact_can_start(scene: Scene, part: Contact, prescribed: Set[str]) -> boo
     )
 
 
-def is_held(scene: Scene, bodies: Iterable[str], parts: Iterable[Part]) -> bool:
-    """Whether forces on bodies depend on where these are."""
-    if any(not isinstance(part, Contact) for part in parts):
-        return True
+def is_held(scene: Scene, bodies: Iterable[str]) -> bool:
+    """Whether bodies hold themselves where they are: modes do, as parts other than contacts do."""
     modal = (scene[name] for name in bodies)
     return any(max(value_of(body.frequencies)) > 0.0 for body in modal if isinstance(body, ModalBody))

@@ -3,6 +3,7 @@
 from typing import Any
 
 from fricmb.scene._axes import Direction, check_axis, check_ends, direction
+from fricmb.scene._axial import AxialElement
 from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._contact import Contact
 from fricmb.scene._damper import Damper
@@ -28,6 +29,7 @@ from fricmb.values import Parameter, parameter
 
 __all__ = [
     "GROUND",
+    "AxialElement",
     "Body",
     "Contact",
     "Damper",

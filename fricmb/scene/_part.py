@@ -44,7 +44,8 @@ class Part(Declaration):
 
     def ends(self) -> tuple[End, ...]:
         """Ends that this part acts on, in the order of its fields."""
-        return tuple([value for value in _field_values(type(self))(self) if isinstance(value, End)])
+        kind: Any = type(self)
+        return tuple([value for value in _field_values(kind)(self) if isinstance(value, End)])
 
     def expressions(self) -> dict[str, Any]:
         """Slots that hold SymPy expressions of time or motions: path -> expression."""

@@ -53,7 +53,7 @@ def values_of(kind: type, names: tuple[str, ...]) -> Callable[[Any], tuple[Any, 
 
 
 @cache
-def slot_values(kind: type[Declaration]) -> Callable[[Any], tuple[Any, ...]]:
+def slot_values(kind: Any) -> Callable[[Any], tuple[Any, ...]]:
     """A function that reads the fields that may hold slots."""
     return values_of(kind, slot_fields(kind))
 
@@ -152,7 +152,8 @@ class Declaration:
 
     def plain_numbers(self) -> tuple[float, ...] | None:
         """The slots' values where every field that may hold slots is a float, else None."""
-        values = slot_values(type(self))(self)
+        kind: Any = type(self)
+        values = slot_values(kind)(self)
         for value in values:
             if type(value) is not float:
                 return None
@@ -160,7 +161,8 @@ class Declaration:
 
     def only_numbers(self) -> bool:
         """Whether every slot is a float, those inside fields included: no parameter, expression or array."""
-        for value in slot_values(type(self))(self):
+        kind: Any = type(self)
+        for value in slot_values(kind)(self):
             if type(value) is float or value is None:
                 continue
             if isinstance(value, Declaration):
