@@ -14,6 +14,7 @@ from fricmb.plan import Island, Plan, Selection
 from fricmb.scene import Contact, Joint, Scene
 from fricmb.solution import Flags, Names
 from fricmb.system import System, build
+from fricmb.system._contacts import UNIT
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def contact_names(contact: Contact | Joint) -> tuple[tuple[str, ...], tuple[str,
     """Labels of the directions and of the law's states of a contact or joint, as its arrays have them."""
     if isinstance(contact, Joint):
         return ("t",), () if contact.friction is None else contact.friction.state_labels(("t",))
-    letters = tuple(direction.label for direction in contact.directions())
+    letters = contact.labels()
     return letters, contact.law.state_labels(letters)
 
 
@@ -120,8 +121,9 @@ def row_scale(contact: Contact | Joint) -> tuple[float, ...]:
     """Factors of a contact's rows: those of a law that is not isotropic are stored scaled (see ``Names.scale``)."""
     if isinstance(contact, Joint):
         return (1.0,)
-    scale = contact.law.numeric().axis_scale() or (1.0,) * len(contact.directions())
-    return tuple(float(s) for s in scale)
+    if not contact.law.axis_scale():
+        return UNIT[len(contact.labels())]
+    return tuple(float(s) for s in contact.law.numeric().axis_scale())
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,6 +14,7 @@ import numpy as np
 
 from fricmb import laws
 from fricmb.values import Declaration, Parameter, held, is_expression, is_foreign, value_of
+from fricmb.values._declaration import slot_values
 
 _LAWS = "fricmb.laws"
 
@@ -59,6 +60,10 @@ def numbers(declaration: Declaration) -> tuple[float, ...]:
     if plain is not None:
         return plain
     found: list[float] = []
+    kind: Any = type(declaration)
+    values = slot_values(kind)(declaration)
+    if _NUMBERS.issuperset(map(type, values)):
+        return tuple([value for value in values if value is not None])
     for _, value in _symbolic_slots(declaration):
         if isinstance(value, tuple):
             found.extend(float(value_of(entry)) for entry in value)
@@ -72,20 +77,21 @@ def structure(declaration: Declaration) -> tuple[Any, ...]:
 
     A ``name`` and the parts that an element acts on never enter a formula.
     """
-    if declaration.plain_numbers() is not None and _is_ours(type(declaration)):
-        return _plain_structure(declaration)
-    return _structure(declaration)
+    kind: Any = type(declaration)
+    if not _is_ours(kind):
+        return _structure(declaration)
+    key = (kind, *map(type, slot_values(kind)(declaration)))
+    found = _plain_structures.get(key)
+    if found is None:
+        found = _structure(declaration)
+        if _NUMBERS.issuperset(key[1:]):
+            _plain_structures[key] = found
+    return found
 
 
-_plain_structures: dict[type, tuple[Any, ...]] = {}
-
-
-def _plain_structure(declaration: Declaration) -> tuple[Any, ...]:
-    """That of a type of this package all of whose numbers are floats: always the same."""
-    kind = type(declaration)
-    if kind not in _plain_structures:
-        _plain_structures[kind] = _structure(declaration)
-    return _plain_structures[kind]
+#: Of types of this package that hold floats, and None in some fields: always the same.
+_plain_structures: dict[tuple[Any, ...], tuple[Any, ...]] = {}
+_NUMBERS = frozenset((float, type(None)))
 
 
 def _structure(declaration: Declaration) -> tuple[Any, ...]:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from fricmb.errors import FricmbError, LawError
 from fricmb.laws._check import check_cone, field_value, no_fields, required_numbers
 from fricmb.laws._regimes import Regimes
-from fricmb.values import Declaration
+from fricmb.values import Declaration, value_of
 from fricmb.values._declaration import field_names
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -125,6 +125,8 @@ class FrictionLaw(Regimes, Declaration):
 
     def state_labels(self, directions: Sequence[str]) -> tuple[str, ...]:
         """Labels of all states over the given directions: "z", "z.x", "z2.x", "theta"."""
+        if not self.states:
+            return ()
         found = []
         for name in self.states:
             count = self.copies().get(name, 1)
@@ -162,12 +164,12 @@ class FrictionLaw(Regimes, Declaration):
     def break_away(self, normal_force: float = 1.0) -> float:
         """Coefficient up to which the contact sticks."""
         path = self.static_path
-        return self.slip_limit(normal_force) if path is None else float(self.numeric_slots()[path])
+        return self.slip_limit(normal_force) if path is None else float(value_of(self.slots()[path]))
 
     @property
     def static_path(self) -> str | None:
         """Slot of the break-away coefficient, None where that is the limit of the coefficient for r -> 0."""
-        return "mu_s" if "mu_s" in self.slots() else None
+        return "mu_s" if getattr(self, "mu_s", None) is not None and "mu_s" in self.slots() else None
 
     # -- numbers ------------------------------------------------------------------------------------------------
     def coefficient(self, r: ArrayLike, normal_force: ArrayLike = 1.0) -> Any:

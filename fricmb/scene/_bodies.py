@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
-from functools import lru_cache
+from functools import cache, lru_cache
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -39,6 +39,10 @@ def _start(axes: str, values: tuple[Any, ...]) -> Mapping[str, Any]:
 
 #: Bodies that start alike hold one mapping: of 100 000 blocks each its own would take 50 megabytes.
 _shared = lru_cache(maxsize=1024)(_start)
+
+
+#: The letters of a string; one tuple for all that have the same.
+letters_in = cache(tuple[str, ...])
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +98,7 @@ class Body(PartEnd):
     @property
     def letters(self) -> tuple[str, ...]:
         """Its axes."""
-        return tuple(self.axes)
+        return letters_in(self.axes)
 
     def has_axis(self, letter: str) -> bool:
         """Whether it has a degree of freedom along an axis."""

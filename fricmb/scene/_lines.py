@@ -42,11 +42,6 @@ class Rows:
     a: Ints
     b: Ints
 
-    def among(self, places: Ints) -> Rows:
-        """Those of the parts at the given places."""
-        kept = np.isin(self.at, places, assume_unique=False)
-        return Rows(at=self.at[kept], a=self.a[kept], b=self.b[kept])
-
 
 @dataclass(frozen=True, kw_only=True)
 class Lines:

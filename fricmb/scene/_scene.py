@@ -95,7 +95,7 @@ class Scene:
     @property
     def bodies(self) -> tuple[Body | ModalBody | RigidBody, ...]:
         """Parts with degrees of freedom."""
-        return tuple(part for part in self.parts if isinstance(part, Body | ModalBody | RigidBody))
+        return tuple([part for part in self.parts if isinstance(part, (Body, ModalBody, RigidBody))])
 
     @property
     def driven(self) -> tuple[Driven, ...]:
@@ -219,6 +219,8 @@ class Scene:
     def initial_values(self, dofs: Sequence[str] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Declared initial q and v of the named dofs, (n,) each; default: all."""
         names = self.dof_names if dofs is None else dofs
+        if names is self.dof_names:
+            return self._all_initial_values()
         place = {name: i for i, name in enumerate(names)}
         values = np.zeros((2, len(names)))
         for name in dict.fromkeys(name.partition(".")[0] for name in names):
@@ -230,6 +232,19 @@ class Scene:
                     if (dof := f"{name}.{key}") in place:
                         row[place[dof]] = value_of(value)
         return values[0], values[1]
+
+    def _all_initial_values(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        held: tuple[list[float], list[float]] = ([], [])
+        for body in self.bodies:
+            for row, argument in zip(held, ("position", "velocity"), strict=True):
+                values = body.start_values(argument)
+                if isinstance(body, Body):
+                    row.extend([value_of(value) for value in values.values()])
+                else:
+                    keys = (name.partition(".")[2] for name in body.dof_names)
+                    row.extend([value_of(values.get(key, 0.0)) for key in keys])
+        q, v = (np.array(row, dtype=float) for row in held)
+        return q, v
 
     # -- parameters ---------------------------------------------------------------------------------------------
     @property

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
-from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
+from fricmb.scene import Body, Element, Gravity, MatrixElement, ModalBody
+from fricmb.scene._lines import lines_of
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
+from fricmb.system._lined import add_lines, choose
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
@@ -39,6 +41,8 @@ def build(scene: Any, plan: Any = None) -> System:
         If a declaration cannot become equations: a singular mass matrix, a point spring whose ends coincide, a driven
         body whose position has no closed form, an expression that cannot be compiled.
     """
+    if plan is not None and len(plan.parts) == len(scene.parts) and len(plan.dofs) == len(scene.dof_names):
+        plan = None
     key = ("system", None if plan is None else plan.key)
     found = scene._cache.get(key)
     if found is None:
@@ -73,17 +77,23 @@ def _build(scene: Any, plan: Any) -> System:
     structure = Structure(n=len(dofs), motions=motions)
     contacts = ContactArrays(motions=motions)
     parts = scene.parts if plan is None else [scene[name] for name in plan.parts]
-    for part in parts:
+    chosen = choose(scene, parts, dofs)
+    odd = add_lines(structure.lined, scene, chosen)
+    for part in (*chosen.single, *odd):
         if isinstance(part, Body | ModalBody):
             structure.add_body(part, index)
         elif isinstance(part, MatrixElement):
             structure.add_matrix(part, index)
         elif isinstance(part, Element):
             structure.add_element(part)
-        elif isinstance(part, Contact):
-            contacts.add(part)
         elif isinstance(part, Gravity):
             add_gravity(part, parts, structure, index)
+    for run, lined in chosen.runs:
+        if lined is not None:
+            contacts.add_lined(run, lined, lines_of(scene).motions, chosen.place)
+            continue
+        for contact in run:
+            contacts.add(contact)
     n, n_u = len(dofs), len(signals.held)
     linear = structure.linear(n_u)
     omega, zeta = _spectrum(linear, n, dofs)
@@ -97,7 +107,7 @@ def _build(scene: Any, plan: Any) -> System:
         omega=omega,
         zeta=zeta,
         dof_names=dofs,
-        contact_names=tuple(part.name for part in parts if isinstance(part, Contact)),
+        contact_names=tuple(contacts.names),
     )
     q, v = scene.initial_values(dofs)
     system = System(
@@ -107,6 +117,7 @@ def _build(scene: Any, plan: Any) -> System:
         state_names=tuple(contacts.states),
         axis_scale=tuple(contacts.scale),
         stores=tuple(structure.stores),
+        lined=tuple(structure.lined.stores),
         switches=searched,
     )
     if structure.nonlinear:

@@ -19,16 +19,23 @@ from fricmb.integrate._problem import (
     NORMAL_LAW,
     NORMAL_REACTION,
     Contacts,
+    Ints,
     SparseContacts,
     Templates,
 )
-from fricmb.integrate._sparse import Csr
 from fricmb.scene import Contact, Joint
+from fricmb.scene._lines import Rows
+from fricmb.system._lined import moved, prescribed
 from fricmb.system._motions import Motions
-from fricmb.system._structure import is_sparse
+from fricmb.system._structure import is_sparse, matrix_of
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
 from fricmb.system._try_law import try_law
 from fricmb.values import is_expression, value_of
+
+#: What stands for a row that is empty, or whose entries are elsewhere.
+NO_ROW = Row()
+#: Factors of the rows of a contact with an isotropic law, by their number; one object for all.
+UNIT = {d: (1.0,) * d for d in range(4)}
 
 
 @dataclass(kw_only=True)
@@ -55,6 +62,9 @@ class ContactArrays:
     scale: list[tuple[float, ...]] = field(default_factory=list)
     timed: list[tuple[Template, tuple[float, ...]]] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
+    #: Entries of W and Wu of contacts that are put in together.
+    lined: list[tuple[Any, Any, Any]] = field(default_factory=list)
+    driven: list[tuple[Any, Any, Any]] = field(default_factory=list)
 
     def add(self, contact: Contact) -> None:
         """Append a contact."""
@@ -67,7 +77,34 @@ class ContactArrays:
         self.row_start.append(len(self.rows))
         self.labels.append(tuple(direction.label for direction in directions))
         self._add_normal(contact)
-        self._add_law(contact, contact.law, len(directions))
+        self._add_law(contact, contact.law, len(directions), max(self.N[-1], self.N0[-1]))
+
+    def add_lined(self, contacts: Sequence[Contact], rows: Rows, names: Sequence[str], place: Ints) -> None:
+        """Append contacts along letters, of constant normal force; ``names``: of the prescribed motions in rows."""
+        first, count = len(self.rows), rows.at.size
+        w = np.zeros(count)
+        for ends, sign in ((rows.a, 1.0), (rows.b, -1.0)):
+            at, i = np.flatnonzero(ends >= 0), moved(ends, place)
+            self.lined.append((i[at], first + at, np.full(at.size, sign)))
+            for number, which in prescribed(ends):
+                motion, here = self.motions.driven[names[number]], np.flatnonzero(which)
+                if motion.rate is not None:
+                    w[here] -= sign * motion.rate
+                    continue
+                j = self.motions.signals.add(motion.name, motion.signal)
+                self.driven.append((first + here, np.full(here.size, j), np.full(here.size, -sign)))
+        self.rows.extend([NO_ROW] * count)
+        self.w.extend(w.tolist())
+        self.normal_table.skip(len(contacts))
+        for contact in contacts:
+            labels = contact.labels()
+            self.names.append(contact.name)
+            self.scale.append(UNIT[len(labels)])
+            self.row_start.append(self.row_start[-1] + len(labels))
+            self.labels.append(labels)
+            self.normal.append(NORMAL_CONSTANT)
+            self._normal(contact.normal_force, NO_ROW, 0.0)
+            self._add_law(contact, contact.law, len(labels), contact.normal_force)
 
     def add_joint(self, joint: Joint) -> None:
         """Append the friction of a joint: one direction, the reaction for normal force."""
@@ -79,8 +116,8 @@ class ContactArrays:
         self.labels.append(("t",))
         self.normal.append(NORMAL_REACTION)
         self.normal_table.add(NO_TEMPLATE)
-        self._normal(0.0, Row(), 0.0)
-        self._add_law(joint, joint.friction, 1)
+        self._normal(0.0, NO_ROW, 0.0)
+        self._add_law(joint, joint.friction, 1, 0.0)
 
     def _add_row(self, contact: Contact, label: str, form: Any, slide: Any, scale: float) -> None:
         """A row of relative velocity; that of a law that is not isotropic in its scaled direction."""
@@ -97,7 +134,7 @@ class ContactArrays:
         self.rows.append(Row(tuple((i, scale * c) for i, c in row.q), tuple((j, scale * c) for j, c in u)))
         self.w.append(scale * w)
 
-    def _add_law(self, contact: Contact | Joint, law: Any, d: int) -> None:
+    def _add_law(self, contact: Contact | Joint, law: Any, d: int, normal: float) -> None:
         template = law_template(law, d)
         compiled = template.function is not None
         p: Sequence[float] = law.parameter_block().tolist() if compiled else numbers(law)
@@ -114,13 +151,14 @@ class ContactArrays:
             self.mu_s.append(0.0)
             self.mu_0.append(0.0)
             return
-        N = max(self.N[-1], self.N0[-1]) or 1.0
+        N = normal or 1.0
         limit = law.slip_limit(N) if template.at_rest is None else float(template.at_rest((*p, N)))
-        mu_s = limit if law.static_path is None else float(law.numeric_slots()[law.static_path])
+        path = law.static_path
+        mu_s = limit if path is None else law.break_away(N)
         _check_cone(contact, mu_s, limit)
         self.law.append(LAW_CONSTANT if constant else LAW_COEFFICIENT)
         self.law_table.add(NO_TEMPLATE if constant else template.address, () if constant else p)
-        follows = law.static_path is None and template.facts.get("load_dependent", compiled)
+        follows = path is None and template.facts.get("load_dependent", compiled)
         varies = isinstance(contact, Contact) and contact.normal_kind != "constant"
         self.mu_s.append(-max(limit, 1e-290) if follows and varies else max(mu_s, limit))
         self.mu_0.append(limit)
@@ -138,14 +176,14 @@ class ContactArrays:
         elif kind == "constant":
             self.normal.append(NORMAL_CONSTANT)
             self.normal_table.add(NO_TEMPLATE)
-            self._normal(max(0.0, float(value_of(contact.normal_force))), Row(), 0.0)
+            self._normal(max(0.0, float(value_of(contact.normal_force))), NO_ROW, 0.0)
         else:
             expression = value_expression(contact.normal_force, f"Contact {contact.name!r}: normal_force")
             self.normal.append(NORMAL_EXPRESSION)
             arguments = self.motions.arguments(expression)
             self.timed.append((expression.template, expression.parameters))
             self.normal_table.add(expression.template.address, expression.parameters, arguments)
-            self._normal(0.0, Row(), 0.0)
+            self._normal(0.0, NO_ROW, 0.0)
 
     def _normal(self, N: float, row: Row, preload: float) -> None:
         self.N.append(N)
@@ -165,9 +203,9 @@ class ContactArrays:
         m, n_c = len(self.rows), len(self.law)
         rows, normal_rows = (self.rows, self.normal_rows) if dense else ([], [])
         size = n if dense else 0
-        W = _matrix([(i, a, c) for a, row in enumerate(rows) for i, c in row.q], (size, m))
-        Wu = _matrix([(a, j, -c) for a, row in enumerate(rows) for j, c in row.u], (m, n_u))
-        Wn = _matrix([(i, k, c) for k, row in enumerate(normal_rows) for i, c in row.q], (size, n_c))
+        W = matrix_of([(i, a, c) for a, row in enumerate(rows) for i, c in row.q], (size, m), self.lined)
+        Wu = matrix_of([(a, j, -c) for a, row in enumerate(rows) for j, c in row.u], (m, n_u), self.driven)
+        Wn = matrix_of([(i, k, c) for k, row in enumerate(normal_rows) for i, c in row.q], (size, n_c))
         others: dict[str, Any] = {
             "row": np.array(self.row_start, dtype=np.int64),
             "w": np.array(self.w, dtype=float) + 0.0,
@@ -185,11 +223,6 @@ class ContactArrays:
         if is_sparse(n, len(W.value) + len(Wn.value)):
             return SparseContacts(W=W, Wu=Wu, Wn=Wn, **others)
         return Contacts(W=W.dense(), Wu=Wu.dense(), Wn=Wn.dense(), **others)
-
-
-def _matrix(entries: Sequence[tuple[int, int, float]], shape: tuple[int, int]) -> Csr:
-    i, j, values = zip(*entries, strict=True) if entries else ((), (), ())
-    return Csr.of_entries(i, j, values, shape)
 
 
 def _check_cone(contact: Contact | Joint, mu_s: float, limit: float) -> None:

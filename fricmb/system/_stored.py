@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate._problem import Floats, Ints
+from fricmb.system._lined import LinedStores
 from fricmb.system._structure import Store
 from fricmb.system._tables import Row
 
@@ -52,8 +53,31 @@ class Stored:
         return value
 
 
-def stored_of(stores: tuple[Store, ...], n: int, n_u: int) -> Stored:
+def stored_of(stores: tuple[Store, ...], lined: tuple[LinedStores, ...], n: int, n_u: int) -> Stored:
     """The linear parts of all stores."""
+    one = _stored_of(stores, n, n_u)
+    if not lined:
+        return one
+    from scipy.sparse import csr_array, vstack
+
+    a, b, k, f = (np.concatenate([getattr(many, name) for many in lined]) for name in "abkf")
+    constant = one.constant + float(sum(many.constant.sum() for many in lined))
+    which = np.flatnonzero((k != 0.0) | (f != 0.0))
+    a, b, k, f = a[which], b[which], k[which], f[which]
+    row = np.arange(which.size)
+    entries = np.concatenate([np.ones(np.count_nonzero(a >= 0)), -np.ones(np.count_nonzero(b >= 0))])
+    places = np.concatenate([row[a >= 0], row[b >= 0]]), np.concatenate([a[a >= 0], b[b >= 0]])
+    R = csr_array((entries, places), shape=(row.size, n + n_u))
+    first = len(one.f)
+    return Stored(
+        R=vstack([csr_array(one.R), R], format="csr"),
+        offset=np.concatenate([one.offset, np.zeros(row.size)]), f=np.concatenate([one.f, f]),
+        i=np.concatenate([one.i, first + row]), j=np.concatenate([one.j, first + row]),
+        k=np.concatenate([one.k, k]), constant=constant,
+    )  # fmt: skip
+
+
+def _stored_of(stores: tuple[Store, ...], n: int, n_u: int) -> Stored:
     rows: list[Row] = []
     i: list[int] = []
     j: list[int] = []

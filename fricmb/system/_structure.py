@@ -13,11 +13,12 @@ from fricmb.errors import SceneError
 from fricmb.integrate._problem import Elements, Floats, Linear, SparseLinear
 from fricmb.integrate._sparse import Csr
 from fricmb.scene import Body, Element, Force, MatrixElement, ModalBody, PointDamper, PointSpring, modal_matrices
+from fricmb.system._lined import Entries
 from fricmb.system._motions import Motions
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
 from fricmb.values import value_of
 
-Entries = Sequence[tuple[int, int, float]]
+Local = Sequence[tuple[int, int, float]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -29,8 +30,8 @@ class Store:
 
     name: str
     rows: tuple[Row, ...]
-    K: Entries
-    f: Entries
+    K: Local
+    f: Local
     constant: float = 0.0
     nonlinear: int | None = None
 
@@ -47,6 +48,7 @@ class Structure:
     f: list[tuple[int, float]] = field(default_factory=list)
     B: list[tuple[int, int, float]] = field(default_factory=list)
     stores: list[Store] = field(default_factory=list)
+    lined: Entries = field(default_factory=Entries)
     table: TableBuilder = field(default_factory=TableBuilder)
     spread: list[list[Row]] = field(default_factory=list)
     nonlinear: list[tuple[Element, tuple[Row, ...]]] = field(default_factory=list)
@@ -127,7 +129,7 @@ class Structure:
             )
         )
 
-    def _affine(self, rows: Sequence[Row], K: Entries, f: Entries) -> None:
+    def _affine(self, rows: Sequence[Row], K: Local, f: Local) -> None:
         for i, j, k in K:
             for place, a in rows[i].extended(self.n):
                 self.K.extend((place, other, k * a * b) for other, b in rows[j].extended(self.n))
@@ -136,7 +138,7 @@ class Structure:
         for i, _, value in f:
             self.f.extend((place, value * a) for place, a in rows[i].extended(self.n))
 
-    def _damping(self, rows: Sequence[Row], C: Entries) -> None:
+    def _damping(self, rows: Sequence[Row], C: Local) -> None:
         for i, j, c in C:
             for place, a in rows[i].extended(self.n):
                 self.C.extend((place, other, c * a * b) for other, b in rows[j].extended(self.n))
@@ -180,10 +182,12 @@ class Structure:
     def linear(self, n_u: int) -> Linear:
         """The constant matrices."""
         n = self.n
-        M, B = _matrix(self.M, n, n), _matrix(self.B, n, n_u)
-        Kx, Cx = _matrix(self.K, n + n_u, n + n_u), _matrix(self.C, n + n_u, n + n_u)
-        places = np.array([i for i, _ in self.f], dtype=np.int64)
-        fx = np.bincount(places, np.array([v for _, v in self.f], dtype=float), n + n_u).astype(float)
+        M, B = matrix_of(self.M, (n, n)), matrix_of(self.B, (n, n_u))
+        Kx = matrix_of(self.K, (n + n_u, n + n_u), self.lined.K)
+        Cx = matrix_of(self.C, (n + n_u, n + n_u), self.lined.C)
+        places = np.concatenate([np.array([i for i, _ in self.f], dtype=np.int64), *(i for i, _ in self.lined.f)])
+        forces = np.concatenate([np.array([v for _, v in self.f], dtype=float), *(v for _, v in self.lined.f)])
+        fx = np.bincount(places, forces, n + n_u).astype(float)
         if is_sparse(n, len(M.value) + len(Kx.value) + len(Cx.value)):
             return SparseLinear(M=M, Kx=Kx, Cx=Cx, fx=fx, B=B)
         return Linear(M=M.dense(), Kx=Kx.dense(), Cx=Cx.dense(), fx=fx, B=B.dense())
@@ -209,9 +213,15 @@ def is_sparse(n: int, entries: int) -> bool:
     return n > DENSE and 8 * entries < n * n
 
 
-def _matrix(entries: Sequence[tuple[int, int, float]], rows: int, columns: int) -> Csr:
-    i, j, values = zip(*entries, strict=True) if entries else ((), (), ())
-    return Csr.of_entries(i, j, values, (rows, columns))
+def matrix_of(
+    entries: Sequence[tuple[int, int, float]], shape: tuple[int, int], more: Sequence[tuple[Any, Any, Any]] = ()
+) -> Csr:
+    """A matrix of entries one by one, and of arrays of them."""
+    columns: Any = zip(*entries, strict=True) if entries else ((), (), ())
+    if more:
+        columns = [np.concatenate(held) for held in zip(columns, *more, strict=True)]
+    i, j, values = columns
+    return Csr.of_entries(i, j, values, shape)
 
 
 def _argument(kind: str, i: int, rows: Sequence[Row]) -> Argument:

@@ -14,6 +14,7 @@ from fricmb.integrate._sparse import Csr
 from fricmb.integrate._trajectory import Samples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._evaluate import arguments, evaluate
+from fricmb.system._lined import LinedStores
 from fricmb.system._stored import Stored, stored_of
 from fricmb.system._structure import Store
 from fricmb.system._tables import Row
@@ -34,7 +35,9 @@ class System:
         By contact: factor s of every row.  The problem holds s v and F/s of a law that is not isotropic, so that to an
         integrator it is; their power is that of v and F.
     stores : tuple of Store
-        Potential of every element.
+        Potentials of elements.
+    lined : tuple of LinedStores
+        Those of elements along letters, many at a time.
     switches : tuple of Switch
         Functions of time whose sign changes have to be searched: see :meth:`problem_for`.
     """
@@ -45,6 +48,7 @@ class System:
     state_names: tuple[tuple[str, ...], ...]
     axis_scale: tuple[tuple[float, ...], ...]
     stores: tuple[Store, ...]
+    lined: tuple[LinedStores, ...] = ()
     switches: tuple[Switch, ...] = ()
 
     @property
@@ -98,7 +102,7 @@ class System:
 
     @cached_property
     def _linear(self) -> Stored:
-        return stored_of(self.stores, self._n_coordinates, self.problem.n_u)
+        return stored_of(self.stores, self.lined, self._n_coordinates, self.problem.n_u)
 
     @property
     def _n_coordinates(self) -> int:
@@ -116,6 +120,8 @@ class System:
         X = np.zeros((0, samples.t.size))
         if pressed.size or len(self.problem.elements.table.address):
             X = np.concatenate([samples.t[None], samples.q, samples.v, u[0], u[1]])
+        for lined in self.lined if linear else ():
+            yield from lined.each(samples.q)
         for store in self.stores:
             if store.nonlinear is not None or (linear and (store.K or store.f or store.constant)):
                 yield store.name, self._stored(store, samples.q, u[0], X, linear)

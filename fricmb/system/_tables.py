@@ -72,6 +72,12 @@ class TableBuilder:
         self._arguments.extend(arguments)
         self._x_start.append(len(self._arguments))
 
+    def skip(self, count: int) -> None:
+        """Append entries without a template."""
+        self._address.extend([NO_TEMPLATE] * count)
+        self._p_start.extend(self._p_start[-1:] * count)
+        self._x_start.extend(self._x_start[-1:] * count)
+
     def build(self, n: int, n_u: int) -> Templates:
         """The packed table for n degrees of freedom and n_u signals."""
         offset = (0, 1, 1 + n, 1 + 2 * n, 1 + 2 * n + n_u)
