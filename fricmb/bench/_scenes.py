@@ -150,5 +150,18 @@ _MANY = (
         source="two independent methods",
     ),
 )  # fmt: skip
+_RINGING = {"mode3": 2.0, "mode5": 1.0}
+_PADS = tuple(
+    SceneCase(
+        name=f"pad_rotor_{name}", title=f"pad and rotor, {what}",
+        build=partial(models.pad_rotor, *counts, speed=speed, rotor_velocity=_RINGING),
+        reference=partial(shipped, f"pad_rotor_{name}"), steps=(1e-5, 3e-6, 1e-6),
+        source="Taylor series in 34 digits, checked by collocation in long double",
+    )
+    for name, what, counts, speed in (
+        ("slides", "4 + 7 modes, three contacts that slide", (4, 6, 3), 1.0),
+        ("stops", "3 + 5 modes, one contact, stick-slip before it stands", (3, 4, 1), 0.5),
+    )
+)  # fmt: skip
 
-SCENES: tuple[SceneCase, ...] = (*_BRAKES, *_HELD, *_BELTS, *_OSCILLATORS, *_PLANES, *_MANY)
+SCENES: tuple[SceneCase, ...] = (*_BRAKES, *_HELD, *_BELTS, *_OSCILLATORS, *_PLANES, *_MANY, *_PADS)

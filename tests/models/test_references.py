@@ -60,6 +60,25 @@ def test_brake_with_more_friction_at_rest(name, arguments, method):
     assert worst(sol.energy.residual) < 1e-6
 
 
+RINGING = {"mode3": 2.0, "mode5": 1.0}
+
+
+@pytest.mark.parametrize("method", ["auto", "radau"])
+@pytest.mark.parametrize(
+    ("name", "counts", "speed"), [("pad_rotor_slides", (4, 6, 3), 1.0), ("pad_rotor_stops", (3, 4, 1), 0.5)]
+)
+def test_pad_and_rotor(name, counts, speed, method):
+    """Contacts in two directions: three that slide; one that sticks and slips eleven times before the rotor stands."""
+    ref = shipped(name)
+    scene = fm.models.pad_rotor(*counts, speed=speed, rotor_velocity=RINGING)
+    sol = fm.simulate(scene, t_end=float(ref.t[-1]), rtol=1e-8, t_eval=ref.t, method=method)
+    for got, true, size in zip((sol.q, sol.v), (ref.q, ref.v), ref.scales, strict=True):
+        assert (np.abs(got - true).max(axis=1) / size).max() < 1e-6
+    assert [event.kind for event in sol.events] == [KINDS[k] for k in ref.transitions.kind]
+    assert worst(sol.events.t - ref.transitions.t) < 1e-8 * ref.t[-1] if len(sol.events) else name.endswith("slides")
+    assert worst(sol.energy.residual) < 1e-6
+
+
 STRIBECK = fm.laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.05, exponent=1.0)
 
 
