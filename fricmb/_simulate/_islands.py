@@ -85,7 +85,8 @@ class Islands(Integrator):
             runs.append((task.index, run))
         m = self.mechanics
         took = [run.instead or (task.integrator.name, "") for (_, run), task in zip(runs, self.tasks, strict=True)]
-        return JoinedRun(runs, [name for name, _ in took], m.members, m.names, start, m.idle)
+        names = [name for name, _ in took]
+        return JoinedRun(runs, names, m.members, m.names, start, m.idle, rows=t_eval is None)
 
 
 def _share(tolerance: Tolerance, dofs: Any) -> Tolerance:

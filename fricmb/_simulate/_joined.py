@@ -36,6 +36,8 @@ class JoinedRun(Trajectory):
     start : Start
         Of the whole: where what rests is.
     idle : Idle or None
+    rows : bool
+        Whether the rows will be asked for: values at given times need none.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class JoinedRun(Trajectory):
         names: Names,
         start: Start,
         idle: Idle | None,
+        rows: bool = True,
     ) -> None:
         self.runs = tuple(runs)
         self.methods = tuple(methods)
@@ -60,14 +63,21 @@ class JoinedRun(Trajectory):
         if stopped:
             t_end, i, reason = min(stopped)
             self.failure = f"{members[i]}: {reason}"
-        kept = [run for _, run in runs if isinstance(run, KeptTrajectory)]
-        # a long run holds its values at the times asked for alone: these are the rows of all
-        times = [run.t for run in kept[:1]] or [run.t for _, run in runs]
-        self._t, thinned = _common_times(times, t_end, self._width)
+        self._t: Floats | None = None
         self.transitions = self._joined_transitions(t_end)
-        counters = add_counters([run.counters for _, run in runs])
-        self.counters = replace(counters, notes=(*counters.notes, THINNED)) if thinned else counters
+        self.counters = add_counters([run.counters for _, run in runs])
         self.end = self._joined_end(t_end)
+        if rows and self._find_times():
+            self.counters = replace(self.counters, notes=(*self.counters.notes, THINNED))
+
+    def _find_times(self) -> bool:
+        """The times of the rows; whether they are thinned."""
+        runs = [run for _, run in self.runs]
+        kept = [run for run in runs if isinstance(run, KeptTrajectory)]
+        # a long run holds its values at the times asked for alone: these are the rows of all
+        times = [run.t for run in kept[:1]] or [run.t for run in runs]
+        self._t, thinned = _common_times(times, self.end.t, self._width)
+        return thinned
 
     def _take(self, members: Sequence[Member], idle: Idle | None) -> None:
         self._places = [members[i].place for i, _ in self.runs]
@@ -81,11 +91,20 @@ class JoinedRun(Trajectory):
     @property
     def t(self) -> Floats:
         """Times of the rows (n_t,)."""
+        if self._t is None:
+            self._find_times()
+        assert self._t is not None
         return self._t
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Ends of the run."""
+        return self._start.t, self.end.t
 
     def rows(self) -> Samples:
         """Values at the rows; at a transition first the left, then the right-hand values."""
-        return self._assemble(self._t, [_at_rows(run, self._t) for _, run in self.runs])
+        t = self.t
+        return self._assemble(t, [_at_rows(run, t) for _, run in self.runs])
 
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order; the right-hand value at a transition."""
@@ -165,8 +184,8 @@ def _resting_forces(members: Sequence[Member], run: set[int], n_c: int) -> Float
     """Normal forces (n_c,) of contacts in islands that rest; they are constant."""
     pressed = np.zeros(n_c)
     for i, member in enumerate(members):
-        if i not in run and member.place.contacts.size:
-            contacts = [part for name in member.selection.parts if isinstance(part := member.scene[name], Contact)]
+        if i not in run and member.contacts:
+            contacts = [part for name in member.contacts if isinstance(part := member.scene[name], Contact)]
             pressed[member.place.contacts] = [max(0.0, float(value_of(c.normal_force))) for c in contacts]
     return pressed
 

@@ -111,9 +111,8 @@ class SceneMechanics:
         total = np.zeros(samples.t.size)
         known = None if moving is None else set(moving.tolist())
         for member in self.members:
-            first = int(member.place.dofs[0])
             # what rests holds no energy; its arrays need not be built
-            if (known is None or first in known) and not member.keeps_still(samples):
+            if (known is None or member.first in known) and not member.keeps_still(samples):
                 total += energy(member.system, member.place.part(samples))
         return total
 

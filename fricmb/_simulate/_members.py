@@ -51,8 +51,23 @@ class Member:
 
     scene: Scene
     selection: Selection
-    place: Place
+    names: Names
     island: Island | None = None
+
+    @cached_property
+    def place(self) -> Place:
+        """Its places in the arrays of the whole; found when they are needed, which they are not of what rests."""
+        return place_of(self.selection, self.names)
+
+    @property
+    def first(self) -> int:
+        """Its first degree of freedom."""
+        return self.names.dof_index[self.selection.dofs[0]]
+
+    @property
+    def contacts(self) -> list[str]:
+        """Its contacts."""
+        return [name for name in self.selection.parts if name in self.names.contact_index]
 
     @cached_property
     def system(self) -> System:
@@ -74,8 +89,9 @@ def resting(members: Sequence[Member], start: Start) -> Flags:
     inert = np.array([island is not None and island.inert for island in islands], dtype=np.bool_)
     held = np.array([island is None or island.held for island in islands], dtype=np.bool_)
     owner = np.zeros(start.q.size, dtype=np.int64)
-    for i, member in enumerate(members):
-        owner[member.place.dofs] = i
+    index = members[0].names.dof_index
+    dofs = [index[name] for member in members for name in member.selection.dofs]
+    owner[dofs] = np.repeat(np.arange(len(members)), [len(member.selection.dofs) for member in members])
     away = (start.v != 0.0) | (held[owner] & (start.q != 0.0))
     still: Flags = np.bincount(owner, weights=away, minlength=len(members)) == 0
     return inert & still
@@ -85,11 +101,8 @@ def members_of(scene: Scene, plan: Plan, names: Names, together: bool) -> tuple[
     """An island each; or, ``together`` or where there is nothing to tell apart, the whole as one."""
     if together or (len(plan.islands) == 1 and not plan.idle):
         whole = Selection(dofs=plan.dofs, parts=plan.parts)
-        return (Member(scene=scene, selection=whole, place=place_of(whole, names)),)
-    return tuple(
-        Member(scene=scene, selection=island.selection, place=place_of(island.selection, names), island=island)
-        for island in plan.islands
-    )
+        return (Member(scene=scene, selection=whole, names=names),)
+    return tuple([Member(scene=scene, selection=i.selection, names=names, island=i) for i in plan.islands])
 
 
 def place_of(selection: Selection, names: Names) -> Place:

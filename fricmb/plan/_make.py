@@ -160,20 +160,22 @@ def _islands(scene: Scene, links: Links, kept: Sequence[int], dofs: tuple[str, .
     mine = np.full(links.first.size, -1, dtype=np.int64)
     mine[links.first >= 0] = island[label[links.first[links.first >= 0]]]
     acting = np.argsort(mine, kind="stable")[np.count_nonzero(mine < 0) :]
-    ends = np.searchsorted(mine[acting], np.arange(len(groups) + 1))
+    ends = np.searchsorted(mine[acting], np.arange(len(groups) + 1)).tolist()
+    starts = np.bincount(mine[acting], weights=links.starts[acting], minlength=len(groups)).tolist()
+    others = np.bincount(mine[acting], weights=~links.rubs[acting], minlength=len(groups)).tolist()
+    names_of = [links.parts[i].name for i in acting.tolist()]
     found = []
     for number, group in enumerate(groups):
-        places = acting[ends[number] : ends[number + 1]]
-        inside = [links.parts[i] for i in places.tolist()]
-        names = dofs if len(groups) == 1 else tuple([scene.dof_names[i] for i in group.tolist()])
-        bodies = tuple(dict.fromkeys([owner[i] for i in group.tolist()]))
+        places = group.tolist()
+        names = dofs if len(groups) == 1 else tuple([scene.dof_names[i] for i in places])
+        bodies = tuple(dict.fromkeys([owner[i] for i in places]))
         found.append(
             Island(
                 dofs=names,
-                parts=tuple(dict.fromkeys([part.name for part in inside])),
+                parts=tuple(dict.fromkeys(names_of[ends[number] : ends[number + 1]])),
                 bodies=bodies,
-                inert=not links.starts[places].any(),
-                held=not links.rubs[places].all() or is_held(scene, bodies),
+                inert=not starts[number],
+                held=bool(others[number]) or is_held(scene, bodies),
             )
         )
     return tuple(found)

@@ -234,6 +234,9 @@ class Scene:
         return values[0], values[1]
 
     def _all_initial_values(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        found = self._cache.get("start")
+        if found is not None:
+            return found[0].copy(), found[1].copy()
         held: tuple[list[float], list[float]] = ([], [])
         for body in self.bodies:
             for row, argument in zip(held, ("position", "velocity"), strict=True):
@@ -244,7 +247,8 @@ class Scene:
                     keys = (name.partition(".")[2] for name in body.dof_names)
                     row.extend([value_of(values.get(key, 0.0)) for key in keys])
         q, v = (np.array(row, dtype=float) for row in held)
-        return q, v
+        self._cache["start"] = q, v
+        return q.copy(), v.copy()
 
     # -- parameters ---------------------------------------------------------------------------------------------
     @property

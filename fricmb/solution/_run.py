@@ -90,7 +90,7 @@ class Piece:
     @property
     def is_whole(self) -> bool:
         """Whether the piece reaches to the end of its trajectory."""
-        return self.t_end >= float(self._trajectory.t[-1])
+        return self.t_end >= self._trajectory.ends[1]
 
     def rows(self) -> Samples:
         """Values at the accepted steps."""
