@@ -3,7 +3,8 @@
 The problem is one of accelerations: with a = a0 + D F, a stuck contact has a = 0 and |F| <= mu_s N, a slipping one
 F = -mu(0) N n and a = rho n, rho >= 0 the initial growth of its slip speed.  It is the port problem of a step with D
 for G and accelerations for velocities, so the same Newton solves it.  All are tried stuck; the worst beyond its cone is
-released, one at a time (for mu_s > mu_k a joint solution need not be unique); a cone is never split into axes.
+released, one at a time (for mu_s > mu_k a joint solution need not be unique); a cone is never split into axes.  Where
+these trials turn in a circle, ``_release`` finds a set that holds.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from fricmb.integrate._pack import Packed, Ports, Table
 from fricmb.integrate._port_state import PortState, port_state
 from fricmb.integrate._ports import solve_ports
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
+from fricmb.integrate._release import release
 from fricmb.integrate._room import block, room
 
 #: Relative excess over the cone that still counts as on it: round-off of D^-1 a.
@@ -101,15 +103,8 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         elif r.part[k] == 2:
             r.mode[k] = SLIP
     for trial in range(6 * nc + 10):
-        for k in range(nc):
-            w.r[0, k] = 0.0
-            for a in range(ports.row[k], ports.row[k + 1]):
-                w.F[0, a] = 0.0
-                w.Fo[0, a] = 0.0
-                w.gb[0, a] = y.a0[a]
-                w.n[0, a] = y.n[a]
-        if solve_ports(ports, r.laws, s, w, r.hA, r.mode, r.tol, address) < 0:
-            return -1
+        if not try_modes(y, r, s, address):
+            break
         worst = -1
         excess = 1.0 + MARGIN
         back = -1
@@ -134,14 +129,38 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         elif back >= 0:
             r.mode[back] = STICK
         else:
-            for k in range(nc):
-                if r.mode[k] != OPEN:
-                    y.mode[k] = r.mode[k]
-                    for a in range(ports.row[k], ports.row[k + 1]):
-                        y.n[a] = w.n[0, a]
-                        y.F[a] = w.F[0, a]
+            take_modes(packed, y, r, w.n[0], w.F[0])
             return trial + 1
-    return -1
+    # releases that call each other back, or no convergence
+    if not release(ports, y, r.part, r.mode, y.F):
+        return -1
+    take_modes(packed, y, r, y.n, y.F)
+    return 1
+
+
+@kernel
+def try_modes(y: State, r: Rest, s: Scratch, address: Ints) -> bool:
+    """Forces and directions under ``r.mode``, from directions ``y.n``; False without convergence."""
+    w = r.w
+    for k in range(r.mode.shape[0]):
+        w.r[0, k] = 0.0
+        for a in range(r.ports.row[k], r.ports.row[k + 1]):
+            w.F[0, a] = 0.0
+            w.Fo[0, a] = 0.0
+            w.gb[0, a] = y.a0[a]
+            w.n[0, a] = y.n[a]
+    return bool(solve_ports(r.ports, r.laws, s, w, r.hA, r.mode, r.tol, address) >= 0)
+
+
+@kernel
+def take_modes(packed: Packed, y: State, r: Rest, n: Floats, F: Floats) -> None:
+    """Give the contacts that take part the modes found, with their directions and forces."""
+    for k in range(r.mode.shape[0]):
+        if r.mode[k] != OPEN:
+            y.mode[k] = r.mode[k]
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+                y.n[a] = n[a]
+                y.F[a] = F[a]
 
 
 @block

@@ -222,6 +222,16 @@ def record_changes(packed: Packed, y: State, old: Before, out: Rows) -> None:
 
 
 @kernel
+def lands_now(packed: Packed, y: State, k: int, part: int) -> bool:
+    """Whether a slip ends so soon that no step to its end can be told from none: 16 roundings of the time away."""
+    if part != 0 or y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+        return False
+    row0 = packed.ports.row[k]
+    speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+    return bool(speed <= -16.0 * EPS * abs(y.t[0]) * slip_rate(packed, y, k))
+
+
+@kernel
 def holds_nothing(packed: Packed, y: State, k: int) -> bool:
     """Whether a stuck contact that has reached its cone bears nothing but round-off: it is the cone that has closed."""
     row0 = packed.ports.row[k]
@@ -260,6 +270,8 @@ def transition(
     for c in range(y.mode.shape[0]):
         row0 = ports.row[c]
         force = ports.D[row0, row0] * break_away(ports, packed.laws, c, s, y.N[c]) * y.N[c]
+        if lands_now(packed, y, c, r.part[c]):
+            r.part[c] = 1
         if c != k and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
             # released at this very instant: tried stuck again it would be on its cone, and so without end
             r.part[c] = 2
