@@ -8,16 +8,16 @@ import numpy as np
 
 from fricmb.integrate._exact_step import CAP, rung_below
 from fricmb.integrate._field import Scratch
-from fricmb.integrate._instant import INFINITE, State
+from fricmb.integrate._instant import INFINITE, State, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._modes import Rest
 from fricmb.integrate._onestep import Accuracy, OneStep, add_work, attempt, finish, ladder, update_scales
 from fricmb.integrate._pack import Packed
-from fricmb.integrate._problem import SLIP, Floats, Ints
+from fricmb.integrate._problem import LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate._rows import INSIDE, STEP, Rows, put, record
 from fricmb.integrate._step_error import step_error
-from fricmb.integrate._transitions import EPS, Before, copy_state, locate, swap_state, transition
+from fricmb.integrate._transitions import EPS, Before, copy_state, locate, slip_rate, swap_state, transition
 from fricmb.integrate._triggers import find_trigger
 
 #: What a step or a loop of steps ends with: an accepted or rejected step, a transition gone through, or why not.
@@ -31,6 +31,10 @@ FAILURES = {
     FAIL_INFINITE: "forces or accelerations became infinite",
     FAIL_CHATTER: "transitions pile up at one instant (chattering)",
 }
+#: Slip speed, relative to the velocities behind it, that is taken for none where no step can be taken.
+NEARLY = 1e-12
+#: Transitions at one instant after which that is done, too.
+PATIENCE = 10
 
 
 class Clock(NamedTuple):
@@ -86,7 +90,7 @@ def advance(
         # steps of a ladder come again, and their factors with them
         h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h)
     if not h > 8.0 * EPS * abs(t) + 1e-280:
-        return FAIL_STEP
+        return end_round_off(packed, s, y, r, old, out, clock, address)
     error = np.inf
     if attempt(packed, s, y, one, acc, h, address):
         error = step_error(packed, y, one, acc, h, address)
@@ -118,14 +122,15 @@ def advance(
         clock.h[0] = wanted
         return REJECTED
     if clock.found[0] < 1e-9 and y.mode[k] == SLIP and h > 1e-6 * clock.usual[0]:
-        # slip that has only begun and seems to end at once: a wrong solution of too large a step
+        # slip that has only begun and seems to end at once: a wrong solution of too large a step, not to start from
         one.counts[1] += 1
         clock.h[0] = 0.2 * h
+        one.last[1] = 0.0
         return REJECTED
     clock.retry[0] = wanted
     k = locate(packed, s, y, end, one, acc, k, h, clock.found[0], clock.found, clock.retry, address)
     if k == -2:
-        return FAIL_STEP
+        return end_round_off(packed, s, y, r, old, out, clock, address)
     if k == -1:
         one.counts[1] += 1
         clock.h[0] = clock.retry[0]
@@ -135,12 +140,45 @@ def advance(
         record_inside(packed, s, y, end, one, acc, out, address)
         one.counts[0] += 1
     clock.same[0] = 0 if end.t[0] - t > 16.0 * EPS * abs(t) else clock.same[0] + 1
+    if clock.same[0] == PATIENCE:
+        code = end_round_off(packed, s, y, r, old, out, clock, address)
+        if code != FAIL_STEP:
+            return code
     if clock.same[0] > 20 + 4 * y.mode.shape[0]:
         return FAIL_CHATTER
     copy_state(end, y)
     clock.h[0] = clock.usual[0]
     one.last[1] = 0.0
     return settled(transition(packed, s, y, k, lifted, r, old, out, address))
+
+
+@kernel
+def end_round_off(
+    packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints
+) -> int:
+    """Where no step can be taken: end the slips that are as good as round-off and settle, if there are any.
+
+    Slips that land together (two points of a pad that comes to rest) leave each other a speed of some roundings of
+    the bodies' own, too small to step on and too large for round-off of one velocity, or a time to land that is
+    nothing beside the step.
+    """
+    kept = r.small.copy()
+    found = False
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH:
+            row0 = packed.ports.row[k]
+            speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            soon = -1e-9 * clock.usual[0] * slip_rate(packed, y, k)
+            if speed <= max(soon, NEARLY * y.size[row0] + 1e3 * kept[k]):
+                found = True
+                r.small[k] = speed
+    clock.same[0] += 1
+    if not found or clock.same[0] > 20 + 4 * y.mode.shape[0]:
+        return FAIL_STEP
+    clock.h[0] = clock.usual[0]
+    code = settled(transition(packed, s, y, -1, False, r, old, out, address))
+    r.small[:] = kept
+    return code
 
 
 @block

@@ -105,9 +105,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
     for trial in range(6 * nc + 10):
         if not try_modes(y, r, s, address):
             break
-        worst = -1
-        excess = 1.0 + MARGIN
-        back = -1
+        worst, back, excess = -1, -1, 1.0 + MARGIN
         for k in range(nc):
             row0 = ports.row[k]
             d = ports.row[k + 1] - row0
@@ -116,8 +114,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
                 limit = ports.mu_s[k] * y.N[k]
                 ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
                 if ratio > excess:
-                    excess = ratio
-                    worst = k
+                    excess, worst = ratio, k
             elif r.mode[k] == SLIP and w.r[0, k] < -1e-9 * big and r.part[k] == 1:
                 back = k
         if worst >= 0:
@@ -168,8 +165,7 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
     """Find modes, directions, forces and accelerations of the state: contacts with ``r.part`` 0 keep their mode.
 
     On entry part marks contacts at rest (1) or just released (2).  Velocities of those at rest are projected to g = 0.
-    Returns 0, or 1 where no consistent set of modes was found, 2 where stuck contacts are redundant, 3 where
-    accelerations are infinite.
+    Returns 0, or 1 where no consistent modes were found, 2: stuck contacts redundant, 3: accelerations infinite.
     """
     sizes, pivots = r.w.sizes, r.w.pivots
     some = False

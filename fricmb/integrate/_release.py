@@ -108,9 +108,7 @@ def largest(x: Floats) -> float:
 
 
 @kernel
-def least_energy(
-    ports: Ports, y: State, part: Codes, limit: Floats, scale: Floats, steep: float, F: Floats
-) -> bool:
+def least_energy(ports: Ports, y: State, part: Codes, limit: Floats, scale: Floats, steep: float, F: Floats) -> bool:
     """Forces within discs of radius ``limit`` (n_c,) that make F D F/2 + a0 F least, from those that stand in F."""
     m = F.shape[0]
     ahead, last, step = F.copy(), F.copy(), np.zeros(m)

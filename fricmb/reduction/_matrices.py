@@ -55,7 +55,8 @@ def reduce_matrices(
         C = _checked(label, "C", C)
         _same_shape(label, "C", C, n)
     rows = {name: _rows(label, name, value, n_axes, n) for name, value in points.items()}
-    if n_modes is not None and (isinstance(n_modes, bool) or not isinstance(n_modes, int) or not 1 <= n_modes <= n):
+    whole = isinstance(n_modes, int | np.integer) and not isinstance(n_modes, bool)
+    if n_modes is not None and not (whole and 1 <= n_modes <= n):
         raise SceneError(f"{label}: n_modes must be an integer from 1 to {n} (rows of M), or None; got {n_modes!r}")
     omega, modes = _modes(label, M, K, n if n_modes is None else n_modes)
     neglected, extra = 0.0, 0
@@ -124,19 +125,23 @@ def _solver(K: Any, M: Any, shift: float) -> Callable[[Floats], Floats]:
 
 def _checked(label: str, name: str, value: Any) -> Any:
     """A square float matrix of finite numbers."""
-    if is_sparse(value):
-        matrix = value.tocsr().astype(float)
-        data = matrix.data
-    else:
-        try:
-            matrix = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            raise SceneError(f"{label}: {name} must be a matrix of numbers, got {value!r}") from None
-        data = matrix
+    try:
+        given: Any = value.tocsr() if is_sparse(value) else np.array(value)
+        kind = given.dtype.kind
+        matrix = given.astype(float) if kind in "iuf" else None
+    except (TypeError, ValueError):
+        matrix, kind = None, "O"
+    if matrix is None:
+        got = "complex ones" if kind == "c" else repr(value)
+        raise SceneError(f"{label}: {name} must be a matrix of real numbers, got {got}")
     if len(matrix.shape) != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
         raise SceneError(f"{label}: {name} must be a square matrix, got shape {matrix.shape}")
-    if not np.isfinite(data).all():
-        raise SceneError(f"{label}: {name} must hold finite numbers")
+    entries = matrix.tocoo() if is_sparse(matrix) else None
+    wrong = np.argwhere(~np.isfinite(matrix if entries is None else entries.data))
+    if wrong.size:
+        at = tuple(wrong[0]) if entries is None else (entries.coords[0][wrong[0, 0]], entries.coords[1][wrong[0, 0]])
+        i, j = int(at[0]), int(at[1])
+        raise SceneError(f"{label}: {name} must hold finite numbers; {name}[{i}, {j}] = {matrix[i, j]}")
     return matrix
 
 
@@ -187,7 +192,8 @@ def _rows(label: str, name: str, value: Any, n_axes: int, n: int) -> Floats:
             raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got {value!r}")
         return np.eye(n)[places] if n <= DENSE else _unit_rows(places, n)
     if given.dtype.kind not in "iuf" or given.shape not in ((n_axes, n), (n,) if n_axes == 1 else (n_axes, n)):
-        raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got an array of shape {given.shape}")
+        got = f"an array of shape {given.shape}" if given.dtype.kind in "iuf" and given.shape else repr(value)
+        raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got {got}")
     if not np.isfinite(given).all():
         raise SceneError(f"{label}: points[{name!r}] must hold finite numbers")
     return given.reshape(n_axes, n).astype(float)

@@ -111,7 +111,10 @@ def _held(label: str, mesh: Any, basis: Any, fixed: Any) -> Any:
 
 def _point_rows(label: str, mesh: Any, basis: Any, name: str, at: Any) -> Floats:
     """Rows (d, n) that give the displacement at coordinates."""
-    place = np.asarray(at, dtype=float)
+    try:
+        place = np.asarray(at, dtype=float)
+    except (TypeError, ValueError):
+        place = np.zeros(0)
     if place.shape != (mesh.dim(),):
         raise SceneError(f"{label}: points[{name!r}] must be {mesh.dim()} coordinates, got {at!r}")
     try:

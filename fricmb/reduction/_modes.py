@@ -42,13 +42,16 @@ class Reduced:
 
 
 def split_damping(C: Floats, omega: Floats) -> tuple[Floats, Floats | None]:
-    """Damping ratios (n,), and the matrix itself where ratios do not say all."""
+    """Damping ratios (n,), and the matrix itself where ratios do not say all (coupled, rigid or driven modes)."""
     diagonal = np.diagonal(C)
     elastic = omega > 0.0
     ratios = np.divide(diagonal, 2.0 * omega, out=np.zeros_like(omega), where=elastic)
     size = float(np.abs(C).max(initial=0.0))
     off = float(np.abs(C - np.diag(diagonal)).max(initial=0.0))
-    if off <= PROPORTIONAL * size and not (np.abs(diagonal[~elastic]) > PROPORTIONAL * size).any():
+    rigid = (np.abs(diagonal[~elastic]) > PROPORTIONAL * size).any()
+    # ratios are no negative numbers: a C that drives is kept as a matrix
+    drives = (diagonal < -PROPORTIONAL * size).any()
+    if off <= PROPORTIONAL * size and not rigid and not drives:
         return np.maximum(ratios, 0.0), None
     return np.maximum(ratios, 0.0), C
 

@@ -28,7 +28,7 @@ def from_matrices(
         raise SceneError(f"{label}: axes must be any of 'x', 'y', 'z' in a string, got {axes!r}")
     if C is not None and ratios is not None:
         raise SceneError(f"{label}: give C or damping_ratios, not both")
-    _check_points(label, points)
+    _check_points(label, points, residual)
     found = reduce_matrices(label, M, K, C, points, len(axes), n_modes, residual)
     return _body(cls, name, found, axes, ratios, fields)
 
@@ -41,7 +41,7 @@ def from_mesh(
     from fricmb.reduction import mesh_matrices, reduce_matrices
 
     label = f"ModalBody {name!r}"
-    _check_points(label, points)
+    _check_points(label, points, residual)
     _check_solid(label, solid, plane)
     M, K, rows = mesh_matrices(label, mesh, **solid, plane=plane, fixed=fixed, points=points)
     axes = "xyz"[: mesh.dim()]
@@ -49,7 +49,9 @@ def from_mesh(
     return _body(cls, name, found, axes, ratios, fields)
 
 
-def _check_points(label: str, points: Any) -> None:
+def _check_points(label: str, points: Any, residual: Any) -> None:
+    if not isinstance(residual, bool):
+        raise SceneError(f"{label}: residual must be True or False, got {residual!r}")
     if not isinstance(points, Mapping) or not points:
         raise SceneError(f"{label}: points must be a dict of point name to place, with at least one; got {points!r}")
 

@@ -76,6 +76,26 @@ def test_the_friction_of_all_contacts_slows_the_rotor():
     assert abs(sol.energy.residual).max() < 1e-6
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("numbers", [(3, 4, 2), (3, 4, 3), (3, 4, 4), (6, 8, 6)])
+def test_braking_to_a_standstill(numbers):
+    """Points of the pad land together, are nearly redundant, and release one another: the run goes through that."""
+    scene = fm.models.pad_rotor(*numbers, speed=0.2, mu_s=0.5, mu_k=0.4)
+    sol = fm.simulate(scene, t_end=0.025, rtol=1e-5, method="radau")
+    turning = sol.velocity("rotor.mode1")
+    assert np.abs(sol.energy.residual).max() < 1e-7
+    # a rigid brake stops after v J/(mu N r^2)
+    pull = sum(c.normal_force * scene["rotor"].shapes[f"p{i + 1}"][0, 0] for i, c in enumerate(scene.contacts))
+    assert sol.t[np.flatnonzero(turning <= 0.0)[0]] == pytest.approx(turning[0] / (0.4 * pull), rel=0.1)
+    # and then hangs on the mounting of the pad
+    assert np.abs(turning[sol.t > 0.015]).max() < 0.15 * turning[0]
+    for contact in scene.contacts:
+        force, mode = np.hypot(*sol.force(contact.name)) / contact.normal_force, sol.mode(contact.name)
+        assert force[mode == 0].max() < 0.5 * (1 + 1e-6)
+        np.testing.assert_allclose(force[mode == 1], 0.4, rtol=1e-9)
+        assert np.hypot(*sol.relative_velocity(contact.name))[mode == 0].max() < 1e-11
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

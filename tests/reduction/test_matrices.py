@@ -102,6 +102,24 @@ def test_proportional_damping_becomes_ratios():
     np.testing.assert_allclose(body.damping_ratios[:6], (0.1 / omega + 0.002 * omega)[:6] / 2, rtol=1e-9)
 
 
+def test_damping_that_drives_is_not_lost():
+    """A negative C cannot be given by ratios, and is kept as a matrix: growth exp(t/2) of a mode of unit mass."""
+    body = fm.ModalBody.from_matrices("b", M=np.eye(1), K=4.0 * np.eye(1), C=-np.eye(1), points={"p": 0})
+    assert body.damping is not None
+    start = {"position": {"b.mode1": 1e-3}}
+    sol = fm.simulate(fm.Scene("s", [body]), t_end=5.0, rtol=1e-9, initial=start)
+    omega = np.sqrt(4.0 - 0.25)
+    exact = 1e-3 * np.exp(2.5) * (np.cos(5 * omega) - 0.5 / omega * np.sin(5 * omega))
+    assert sol["b.mode1"][-1] == pytest.approx(exact, abs=1e-9)
+
+
+def test_numbers_of_numpy_count():
+    body = fm.ModalBody.from_matrices(
+        "b", M=np.eye(2), K=np.eye(2), points={"p": 0}, n_modes=np.int64(1), residual=False
+    )
+    assert body.n_modes == 1
+
+
 GOOD = np.diag([1.0, 2.0]), np.array([[2.0, -1.0], [-1.0, 2.0]])
 
 
@@ -115,10 +133,22 @@ GOOD = np.diag([1.0, 2.0]), np.array([[2.0, -1.0], [-1.0, 2.0]])
         ({"M": scipy.sparse.csr_array([[1.0, 2.0], [2.0, 1.0]])}, "singular or indefinite"),
         ({"M": np.eye(3)}, "K must have the shape of M"),
         ({"M": np.ones(2)}, "M must be a square matrix"),
-        ({"M": [["a", 1], [2, 3]]}, "M must be a matrix of numbers"),
+        ({"M": [["a", 1], [2, 3]]}, "M must be a matrix of real numbers"),
         ({"K": np.array([[2.0, 1.0], [-1.0, 2.0]])}, "K must be symmetric"),
         ({"K": np.diag([1.0, -1.0])}, "K must be positive semidefinite"),
-        ({"K": np.diag([1.0, np.nan])}, "K must hold finite numbers"),
+        ({"K": np.diag([1.0, np.nan])}, r"K must hold finite numbers; K\[1, 1\] = nan"),
+        ({"C": scipy.sparse.csr_array([[0.0, np.inf], [0.0, 0.0]])}, r"C\[0, 1\] = inf"),
+        ({"M": np.eye(2) * (1 + 1j)}, "M must be a matrix of real numbers, got complex"),
+        ({"K": scipy.sparse.csr_array(np.eye(2) * 1j)}, "K must be a matrix of real numbers, got complex"),
+        ({"C": "a"}, "C must be a matrix of real numbers, got 'a'"),
+        ({"M": np.zeros((0, 0)), "K": np.zeros((0, 0))}, "M must be a square matrix"),
+        ({"residual": "yes"}, "residual must be True or False, got 'yes'"),
+        ({"points": {"p": 0.5}}, "got 0.5"),
+        ({"points": {"p": -1}}, "got -1"),
+        ({"points": {"a.b": 0}}, "without dots"),
+        ({"axes": "xx", "points": {"p": [0, 1]}}, "axes must be"),
+        ({"damping_ratios": -0.1}, "damping_ratios must be a finite number >= 0"),
+        ({"damping_ratios": [0.1, 0.1, 0.1]}, "sequence of 2 numbers"),
         ({"C": np.eye(3)}, "C must have the shape of M"),
         ({"points": {}}, "at least one"),
         ({"points": {"p": 2}}, "points\\['p'\\] must be 1 degree"),
@@ -138,7 +168,13 @@ def test_bad_matrices_are_refused(changes, words):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"frequencies": [1.0, -2.0]}, "frequencies"),
+        ({"frequencies": [1.0, -2.0]}, r"frequencies\[1\] must be a finite number >= 0, got -2"),
+        ({"frequencies": [1.0, np.nan]}, "frequencies"),
+        ({"frequencies": []}, "frequencies"),
+        ({"frequencies": [1.0, 2.0j]}, "frequencies"),
+        ({"shapes": {"p": np.ones((1, 2)) * 1j}}, r"shapes\['p'\] must be an array of numbers"),
+        ({"shapes": {"p": [[1.0, np.nan]]}}, "finite"),
+        ({"position": {"mode9": 1.0}}, "mode9"),
         ({"shapes": {"p": np.ones((1, 3))}}, "shapes"),
         ({"shapes": {}}, "at least one point"),
         ({"masses": [1.0, 0.0]}, "masses"),
