@@ -191,11 +191,11 @@ class ContactArrays:
         self.N0.append(preload)
 
     def slip_table(self, n: int, n_u: int) -> Templates:
-        """Of every contact (of joints nothing) its slip coordinate and slip velocity as linear forms."""
+        """Of every contact (of joints nothing) slip coordinate and slip velocity in each direction as linear forms."""
         table = TableBuilder()
-        for kind, start in zip(self.normal, self.row_start, strict=False):
-            row = self.rows[start]
-            table.add(NO_TEMPLATE, (), () if kind == NORMAL_REACTION else (row.value(), row.rate()))
+        for k, kind in enumerate(self.normal):
+            rows = () if kind == NORMAL_REACTION else self.rows[self.row_start[k] : self.row_start[k + 1]]
+            table.add(NO_TEMPLATE, (), tuple(form for row in rows for form in (row.value(), row.rate())))
         return table.build(n, n_u)
 
     def build(self, n: int, n_u: int, *, dense: bool = True) -> Contacts:

@@ -177,11 +177,6 @@ def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: Joint
     elif isinstance(part, Element):
         structure.add_element(part)
     elif isinstance(part, Contact):
-        if len(part.directions()) > 1:
-            raise SceneError(
-                f"Contact {part.name!r}: axes must be one direction in a scene with bodies that turn or joints, got"
-                f" {''.join(direction.label for direction in part.directions())!r}"
-            )
         contacts.add(part)
     elif isinstance(part, Joint):
         joints.add(part)

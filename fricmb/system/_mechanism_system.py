@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -61,11 +62,11 @@ class MechanismSystem(System):
         from fricmb.integrate.constrained._assemble import away
         from fricmb.integrate.constrained._trajectory import complete_open
 
-        joints, nc = self.mechanism.joints, self.problem.n_c
+        joints, rows = self.mechanism.joints, self.problem.m
         count, m = samples.t.size, self.mechanism.n_rows
-        force = np.zeros((count, m + 2 * nc))
-        force[:, m : m + nc] = samples.F.T
-        force[:, m + nc :] = np.where(samples.F != 0.0, -np.sign(samples.F), np.sign(samples.g)).T
+        force = np.zeros((count, m + 2 * rows))
+        force[:, m : m + rows] = samples.F.T
+        force[:, m + rows :] = self._directions(samples).T
         q, v, z = (np.ascontiguousarray(x.T) for x in (samples.q, samples.v, samples.z))
         opened = np.zeros((count, len(joints.port)), np.int8)
         for k in range(count if joints.hands_over.any() else 0):
@@ -74,6 +75,17 @@ class MechanismSystem(System):
         lam = self._least_norm(samples, found[3])
         i = joints.names.index(joint)
         return lam[joints.row[i] : joints.row[i + 1]]
+
+    def _directions(self, samples: Samples) -> Floats:
+        """Unit vectors of slip (m_p, n_t): against friction, or along the slip velocity where there is none."""
+        row = self.problem.contacts.row
+        n = np.zeros_like(samples.F)
+        for first, last in pairwise(row):
+            F, g = samples.F[first:last], samples.g[first:last]
+            against = np.where((F != 0.0).any(axis=0), -F, g)
+            size = np.sqrt((against**2).sum(axis=0))
+            n[first:last] = against / np.where(size > 0.0, size, 1.0)
+        return n
 
     def _least_norm(self, samples: Samples, lam: Floats) -> Floats:
         """Without what redundant constraints may push against one another."""

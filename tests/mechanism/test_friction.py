@@ -156,3 +156,20 @@ def test_every_law_of_the_catalogue_works_in_a_pin(name):
     sol = fm.simulate(fm.models.dry_pendulum(law=law), t_end=0.6, rtol=1e-7)
     assert np.abs(sol.energy.residual).max() < 1e-5
     assert sol.energy.friction_loss[-1] > 0.0
+
+
+@pytest.mark.parametrize("pull", [(9.81, 0.0), (-9.81, 0.0), (0.0, -9.81)])
+def test_two_straight_arms_held_by_their_dry_pins_stay(pull):
+    ends = {"left": (-0.5, 0.0), "right": (0.5, 0.0)}
+    arms = [fm.RigidBody(f"arm{i}", mass=1.0, inertia=1 / 12, position=(i + 0.5, 0.0), points=ends) for i in range(2)]
+    law = fm.laws.Coulomb(mu_s=30.0)
+    gravity = fm.Gravity("g", acceleration={"x": pull[0], "y": pull[1]})
+    pins = [
+        fm.Revolute("root", arms[0].point("left"), radius=0.05, friction=law),
+        fm.Revolute("elbow", arms[1].point("left"), arms[0].point("right"), radius=0.05, friction=law),
+    ]
+    sol = fm.simulate(fm.Scene("arms", [*arms, *pins, gravity]), t_end=3.0, rtol=1e-7)
+    assert not sol.events
+    assert np.abs(sol.q[:, -1] - sol.q[:, 0]).max() < 1e-12
+    # moment of the weight of both about the root
+    assert sol.force("root")[0, -1] * 0.05 == pytest.approx(-2.0 * pull[1], abs=1e-9)

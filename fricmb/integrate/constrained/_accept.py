@@ -13,6 +13,7 @@ from fricmb.integrate._room import block, room
 from fricmb.integrate.constrained._band import spread_of_pivots
 from fricmb.integrate.constrained._field import call_joint, friction_at, move
 from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
+from fricmb.integrate.constrained._slip import magnitude, slip_speed, stick_limit
 from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
 
 
@@ -71,7 +72,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
     1 + mu n dN/dlam dlam/dF > 0 for every direction that the reaction may take (for a single port: Genot and Brogliato
     1999; Klarbring 1990).  Where it vanishes there is no solution or there are several.
     """
-    n, m, n_c = y.q.shape[0], y.lam.shape[0], y.F.shape[0]
+    n, m, n_c = y.q.shape[0], y.lam.shape[0], y.mode.shape[0]
     port, joint = mech.port, mech.joint
     least = 1.0
     for c in range(n_c):
@@ -89,12 +90,12 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
             return -1.0
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
-        w.r[n + m + c] = 1.0
+        w.r[n + m + port.row[c]] = 1.0
         solve_instant(mech, w)
         n_x = joint.n_x[j]
         rows = joint.row[j + 1] - joint.row[j]
         at = friction_at(n_x, rows) + n_x + n_x * n_x
-        mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[c] * y.g[c], max(y.N[c], 0.0))  # type: ignore[arg-type]
+        mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[port.row[c]] * y.g[port.row[c]], max(y.N[c], 0.0))  # type: ignore[arg-type]
         factor = mu + by_load * max(y.N[c], 0.0)
         for i in range(rows):
             out.lam[joint.row[j] + i] = y.lam[joint.row[j] + i]
@@ -108,7 +109,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
             answer = 0.0
             for i in range(rows):
                 answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
-            out.margin[c] = min(out.margin[c], 1.0 + factor * y.n[c] * answer)
+            out.margin[c] = min(out.margin[c], 1.0 + factor * y.n[port.row[c]] * answer)
         least = min(least, out.margin[c])
     if whole:
         out.together[0] = least_minor(mech, k, w, y, out)
@@ -131,7 +132,7 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
     n, m = y.q.shape[0], y.lam.shape[0]
     port, joint = mech.port, mech.joint
     count = 0
-    for c in range(y.F.shape[0]):
+    for c in range(y.mode.shape[0]):
         if rubs(mech, y, c) and count < MANY:
             out.which[count] = c
             count += 1
@@ -143,7 +144,7 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
     for j in range(count if code == 0 else 0):
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
-        w.r[n + m + out.which[j]] = 1.0
+        w.r[n + m + port.row[out.which[j]]] = 1.0
         solve_instant(mech, w)
         for i in range(count):
             c = out.which[i]
@@ -151,12 +152,12 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
             rows = joint.row[owner + 1] - joint.row[owner]
             n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
             at = friction_at(n_x, rows) + n_x + n_x * n_x
-            mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[c] * y.g[c], max(y.N[c], 0.0))  # type: ignore[arg-type]
+            mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[port.row[c]] * y.g[port.row[c]], max(y.N[c], 0.0))  # type: ignore[arg-type]
             answer = 0.0
             for r in range(rows):
                 answer += k.out[at + 1 + r] * w.r[n + joint.row[owner] + r]
             one = 1.0 if i == j else 0.0
-            out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * y.n[c] * answer
+            out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * y.n[port.row[c]] * answer
     for i in range(count):
         y.mode[out.which[i]] = SLIP
     if code != 0:
@@ -213,8 +214,9 @@ def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
 
 @kernel
 def triggers(
-    mech: Mech, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats, at_end: bool
-) -> None:
+    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
+    at_end: bool,
+) -> None:  # fmt: skip
     """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps)."""
     port, joint = mech.port, mech.joint
     n_c = mode.shape[0]
@@ -226,9 +228,9 @@ def triggers(
         if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
             continue
         if mode[c] == STICK:
-            out.trigger[2 * c] = port.mu_s[c] * max(N[c], 0.0) - abs(F[c])
+            out.trigger[2 * c] = stick_limit(mech, k, c, N) - magnitude(port.row, c, F)
         else:
-            out.trigger[2 * c] = direction[c] * g[c]
+            out.trigger[2 * c] = slip_speed(port.row, c, direction, F, g)
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
@@ -250,7 +252,7 @@ def least_singular(mech: Mech, w: Instant, out: Watch, turns: int) -> float:
     m = out.weak.shape[0]
     if m == 0:
         return 1.0
-    n = mech.order.place.shape[0] - mech.port.joint.shape[0] - mech.port.z_start[-1] - m
+    n = mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - m
     length = 0.0
     for _ in range(turns):
         length = 0.0

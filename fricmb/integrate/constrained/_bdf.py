@@ -61,7 +61,7 @@ def drive_bdf(
     """Step from y until the end of the span, or until the room for steps is used up."""
     set_window(k, c, y.t[0])
     while True:
-        if crowded(rec, y.F.shape[0]):
+        if crowded(rec, y.mode.shape[0]):
             return FULL
         stop = next_stop(c, y.t[0])
         if is_there(y, stop):

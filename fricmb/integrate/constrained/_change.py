@@ -31,6 +31,7 @@ from fricmb.integrate.constrained._field import move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import EPS, project_velocities
 from fricmb.integrate.constrained._record import Record, copy_state, record_event
+from fricmb.integrate.constrained._slip import magnitude, plane
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix, react
 from fricmb.integrate.constrained._step import Control
 
@@ -74,7 +75,7 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
     c = joint.port[i]
     if c >= 0:
         y.mode[c] = OPEN
-        y.F[c] = 0.0
+        y.F[mech.port.row[c]] = 0.0
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     instant_matrix(mech, k, w, y, NONE, mech.address)
     out.sigma[0] = out.sigma[1] = least_singular(mech, w, out, TURNS)
@@ -97,7 +98,7 @@ def change_modes(
     address: Ints,
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
-    n_c = y.F.shape[0]
+    n_c, row = y.mode.shape[0], mech.port.row
     copy_state(y, before, mech.address)
     if j >= 2 * n_c:
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
@@ -106,7 +107,7 @@ def change_modes(
     set_window(k, c, y.t[0])
     for i in range(n_c):
         part[i] = 1 if y.mode[i] == STICK else 0
-        if y.mode[i] == SLIP and abs(y.g[i]) <= 1e-11 * out.size[0]:
+        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.size[0]:
             part[i] = 1
     forced = -1
     if 0 <= j < 2 * n_c:
@@ -114,8 +115,10 @@ def change_modes(
         if j % 2 == 1:
             y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
             if y.mode[port] == SLIP:
-                y.n[port] = 1.0 if y.g[port] > 0.0 else -1.0
-                part[port] = 1 if abs(y.g[port]) <= 1e-11 * out.size[0] else 0
+                speed = magnitude(row, port, y.g)
+                for a in range(row[port], row[port + 1]):
+                    y.n[a] = y.g[a] / speed if speed > 0.0 else y.n[a]
+                part[port] = 1 if speed <= 1e-11 * out.size[0] else 0
         elif y.mode[port] == STICK:
             forced = port
         else:
@@ -134,7 +137,7 @@ def change_modes(
             kind = EVENT_OPEN
         elif was == OPEN and now != OPEN:
             kind = EVENT_CLOSE
-        elif was == SLIP and now == SLIP and before.n[i] != y.n[i]:
+        elif was == SLIP and now == SLIP and not plane(mech, i) and before.n[row[i]] != y.n[row[i]]:
             kind = EVENT_REVERSAL
         if kind >= 0:
             record_event(rec, y.t[0], i, kind)

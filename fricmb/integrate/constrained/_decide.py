@@ -6,6 +6,7 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._slip import SETTING_OUT, aim, lightness, magnitude, plane, slip_speed, stick_limit
 from fricmb.integrate.constrained._state import Instant, State, react
 
 #: Outcomes of a decision.
@@ -14,28 +15,78 @@ FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
 ENUMERATED = 6
 #: Round-off of forces beside the limit of sticking, and of slip accelerations beside their size.
 SLACK = 1e-10
+#: Steps from the forces that hold to those of slip, where directions of slip are to be found.
+STEPS_OUT = 6
 
 
 @kernel
-def wrong(mech: Mech, y: State, c: int, a_scale: float) -> float:
+def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
     """By how much port c contradicts its mode (0: not at all); y is complete."""
-    port = mech.port
     if y.mode[c] == STICK:
-        limit = port.mu_s[c] * max(y.N[c], 0.0)
-        over = abs(y.F[c]) - limit
-        return over / max(limit, 1e-300) if over > SLACK * max(limit, abs(y.F[c])) else 0.0
-    against = -y.n[c] * y.ga[c]
+        limit, force = stick_limit(mech, k, c, y.N), magnitude(mech.port.row, c, y.F)
+        over = force - limit
+        return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
+    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga)
     return against / a_scale if against > 1e-9 * a_scale else 0.0
 
 
 @kernel
-def largest_acceleration(y: State) -> float:
-    """Scale of slip accelerations."""
+def release(mech: Mech, k: Moving, y: State, c: int) -> None:
+    """Let port c slip, against the force that has held it."""
+    row = mech.port.row
+    if not plane(mech, c):
+        y.mode[c] = SLIP
+        y.n[row[c]] = -1.0 if y.F[row[c]] > 0.0 else 1.0
+        return
+    y.mode[c] = SETTING_OUT
+    force = magnitude(row, c, y.F)
+    k.held[c] = force
+    for a in range(row[c], row[c + 1]):
+        y.n[a] = -y.F[a] / force if force > 0.0 else (1.0 if a == row[c] else 0.0)
+
+
+@kernel
+def ease(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
+    """As ``react``; where ports set out in a plane, along a path from the forces that held them.
+
+    Along it slip accelerations grow from 0 on the side where friction brakes; a root on the other is not met.
+    """
+    some = False
+    for c in range(y.mode.shape[0]):
+        some = some or y.mode[c] == SETTING_OUT
+    for part in range(1, STEPS_OUT if some else 1):
+        k.part[0] = part / STEPS_OUT
+        if not react(mech, k, w, y, False, mech.address):
+            k.part[0] = 1.0
+            return False
+    k.part[0] = 1.0
+    return bool(react(mech, k, w, y, False, mech.address))
+
+
+@kernel
+def set_out(mech: Mech, y: State) -> None:
+    """Ports that set out slip from now on, in the direction found; one without load follows its acceleration."""
+    row = mech.port.row
+    for c in range(y.mode.shape[0]):
+        if y.mode[c] == SETTING_OUT:
+            y.mode[c] = SLIP
+            aim(mech, y.mode, y.F, y.n)
+            if magnitude(row, c, y.F) == 0.0:
+                size = magnitude(row, c, y.ga)
+                for a in range(row[c], row[c + 1]):
+                    y.n[a] = y.ga[a] / size if size > 0.0 else y.n[a]
+
+
+@kernel
+def largest_acceleration(mech: Mech, k: Moving, y: State) -> float:
+    """Scale of slip accelerations: those there are, and those that friction could bring."""
     value = 1e-290
     for i in range(y.a.shape[0]):
         value = max(value, abs(y.a[i]))
-    for c in range(y.ga.shape[0]):
-        value = max(value, abs(y.ga[c]))
+    row = mech.port.row
+    for c in range(y.mode.shape[0]):
+        for a in range(row[c], row[c + 1]):
+            value = max(value, abs(y.ga[a]), abs(y.F[a]) * lightness(mech, k, c, a - row[c], y.lam, mech.address))
     return value
 
 
@@ -52,48 +103,60 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     Sticking first; the port that is furthest beyond its limit is released against its force, one that would slip the
     wrong way sticks again.  Where that does not settle, every combination is tried.
     """
-    n_c = y.F.shape[0]
+    n_c = y.mode.shape[0]
     count = 0
     for c in range(n_c):
         if at_rest(mech, y, c, part):
             count += 1
             if c == forced:
-                y.n[c] = -1.0 if y.F[c] > 0.0 else 1.0
-                y.mode[c] = SLIP
+                release(mech, k, y, c)
             else:
                 y.mode[c] = STICK
     for _ in range(4 * count + 4):
-        if not react(mech, k, w, y, False, mech.address):
+        if not ease(mech, k, w, y):
             break
-        scale = largest_acceleration(y)
+        scale = largest_acceleration(mech, k, y)
         worst, most = -1, 0.0
         for c in range(n_c):
             if at_rest(mech, y, c, part):
-                beyond = wrong(mech, y, c, scale)
-                if c == forced and y.mode[c] == SLIP and beyond < 1e-6:
+                beyond = wrong(mech, k, y, c, scale)
+                if c == forced and y.mode[c] != STICK and beyond < 1e-6:
                     beyond = 0.0
                 if beyond > most:
                     worst, most = c, beyond
         if worst < 0:
+            set_out(mech, y)
             return FOUND
         if y.mode[worst] == STICK:
-            y.mode[worst] = SLIP
-            y.n[worst] = -1.0 if y.F[worst] > 0.0 else 1.0
+            release(mech, k, y, worst)
         else:
             y.mode[worst] = STICK
     return enumerate_modes(mech, k, w, y, part, count, mech.address)
 
 
+@kernel
+def moves_alike(w: Instant, y: State, scale: float) -> bool:
+    """Whether accelerations are those of the combination found before."""
+    apart = 0.0
+    for i in range(y.a.shape[0]):
+        apart = max(apart, abs(y.a[i] - w.other[i]))
+    return bool(apart <= 1e-7 * scale)
+
+
 @block
 def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, count: int, address: Ints) -> int:
-    """Try every combination of stick and the two directions of slip; the state is left at the last that holds."""
+    """Try every combination of stick and the two directions of slip; the state is left at the first that holds.
+
+    Combinations that give the same accelerations are one solution: of joints that hold more than there is to hold,
+    forces alone are not determined.
+    """
     if count > ENUMERATED:
         return NO_SOLUTION
-    n_c = y.F.shape[0]
+    n_c = y.mode.shape[0]
     found, kept = 0, -1
     for number in range(3**count + 1):
         # the last round returns to what was found
-        code = number
+        code, twice = number, False
         if number == 3**count:
             if found != 1:
                 break
@@ -102,18 +165,27 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
             if at_rest(mech, y, c, part):
                 digit = code % 3
                 code //= 3
-                y.mode[c] = STICK if digit == 0 else SLIP
-                y.n[c] = 1.0 if digit == 1 else -1.0
-        if not react(mech, k, w, y, False, mech.address):
+                twice = twice or (digit == 2 and plane(mech, c))
+                if digit == 0:
+                    y.mode[c] = STICK
+                elif plane(mech, c):
+                    release(mech, k, y, c)
+                else:
+                    y.mode[c] = SLIP
+                    y.n[mech.port.row[c]] = 1.0 if digit == 1 else -1.0
+        if twice or not ease(mech, k, w, y):
             continue
-        scale = largest_acceleration(y)
+        scale = largest_acceleration(mech, k, y)
         holds = True
         for c in range(n_c):
-            if at_rest(mech, y, c, part) and wrong(mech, y, c, scale) > 0.0:
+            if at_rest(mech, y, c, part) and wrong(mech, k, y, c, scale) > 0.0:
                 holds = False
-        if holds and number < 3**count:
+        if holds and number < 3**count and not (found > 0 and moves_alike(w, y, scale)):
             found += 1
             kept = number
+            for i in range(y.a.shape[0]):
+                w.other[i] = y.a[i]
+    set_out(mech, y)
     if found == 0:
         return NO_SOLUTION
     return FOUND if found == 1 else SEVERAL
@@ -123,12 +195,13 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
 def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
     """Ports whose slip is no more than round-off; directions of the others; contacts without load are open."""
     port = mech.port
-    for c in range(y.F.shape[0]):
+    for c in range(y.mode.shape[0]):
         part[c] = 0
+        row = port.row[c]
         j = port.joint[c]
         if j >= 0 and mech.joint.dropped[mech.joint.row[j]] == 2:
             y.mode[c] = OPEN
-            y.F[c] = 0.0
+            y.F[row] = 0.0
             continue
         if j >= 0 and y.mode[c] == OPEN:
             y.mode[c] = SLIP
@@ -141,8 +214,10 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
         if port.law[c] == LAW_SMOOTH:
             y.mode[c] = SLIP
             continue
-        if abs(y.g[c]) <= small or y.mode[c] == STICK:
+        speed = magnitude(port.row, c, y.g)
+        if speed <= small or y.mode[c] == STICK:
             part[c] = 1
         else:
             y.mode[c] = SLIP
-            y.n[c] = 1.0 if y.g[c] > 0.0 else -1.0
+            for a in range(row, port.row[c + 1]):
+                y.n[a] = y.g[a] / speed

@@ -51,9 +51,9 @@ def begin(
     if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
         return FAIL_MARGIN
     out.sigma[0] = out.sigma[1]
-    n_c = y.F.shape[0]
+    n_c = y.mode.shape[0]
     for _ in range(mech.joint.port.shape[0]):
-        triggers(mech, out, y.mode, y.n, y.F, y.N, y.g, y.lam, False)
+        triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, False)
         worst = 2 * n_c
         for j in range(2 * n_c, out.trigger.shape[0]):
             worst = j if out.trigger[j] < out.trigger[worst] else worst
@@ -76,7 +76,7 @@ def drive(
     """Step from y until the end of the span, or until the room for steps is used up."""
     set_window(k, c, y.t[0])
     while True:
-        if crowded(rec, y.F.shape[0]):
+        if crowded(rec, y.mode.shape[0]):
             return FULL
         stop = next_stop(c, y.t[0])
         if is_there(y, stop):

@@ -108,24 +108,15 @@ def friction_at(n_x: int, m: int) -> int:
 
 
 @kernel
-def slip_and_load(mech: Mech, k: Moving, c: int, lam: Floats, l0: int) -> tuple[float, float]:
-    """Slip velocity and normal force (before max with 0) of port c at X."""
+def load_at(mech: Mech, k: Moving, c: int) -> float:
+    """Normal force (before max with 0) at X of a contact that is no joint."""
     port = mech.port
-    j = port.joint[c]
-    if j >= 0:
-        n_x = call_joint(mech, k, j, lam, l0, mech.address)
-        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
-        g = 0.0
-        for a in range(n_x):
-            g += k.out[at + a] * k.x[n_x + a]
-        return g, k.out[at + n_x + n_x * n_x]
-    g = value_of_form(k, port.slip, port.slip.x_start[c] + 1) - port.w[c]
     if port.normal[c] == NORMAL_CONSTANT:
-        return g, port.N[c]
+        return float(port.N[c])
     normals = port.normals
     gather(normals, c, k.s.X, k.s.x)
     call(normals.address[c], k.s.x, 0, normals.p, normals.p_start[c], k.s.out, 0)
-    return g, k.s.out[0]
+    return float(k.s.out[0])
 
 
 @block
@@ -192,14 +183,14 @@ def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int
             rate = 0.0
             for a in range(n_x):
                 rate += k.out[at + a] * k.x[n_x + a]
-            g[c] = rate
+            g[mech.port.row[c]] = rate
             N[c] = k.out[at + n_x + n_x * n_x]
         for a in range(n_x):
             force = 0.0
             for r in range(m):
                 force += k.out[m + r * n_x + a] * lam[l0 + joint.row[j] + r]
             if c >= 0:
-                force += k.out[at + a] * F[f0 + c]
+                force += k.out[at + a] * F[f0 + mech.port.row[c]]
             if force != 0.0:
                 scatter(k, table, a0 + a, force)
 
@@ -211,8 +202,12 @@ def contact_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: i
     for c in range(port.joint.shape[0]):
         if port.joint[c] >= 0:
             continue
-        g[c], N[c] = slip_and_load(mech, k, c, lam, l0)
-        scatter(k, port.slip, port.slip.x_start[c], F[f0 + c])
+        first = port.slip.x_start[c]
+        for a in range(port.row[c], port.row[c + 1]):
+            form = first + 2 * (a - port.row[c])
+            g[a] = value_of_form(k, port.slip, form + 1) - port.w[a]
+            scatter(k, port.slip, form, F[f0 + a])
+        N[c] = load_at(mech, k, c)
         if port.normal[c] == NORMAL_LAW:
             scatter(k, port.normals, port.normals.x_start[c], max(N[c], 0.0) - port.N0[c])
 

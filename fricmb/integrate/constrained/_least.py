@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._problem import Floats, Ints, Problem
-from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained._pack import masses, mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained._sample import constraints
 
 #: What keeps the equations regular where constraints depend on one another, beside rows of length 1.
@@ -36,7 +36,7 @@ def constraints_at(problem: Problem, t: float, q: Floats, v: Floats) -> Constrai
     phi, rate = np.zeros(m), np.zeros(m)
     count = _entries(mech, mechanism)
     row, column, value = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count)
-    F, N, g = np.zeros(nc), np.zeros(nc), np.zeros(nc)
+    F, N, g = np.zeros(problem.m), np.zeros(nc), np.zeros(problem.m)
     q, v = (np.array(x, dtype=float) for x in (q, v))
     used = constraints(
         mech, moving_of(problem), float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value
@@ -60,10 +60,7 @@ def _entries(mech: Any, m: Mechanism) -> int:
 
 def mass_of(m: Mechanism) -> Floats:
     """Diagonal of the mass matrix (n,)."""
-    mass = np.zeros(m.n)
-    on = m.M.row == m.M.column
-    np.add.at(mass, m.M.row[on], m.M.value[on])
-    return mass
+    return masses(m)
 
 
 def names_of_rows(m: Mechanism, rows: Ints) -> list[str]:

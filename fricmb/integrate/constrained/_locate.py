@@ -18,13 +18,13 @@ from fricmb.integrate.constrained._step import Control, end_step, try_step
 @kernel
 def is_slip(j: int, y: State) -> bool:
     """Whether trigger j is a slip velocity (else a force)."""
-    return bool(j < 2 * y.F.shape[0] and j % 2 == 0 and y.mode[j // 2] == SLIP)
+    return bool(j < 2 * y.mode.shape[0] and j % 2 == 0 and y.mode[j // 2] == SLIP)
 
 
 @kernel
 def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
     """Round-off of trigger j: of a slip velocity, a distance or a force."""
-    n_c = y.F.shape[0]
+    n_c = y.mode.shape[0]
     if is_slip(j, y):
         return float(1e-13 * out.size[0])
     if j >= 2 * n_c and mech.joint.dropped[mech.joint.row[j - 2 * n_c]] == 2:
@@ -42,9 +42,9 @@ def violated(mech: Mech, k: Moving, out: Watch, end: State, st: Stages, address:
     for i in range(s):
         last = i == s - 1
         if last:
-            triggers(mech, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
+            triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
         else:
-            triggers(mech, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
+            triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
         for j in range(out.trigger.shape[0]):
             value = out.trigger[j]
             limit = 10.0 * grain(mech, out, j, end)
@@ -64,12 +64,12 @@ def locate_trigger(
     """
     if out.opened[0] > 0:
         gaps(mech, k, y, out)
-    triggers(mech, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
+    triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
     low, f_low = 0.0, max(out.trigger[j], 0.0)
     if out.opened[0] > 0:
         gaps(mech, k, end, out)
-    triggers(mech, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
+    triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     high, f_high = h, min(out.trigger[j], 0.0)
     side = 0
     step = h

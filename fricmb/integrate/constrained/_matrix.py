@@ -162,7 +162,7 @@ def add_joints(
     """Constraints and reactions; ``full``: with what changes with position (else the rows and columns of G alone)."""
     joint = mech.joint
     table = joint.table
-    n = mech.order.place.shape[0] - mech.port.joint.shape[0] - mech.port.z_start[-1] - joint.row[-1]
+    n = mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - joint.row[-1]
     for j in range(joint.n_x.shape[0]):
         n_x = call_joint(mech, k, j, lam, l0, mech.address)
         m = joint.row[j + 1] - joint.row[j]
@@ -185,7 +185,7 @@ def add_joints(
                 else:
                     add_row(mech, k, L.A1, row, table, a0 + a, G, mech.address)
         if c >= 0:
-            column = n + joint.row[-1] + c
+            column = n + joint.row[-1] + mech.port.row[c]
             for a in range(n_x):
                 add_column(mech, k, L.A1, column, table, a0 + a, -k.out[at + a], mech.address)
         if full:
@@ -193,7 +193,7 @@ def add_joints(
                 for b in range(n_x):
                     value = k.out[H + a * n_x + b]
                     if c >= 0:
-                        value += F[f0 + c] * k.out[at + n_x + a * n_x + b]
+                        value += F[f0 + mech.port.row[c]] * k.out[at + n_x + a * n_x + b]
                     add_stiffness(mech, k, L, table, a0 + a, table, a0 + b, -value, mech.address)
 
 
@@ -218,12 +218,13 @@ def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool, addres
     """Columns of the friction of contacts that are no joints; ``full``: stiffness of what normal-force laws press."""
     port = mech.port
     n_c = port.joint.shape[0]
-    first = mech.order.place.shape[0] - port.z_start[-1] - n_c
+    first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1]
     for c in range(n_c):
         if port.joint[c] >= 0:
             continue
-        a0 = port.slip.x_start[c]
-        add_column(mech, k, L.A1, first + c, port.slip, a0, -1.0, mech.address)
+        for a in range(port.row[c], port.row[c + 1]):
+            form = port.slip.x_start[c] + 2 * (a - port.row[c])
+            add_column(mech, k, L.A1, first + a, port.slip, form, -1.0, mech.address)
         if full and port.normal[c] == NORMAL_LAW and N[c] > 0.0:
             normals, s = port.normals, k.s
             gather(normals, c, s.X, s.x)

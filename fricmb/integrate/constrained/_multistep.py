@@ -20,6 +20,7 @@ from fricmb.integrate.constrained._locate import nears_singular, violated
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._past import Past, put, rescale
 from fricmb.integrate.constrained._record import Record, copy_state, record_step
+from fricmb.integrate.constrained._slip import aim
 from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained._state import Instant, State
 from fricmb.integrate.constrained._step import Control, measure, settle
@@ -69,6 +70,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         fresh = past.made[0] != beta_h
         if fresh:
             end.t[0] = y.t[0] + h
+            k.form[:] = 0
             linearise(mech, k, end, one, mech.address)
             c.counts[3] += 1
             c.counts[4] += 1
@@ -197,6 +199,7 @@ def multistep(
     for part, target in ((one.lam[0], end.lam), (one.F[0], end.F)):
         for i in range(target.shape[0]):
             target[i] = part[i]
+    aim(mech, end.mode, end.F, end.n)
     if not settle(mech, k, w, end):
         return HANDOVER
     put(end, end.rate, past.new)

@@ -68,9 +68,13 @@ class Joint(NamedTuple):
 
 
 class Port(NamedTuple):
-    """Friction: ``joint`` (n_c,) the joint it belongs to or -1, ``slip`` the forms of the others."""
+    """Friction: port c has the rows ``row[c]:row[c+1]``, one a direction of slip.
+
+    ``joint`` (n_c,) the joint it belongs to or -1; ``slip`` of the others two forms a row, coordinate and velocity.
+    """
 
     joint: Ints
+    row: Ints
     slip: Table
     w: Floats
     law: Codes
@@ -93,7 +97,7 @@ class Order(NamedTuple):
 
 
 class Mech(NamedTuple):
-    """All of a problem."""
+    """All of a problem; ``mass`` (n,) the diagonal of the mass matrix."""
 
     linear: Linear
     place: Place
@@ -104,6 +108,7 @@ class Mech(NamedTuple):
     spread: Spread
     order: Order
     breakpoints: Floats
+    mass: Floats
     address: Ints
 
 
@@ -141,7 +146,8 @@ def _pack(problem: Problem) -> Mech:
         port_joint[m.joints.port[j]] = j
     solid = np.ascontiguousarray
     port = Port(
-        port_joint, _table(m.slip), solid(contacts.w), solid(contacts.law, np.int8), solid(np.abs(contacts.mu_s)),
+        port_joint, solid(contacts.row, np.int64), _table(m.slip), solid(contacts.w), solid(contacts.law, np.int8),
+        solid(contacts.mu_s),
         solid(contacts.mu_0), solid(contacts.z_start, np.int64), solid(contacts.normal, np.int8),
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
         _table(contacts.law_table), _table(contacts.normal_table),
@@ -152,12 +158,20 @@ def _pack(problem: Problem) -> Mech:
     )  # fmt: skip
     places = _places(m)
     order, half = ordering(problem, m, places.y_start, places.y_dof)
-    size = m.n + int(rows.sum()) + problem.n_c + problem.n_z
+    size = m.n + int(rows.sum()) + problem.m + problem.n_z
     return room(Mech(
         linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread,
         Order(order, band_sizes(size, half), band_addresses()),
-        np.sort(np.asarray(problem.signals.breakpoints, float)), addresses(*_blocks()),
+        np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), addresses(*_blocks()),
     ))  # fmt: skip
+
+
+def masses(m: Mechanism) -> Floats:
+    """Diagonal of the mass matrix (n,)."""
+    mass = np.zeros(m.n)
+    on = m.M.row == m.M.column
+    np.add.at(mass, m.M.row[on], m.M.value[on])
+    return mass
 
 
 def _places(m: Mechanism) -> Place:
@@ -200,7 +214,8 @@ class Moving(NamedTuple):
     ``s`` the scratch with X; ``grad``, ``hess`` derivatives of the places, ``grad_rate`` the rates of ``grad``; ``ddy``
     (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
     ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
-    their rates.
+    their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``_friction``);
+    ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on.
     """
 
     s: Scratch
@@ -214,6 +229,9 @@ class Moving(NamedTuple):
     fu: Floats
     phi: Floats
     phi_rate: Floats
+    form: Codes
+    held: Floats
+    part: Floats
 
 
 def moving_of(problem: Problem) -> Moving:
@@ -225,7 +243,8 @@ def moving_of(problem: Problem) -> Moving:
     rows = [int(x) for x in np.diff(m.joints.row)]
     n_x = max([8, *(2 * x + r for x, r in zip(widths, rows, strict=True))])
     n_out = max([8, *(2 * r + 3 * x * r + 3 * x * x + 3 * x + 8 for x, r in zip(widths, rows, strict=True))])
-    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 2
+    directions = int(np.max(np.diff(problem.contacts.row), initial=1))
+    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
     s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
     for templates in (problem.elements.table, problem.contacts.normal_table):
         s_x = max(s_x, int(np.max(np.diff(templates.x_start), initial=0)))
@@ -238,8 +257,20 @@ def moving_of(problem: Problem) -> Moving:
     return room(Moving(
         scratch, np.zeros(grad + 1), np.zeros(grad + 1), np.zeros(hess + 1), np.zeros(n_y), np.zeros(n_x),
         np.zeros(max(n_out, 2 + 2 * b + 2 * b * b)), np.zeros(n_y), np.zeros(n_u + 1),
-        np.zeros(m.n_rows), np.zeros(m.n_rows),
+        np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
+        np.zeros(problem.n_c), np.ones(1),
     ))  # fmt: skip
 
 
-__all__ = ["NORMAL_LAW", "Joint", "Mech", "Moving", "Port", "add_blocks", "mech_of", "mechanism_of", "moving_of"]
+__all__ = [
+    "NORMAL_LAW",
+    "Joint",
+    "Mech",
+    "Moving",
+    "Port",
+    "add_blocks",
+    "masses",
+    "mech_of",
+    "mechanism_of",
+    "moving_of",
+]

@@ -57,7 +57,7 @@ class Past(NamedTuple):
 def past_of(problem: Problem, start: Start, span: float, cost: float) -> Past:
     """Room for the history of a run over ``span``; ``cost`` of a one-step step in BDF steps."""
     m, nc = mechanism_of(problem), problem.n_c
-    n_y = 2 * m.n + problem.n_z + nc + 2 + m.n_rows + 3 * nc
+    n_y = 2 * m.n + problem.n_z + nc + 2 + m.n_rows + 2 * problem.m + nc
     gamma = np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))])
     square = np.zeros((MAX_ORDER + 1, MAX_ORDER + 1))
     # a hundredth of the error is spent on a hundredth of the run

@@ -13,7 +13,7 @@ from fricmb.integrate._storage import narrow_order
 
 def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int]:
     """Place of each unknown [v, lam, F, z] and the half-bandwidth: reverse Cuthill-McKee on the pattern."""
-    size = m.n + m.n_rows + problem.n_c + problem.n_z
+    size = m.n + m.n_rows + problem.m + problem.n_z
     pairs = {(i, i) for i in range(size)}
     for group in _groups(problem, m, y_start, y_dof):
         held = sorted(group)
@@ -43,11 +43,12 @@ def _groups(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> Itera
         ]
         yield dofs([*places(elements.table, k), *spread.tolist()])
     force0 = m.n + m.n_rows
-    state0 = force0 + problem.n_c
+    state0 = force0 + problem.m
 
     def port(k: int) -> set[int]:
-        z = problem.contacts.z_start
-        return {force0 + k, *range(state0 + int(z[k]), state0 + int(z[k + 1]))}
+        z, row = problem.contacts.z_start, problem.contacts.row
+        forces = range(force0 + int(row[k]), force0 + int(row[k + 1]))
+        return {*forces, *range(state0 + int(z[k]), state0 + int(z[k + 1]))}
 
     joint_ports = set()
     for j in range(len(m.joints.row) - 1):

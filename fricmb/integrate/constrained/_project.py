@@ -43,7 +43,8 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints
 @block
 def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, stuck: bool, address: Ints) -> bool:
     """Move v the least so that the constraints' rates, and the slip of ports that stick (``stuck``), are 0."""
-    n, m, n_c = y.q.shape[0], y.lam.shape[0], y.F.shape[0]
+    n, m, n_c = y.q.shape[0], y.lam.shape[0], y.mode.shape[0]
+    row = mech.port.row
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
     if not (factored and not stuck) and instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address) != 0:
@@ -55,7 +56,8 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
             w.r[n + j] = k.phi_rate[j]
         for c in range(n_c):
             if stuck and y.mode[c] == STICK:
-                w.r[n + m + c] = y.g[c]
+                for a in range(row[c], row[c + 1]):
+                    w.r[n + m + a] = y.g[a]
         solve_instant(mech, w)
         for j in range(n):
             y.v[j] -= w.r[j]

@@ -19,7 +19,7 @@ class Record(NamedTuple):
     """Room for steps.
 
     ``span`` (k, 2): start and length; ``values`` (k, s+1, 2n + n_z + n_c + 2): [q, v, z, work] at 0, c; ``force``
-    (k, m + 2 n_c): [lam, F, n] at the start; ``mode`` (k, n_c); ``opened`` (k, n_j) 1 for joints without contact;
+    (k, m + 2 m_p): [lam, F, n] at the start; ``mode`` (k, n_c); ``opened`` (k, n_j) 1 for joints without contact;
     ``after`` (k,) 1 where a transition follows the step;
     ``event`` (n_e, 3): time, contact, kind; ``used`` (2,) steps and events.
     """
@@ -39,19 +39,17 @@ def record_of(problem: Problem, stages: int, capacity: int) -> Record:
     m, nc = mechanism_of(problem), problem.n_c
     return room(Record(
         np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, 2 * m.n + problem.n_z + nc + 2)),
-        np.zeros((capacity, m.n_rows + 2 * nc)), np.zeros((capacity, nc), np.int8),
+        np.zeros((capacity, m.n_rows + 2 * problem.m)), np.zeros((capacity, nc), np.int8),
         np.zeros((capacity, len(mechanism_of(problem).joints.port)), np.int8), np.zeros(capacity, np.int64),
         np.zeros((capacity + 8 * nc + 8, 3)), np.zeros(2, np.int64),
     ))  # fmt: skip
 
 
 @block
-def record_step(
-    mech: Mech, out: Record, y: State, end: State, st: Stages, c: Control, h: float, address: Ints
-) -> None:
+def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Control, h: float, address: Ints) -> None:
     """Add the step from y to end."""
     i = out.used[0]
-    n, nz, nw, m, n_c = y.q.shape[0], y.z.shape[0], y.work.shape[0], y.lam.shape[0], y.F.shape[0]
+    n, nz, nw, m, rows = y.q.shape[0], y.z.shape[0], y.work.shape[0], y.lam.shape[0], y.F.shape[0]
     s = st.tab.c.shape[0]
     out.span[i, 0] = y.t[0]
     out.span[i, 1] = h
@@ -71,9 +69,10 @@ def record_step(
             row[2 * n + nz + a] = value
     for a in range(m):
         out.force[i, a] = y.lam[a]
-    for a in range(n_c):
+    for a in range(rows):
         out.force[i, m + a] = y.F[a]
-        out.force[i, m + n_c + a] = y.n[a]
+        out.force[i, m + rows + a] = y.n[a]
+    for a in range(y.mode.shape[0]):
         out.mode[i, a] = y.mode[a]
     for j in range(mech.joint.port.shape[0]):
         out.opened[i, j] = 1 if mech.joint.dropped[mech.joint.row[j]] == 2 else 0

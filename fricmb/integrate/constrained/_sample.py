@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import entry
-from fricmb.integrate._problem import STICK, Codes2, Floats, Floats2, Ints
+from fricmb.integrate._kernel import entry, kernel
+from fricmb.integrate._problem import SLIP, STICK, Codes2, Floats, Floats2, Ints
 from fricmb.integrate.constrained._field import call_joint, forces, move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_positions, project_velocities
+from fricmb.integrate.constrained._slip import magnitude, plane
 from fricmb.integrate.constrained._state import Instant, State, react
 
 
 @entry
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
-    force: Floats2, windows: Floats2, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2, project: bool,
+    force: Floats2, windows: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
+    project: bool,
 ) -> int:  # fmt: skip
-    """Complete every state (row by row); ``force`` (n_t, m + 2 n_c) start values [lam, F, n].  Number of failures.
+    """Complete every state (row by row); ``force`` (n_t, m + 2 m_p) start values [lam, F, n].  Number of failures.
 
     ``project``: q and v, interpolated between steps, are first moved onto the constraints.
     """
-    m, n_c = y.lam.shape[0], y.F.shape[0]
+    m, rows, n_c = y.lam.shape[0], y.F.shape[0], y.mode.shape[0]
     failed = 0
     for i in range(times.shape[0]):
         y.t[0] = times[i]
@@ -32,26 +34,46 @@ def instants(
             y.z[j] = z[i, j]
         for j in range(m):
             y.lam[j] = force[i, j]
-        for j in range(n_c):
+        for j in range(rows):
             y.F[j] = force[i, m + j]
-            y.n[j] = force[i, m + n_c + j]
+            y.n[j] = force[i, m + rows + j]
+        for j in range(n_c):
             y.mode[j] = mode[i, j]
         if project and m > 0 and project_positions(mech, k, w, y, mech.address):
             project_velocities(mech, k, w, y, True, False, mech.address)
             for j in range(y.q.shape[0]):
                 q[i, j] = y.q[j]
                 v[i, j] = y.v[j]
+        follow(mech, k, y, small)
         if not react(mech, k, w, y, False, mech.address):
             failed += 1
         for j in range(m):
             lam[i, j] = y.lam[j]
         for j in range(y.a.shape[0]):
             a[i, j] = y.a[j]
-        for j in range(n_c):
-            F[i, j] = y.F[j]
-            N[i, j] = max(y.N[j], 0.0)
-            g[i, j] = 0.0 if y.mode[j] == STICK else y.g[j]
+        for c in range(n_c):
+            N[i, c] = max(y.N[c], 0.0)
+            for j in range(mech.port.row[c], mech.port.row[c + 1]):
+                F[i, j] = y.F[j]
+                g[i, j] = 0.0 if y.mode[c] == STICK else y.g[j]
     return failed
+
+
+@kernel
+def follow(mech: Mech, k: Moving, y: State, small: float) -> None:
+    """Directions of contacts that slip in a plane from their velocities; slower than ``small`` they keep theirs."""
+    some = False
+    for c in range(y.mode.shape[0]):
+        some = some or (y.mode[c] == SLIP and plane(mech, c))
+    if not some:
+        return
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    for c in range(y.mode.shape[0]):
+        speed = magnitude(mech.port.row, c, y.g)
+        if y.mode[c] == SLIP and plane(mech, c) and speed > small:
+            for a in range(mech.port.row[c], mech.port.row[c + 1]):
+                y.n[a] = y.g[a] / speed
 
 
 @entry

@@ -29,13 +29,14 @@ from fricmb.integrate.constrained._friction import add_friction, friction_residu
 from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass, add_structure
 from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
 from fricmb.integrate.constrained._state import State
+from fricmb.integrate.constrained._turns import Turns, correct_turns, spread_of_stages, turns_of
 
 
 class Stages(NamedTuple):
     """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, size * ldab) and pivots.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` (1,) the rate of
-    convergence.
+    convergence; ``turns`` for contacts in two directions.
     """
 
     tab: Tableau
@@ -58,6 +59,7 @@ class Stages(NamedTuple):
     acc: Floats
     scale: Floats
     found: Floats
+    turns: Turns
 
 
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
@@ -65,13 +67,14 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
     size, ldab = len(order.place), int(order.sizes[3])
     band = size * ldab
-    nc, nz, count = problem.n_c, problem.n_z, len(tab.lam)
+    nc, rows, nz, count = problem.n_c, problem.m, problem.n_z, len(tab.lam)
     return room(Stages(
         tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
-        np.zeros((s, m.n_rows)), np.zeros((s, nc)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, nc)),
+        np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
         np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
         np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
         np.zeros((count, size), complex), np.zeros(nz), np.zeros(size), np.ones(m.n), np.zeros(1),
+        turns_of(problem, s, size),
     ))  # fmt: skip
 
 
@@ -88,7 +91,7 @@ def linearise(mech: Mech, k: Moving, y: State, st: Stages, address: Ints) -> Non
     add_structure(mech, k, L, mech.address)
     add_joints(mech, k, y.lam, y.F, 0, 0, L, True, mech.address)
     add_contacts(mech, k, y.N, L, True, mech.address)
-    add_friction(mech, k, y.mode, y.n, y.lam, 0, y.z, 0, y.N, y.g, L, True, mech.address)
+    add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, L, True, mech.address)
     size = mech.order.place.shape[0]
     for i in range(size - y.z.shape[0], size):
         add(mech.order, L.A0, i, i, 1.0)
@@ -142,7 +145,7 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
     for a in range(m):
         r[n + a] = k.phi_rate[a]
     friction_residual(
-        mech, k, y.mode, y.n, st.F[i], 0, st.Z[i], 0, st.N[i], st.g[i], st.g[i], st.zd, r, n + m, mech.address,
+        mech, k, y.mode, y.n, st.F[i], st.Z[i], st.N[i], st.g[i], st.g[i], st.zd, r, n + m, True, mech.address,
     )  # fmt: skip
     for a in range(nz):
         rate = 0.0
@@ -202,7 +205,11 @@ def iterate_stages(
     for iteration in range(ITERATIONS):
         for i in range(s):
             stage_residual(mech, k, y, st, h, i, mech.address)
+        if st.turns.near[0] > 0:
+            spread_of_stages(mech, st.turns, st.F, st.g)
         newton_change(mech, st, mech.address)
+        if st.turns.near[0] > 0:
+            correct_turns(mech, st.turns, st.R)
         change = 0.0
         for i in range(s):
             for a in range(n):

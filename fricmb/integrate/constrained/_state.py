@@ -13,15 +13,16 @@ from fricmb.integrate._problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pi
 from fricmb.integrate._room import block, room
 from fricmb.integrate.constrained._band import factor_real, solve_real_band
 from fricmb.integrate.constrained._field import bend, call_joint, forces, friction_at, move, pull_back
-from fricmb.integrate.constrained._friction import add_friction, add_slip, friction_residual
+from fricmb.integrate.constrained._friction import add_friction, friction_residual
 from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass
 from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
+from fricmb.integrate.constrained._slip import add_stick
 
 
 class State(NamedTuple):
-    """``t`` (1,), q, v, z; what follows: a (n,), lam (m,), F, N, g (n_c,) per port, zd; mode and direction n (n_c,).
+    """``t`` (1,), q, v, z; what follows: a (n,), lam (m,), F, g, n (m_p,) per row of ports; N, mode (n_c,); zd.
 
-    ``ga`` (n_c,) derivatives of slip velocities; ``work``, ``rate`` (n_c+2,) energies and powers: friction of every
+    ``ga`` (m_p,) derivatives of slip velocities; ``work``, ``rate`` (n_c+2,) energies and powers: friction of every
     port, damping, input.
     """
 
@@ -44,18 +45,21 @@ class State(NamedTuple):
 
 def state_of(problem: Problem, start: Start) -> State:
     """The state at a start, forces still to be found."""
-    m, nc = mechanism_of(problem), problem.n_c
+    m, nc, rows = mechanism_of(problem), problem.n_c, problem.m
     mode = np.ones(nc, np.int8) if start.mode is None else np.array(start.mode, np.int8)
-    n = np.zeros(nc) if start.direction is None else np.array(start.direction, float)
+    n = np.zeros(rows) if start.direction is None else np.array(start.direction, float)
     q, v, z = (np.array(x, dtype=float) for x in (start.q, start.v, start.z))
     return room(State(
-        np.array([float(start.t)]), q, v, z, np.zeros(m.n), np.zeros(m.n_rows), np.zeros(nc), np.zeros(nc),
-        np.zeros(nc), np.zeros(nc), np.zeros_like(z), mode, n, np.zeros(nc + 2), np.zeros(nc + 2),
+        np.array([float(start.t)]), q, v, z, np.zeros(m.n), np.zeros(m.n_rows), np.zeros(rows), np.zeros(nc),
+        np.zeros(rows), np.zeros(rows), np.zeros_like(z), mode, n, np.zeros(nc + 2), np.zeros(nc + 2),
     ))  # fmt: skip
 
 
 class Instant(NamedTuple):
-    """Rooms for solving at one instant: the matrix and its factors, right-hand side (size,), rates of X."""
+    """Rooms for solving at one instant: the matrix and its factors, right-hand side (size,), rates of X.
+
+    ``other`` (n,): accelerations to compare with.
+    """
 
     L: Layers
     ab: Floats
@@ -63,6 +67,7 @@ class Instant(NamedTuple):
     r: Floats
     x: Floats
     ddy: Floats
+    other: Floats
 
 
 def instant_of(problem: Problem) -> Instant:
@@ -70,9 +75,10 @@ def instant_of(problem: Problem) -> Instant:
     order = mech_of(problem).order
     size, ldab = len(order.place), int(order.sizes[3])
     layers = Layers(np.zeros(size * ldab), np.zeros(size * ldab), np.zeros(size * ldab))
-    n_y = mechanism_of(problem).n_y
+    m = mechanism_of(problem)
     return room(Instant(
-        layers, np.zeros(size * ldab), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(n_y)
+        layers, np.zeros(size * ldab), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(m.n_y),
+        np.zeros(m.n),
     ))  # fmt: skip
 
 
@@ -101,18 +107,18 @@ def mass_times(mech: Mech, a: Floats, r: Floats, n: int) -> None:
 
 
 @kernel
-def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats) -> float:
-    """Derivative of the slip velocity of port c, the second derivatives in ``ddy`` being complete."""
+def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats, a: int) -> float:
+    """Derivative of the slip velocity of port c in direction a, the second derivatives in ``ddy`` being complete."""
     j = mech.port.joint[c]
     if j < 0:
-        return bend(k, mech.port.slip, mech.port.slip.x_start[c])
+        return bend(k, mech.port.slip, mech.port.slip.x_start[c] + 2 * a)
     n_x = call_joint(mech, k, j, lam, 0, mech.address)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
     value = 0.0
-    for a in range(n_x):
-        value += k.out[at + a] * bend(k, mech.joint.table, mech.joint.table.x_start[j] + a)
+    for i in range(n_x):
+        value += k.out[at + i] * bend(k, mech.joint.table, mech.joint.table.x_start[j] + i)
         for b in range(n_x):
-            value += k.out[at + n_x + a * n_x + b] * k.x[n_x + a] * k.x[n_x + b]
+            value += k.out[at + n_x + i * n_x + b] * k.x[n_x + i] * k.x[n_x + b]
     return value
 
 
@@ -145,11 +151,13 @@ def instant_residual(mech: Mech, k: Moving, w: Instant, y: State, address: Ints)
         w.ddy[e] = k.ddy[e]
     accelerations_of_places(mech, k, y.a)
     constraint_acceleration(mech, k, y.lam, w.r, n)
-    for c in range(y.F.shape[0]):
-        y.ga[c] = slip_acceleration(mech, k, c, y.lam)
+    row = mech.port.row
+    for c in range(y.mode.shape[0]):
+        for a in range(row[c + 1] - row[c]):
+            y.ga[row[c] + a] = slip_acceleration(mech, k, c, y.lam, a)
     for e in range(k.ddy.shape[0]):
         k.ddy[e] = w.ddy[e]
-    friction_residual(mech, k, y.mode, y.n, y.F, 0, y.z, 0, y.N, y.g, y.ga, y.zd, w.r, n + m, mech.address)
+    friction_residual(mech, k, y.mode, y.n, y.F, y.z, y.N, y.g, y.ga, y.zd, w.r, n + m, False, mech.address)
 
 
 @block
@@ -159,7 +167,7 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, a
     ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
     """
     order = mech.order
-    n_c, nz = y.F.shape[0], y.z.shape[0]
+    rows, nz = y.F.shape[0], y.z.shape[0]
     w.L.A0[:] = 0.0
     w.L.A1[:] = 0.0
     add_mass(mech, w.L)
@@ -167,14 +175,15 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, a
     add_contacts(mech, k, y.N, w.L, False, mech.address)
     size = order.place.shape[0]
     if friction == ALL:
-        add_friction(mech, k, y.mode, y.n, y.lam, 0, y.z, 0, y.N, y.g, w.L, False, mech.address)
+        add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, w.L, False, mech.address)
     else:
-        for c in range(n_c):
-            row = size - nz - n_c + c
+        for c in range(y.mode.shape[0]):
+            row = size - nz - rows + mech.port.row[c]
             if friction == STUCK and y.mode[c] == STICK:
-                add_slip(mech, k, c, y.lam, 0, w.L, row, 1.0, False, mech.address)
-            else:
-                add(order, w.L.A1, row, row, 1.0)
+                add_stick(mech, k, c, y.lam, w.L, row, False, mech.address)
+                continue
+            for a in range(mech.port.row[c + 1] - mech.port.row[c]):
+                add(order, w.L.A1, row + a, row + a, 1.0)
     for i in range(nz):
         add(order, w.L.A1, size - nz + i, size - nz + i, 1.0)
     for i in range(w.ab.shape[0]):
@@ -205,6 +214,15 @@ def largest_load(mech: Mech, y: State) -> float:
     return value
 
 
+@kernel
+def largest(x: Floats) -> float:
+    """Largest magnitude."""
+    value = 0.0
+    for i in range(x.shape[0]):
+        value = max(value, abs(x[i]))
+    return value
+
+
 #: Newton's iterations at an instant: friction makes the problem piecewise linear, a law of the load nonlinear.
 ITERATIONS = 25
 
@@ -218,6 +236,8 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     last = np.inf
+    # where everything comes to rest, round-off is that of what has been
+    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F))
     for iteration in range(ITERATIONS):
         instant_residual(mech, k, w, y, mech.address)
         for i in range(nz):
@@ -225,13 +245,13 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         if not (factored and n_c == 0) and instant_matrix(mech, k, w, y, ALL, mech.address) != 0:
             return False
         solve_instant(mech, w)
-        change = size = 0.0
+        change, size = 0.0, size0
         for i in range(n):
             y.a[i] -= w.r[i]
             change, size = max(change, abs(w.r[i])), max(size, abs(y.a[i]))
         # reactions may pass through 0: what is round-off is seen from the forces of inertia and weight, too
         force = 0.0
-        load = largest_load(mech, y)
+        load = max(load0, largest_load(mech, y))
         for i in range(m):
             y.lam[i] -= w.r[n + i]
             force, load = max(force, abs(w.r[n + i])), max(load, abs(y.lam[i]))
@@ -257,18 +277,21 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
 def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats, address: Ints) -> None:
     """Powers at X with the forces of the last evaluation: friction of every port, damping, input."""
     linear, s, port = mech.linear, k.s, mech.port
-    n_y, n_u, n_c = k.ddy.shape[0], s.ddu.shape[0], F.shape[0]
+    n_y, n_u = k.ddy.shape[0], s.ddu.shape[0]
     X = s.X
     damping = supply = 0.0
+    n_c = N.shape[0]
     for c in range(n_c):
-        out[c] = -F[c] * g[c]
-        if port.joint[c] < 0:
-            supply += F[c] * port.w[c]
-            if port.normal[c] == NORMAL_LAW:
-                gather(port.normals, c, X, s.x)
-                rate = s.x[1]
-                call(port.normals.address[c], s.x, 0, port.normals.p, port.normals.p_start[c], s.out, 0)
-                damping -= (max(N[c], 0.0) - port.N0[c] + s.out[4]) * rate
+        out[c] = 0.0
+        for a in range(port.row[c], port.row[c + 1]):
+            out[c] -= F[a] * g[a]
+            if port.joint[c] < 0:
+                supply += F[a] * port.w[a]
+        if port.joint[c] < 0 and port.normal[c] == NORMAL_LAW:
+            gather(port.normals, c, X, s.x)
+            rate = s.x[1]
+            call(port.normals.address[c], s.x, 0, port.normals.p, port.normals.p_start[c], s.out, 0)
+            damping -= (max(N[c], 0.0) - port.N0[c] + s.out[4]) * rate
     for j in range(n_u):
         supply -= k.fu[j] * X[1 + 2 * n_y + n_u + j]
     for e in range(linear.C.shape[0]):

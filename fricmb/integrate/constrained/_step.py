@@ -10,8 +10,10 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate._room import block, room
 from fricmb.integrate.constrained._field import forces, move
+from fricmb.integrate.constrained._near import choose_forms, prepare_turns
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_positions, project_velocities
+from fricmb.integrate.constrained._slip import aim
 from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained._state import Instant, State, powers, react
 
@@ -136,6 +138,7 @@ KAPPA = 1e-3
 def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> bool:
     """Solve the stages of a step h from y."""
     if c.made[0] == 0.0:
+        choose_forms(mech, k, y, st, h)
         linearise(mech, k, y, st, mech.address)
         c.counts[3] += 1
     if c.made[0] != h:
@@ -144,6 +147,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
             c.made[0] = 0.0
             return False
         c.made[0] = h
+        prepare_turns(mech, st)
     measure(c, y, h, st.scale)
     predict(c, y, st, h)
     used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), y.mode, mech.address)
@@ -194,7 +198,7 @@ def end_step(
 ) -> bool:
     """The end of the step: values of the last stage on the constraints, and all that follows there."""
     s = st.tab.c.shape[0]
-    n_c = y.F.shape[0]
+    n_c = y.mode.shape[0]
     end.t[0] = y.t[0] + h
     for a in range(y.q.shape[0]):
         end.q[a] = st.Q[s - 1, a]
@@ -204,10 +208,12 @@ def end_step(
         end.z[a] = st.Z[s - 1, a]
     for a in range(y.lam.shape[0]):
         end.lam[a] = st.lam[s - 1, a]
-    for a in range(n_c):
+    for a in range(y.F.shape[0]):
         end.F[a] = st.F[s - 1, a]
-        end.mode[a] = y.mode[a]
         end.n[a] = y.n[a]
+    for a in range(n_c):
+        end.mode[a] = y.mode[a]
+    aim(mech, end.mode, end.F, end.n)
     if not settle(mech, k, w, end):
         return False
     # energies: the stages' powers, integrated by the formula itself

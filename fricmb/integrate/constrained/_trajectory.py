@@ -79,13 +79,13 @@ class StepTrajectory(Trajectory):
 
     def _only_start(self, count: int = 1) -> Samples:
         values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self.problem.n_c + 2)])
-        joints, nc = mechanism_of(self.problem).joints, self.problem.n_c
+        joints, nc, rows = mechanism_of(self.problem).joints, self.problem.n_c, self.problem.m
         m = int(joints.row[-1])
         self._opened = np.zeros((1, len(joints.port)), np.int8)
-        self._force = np.zeros((1, m + 2 * nc))
+        self._force = np.zeros((1, m + 2 * rows))
         self._mode = np.ones((1, nc), np.int8) if self.end.mode is None else self.end.mode[None]
         if self.end.direction is not None:
-            self._force[0, m + nc :] = self.end.direction
+            self._force[0, m + rows :] = self.end.direction
         return self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))
 
     def _complete(self, t: Floats, values: Floats, step: Ints, *, project: bool = False) -> Samples:
@@ -135,12 +135,12 @@ def complete_open(
 def complete_at(
     problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """F, N, g (n_c, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
+    """F (m_p, n_t), N (n_c, n_t), g (m_p, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
 
     ``project``: q and v are first moved onto the constraints, in place.
     """
-    m, nc, count = mechanism_of(problem).n_rows, problem.n_c, len(t)
-    F, N, g = np.zeros((3, count, nc))
+    m, nc, rows, count = mechanism_of(problem).n_rows, problem.n_c, problem.m, len(t)
+    F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
     lam, a = np.zeros((count, m)), np.zeros((count, problem.n))
     mech = mech_of(problem)
     windows = _windows(mech.breakpoints, t)
@@ -148,7 +148,8 @@ def complete_at(
     solid = np.ascontiguousarray
     instants(
         mech, moving_of(problem), instant_of(problem), state_of(problem, start), solid(t), q, v, z,
-        solid(mode, np.int8), solid(force, float), windows, F, N, g, lam, a, project,
+        solid(mode, np.int8), solid(force, float), windows, 1e-11 * float(np.abs(v).max(initial=0.0)), F, N, g, lam, a,
+        project,
     )  # fmt: skip
     return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
 

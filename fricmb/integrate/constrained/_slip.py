@@ -1,0 +1,152 @@
+"""Slip, load and stick of a port: its directions, and what they add to rows of the Jacobian."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate._call import call
+from fricmb.integrate._field import gather
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._laws import break_away
+from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, Codes, Floats, Ints
+from fricmb.integrate._room import block
+from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._matrix import Layers, add, add_form, add_row
+from fricmb.integrate.constrained._pack import Mech, Moving
+
+#: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
+SETTING_OUT = 3
+#: Softness of ports that stick, beside that of the bodies, in Jacobians alone: of contacts that hold more than there is
+#: to hold only what their forces do together is determined.
+SOFT = 1e-5
+
+
+@kernel
+def plane(mech: Mech, c: int) -> bool:
+    """Whether port c slips in two directions under a set-valued law."""
+    return bool(mech.port.row[c + 1] - mech.port.row[c] == 2 and mech.port.law[c] != LAW_SMOOTH)
+
+
+@kernel
+def magnitude(row: Ints, c: int, x: Floats) -> float:
+    """Length of a vector over the directions of port c."""
+    first = row[c]
+    if row[c + 1] - first == 1:
+        return float(abs(x[first]))
+    return float(np.hypot(x[first], x[first + 1]))
+
+
+@kernel
+def slip_speed(row: Ints, c: int, n: Floats, F: Floats, x: Floats) -> float:
+    """Part of x along the direction of slip: n, in two directions against the force where there is one."""
+    first = row[c]
+    if row[c + 1] - first == 1:
+        return float(n[first] * x[first])
+    size = magnitude(row, c, F)
+    if size > 0.0:
+        return float(-(F[first] * x[first] + F[first + 1] * x[first + 1]) / size)
+    return float(n[first] * x[first] + n[first + 1] * x[first + 1])
+
+
+@kernel
+def stick_limit(mech: Mech, k: Moving, c: int, N: Floats) -> float:
+    """Force up to which port c sticks."""
+    load = max(N[c], 0.0)
+    return float(break_away(mech.port, mech.port.laws, c, k.s, load) * load)  # type: ignore[arg-type]
+
+
+@kernel
+def aim(mech: Mech, mode: Codes, F: Floats, n: Floats) -> None:
+    """Directions of ports that slip in a plane: against their forces."""
+    row = mech.port.row
+    for c in range(mode.shape[0]):
+        if mode[c] == SLIP and plane(mech, c):
+            size = magnitude(row, c, F)
+            for a in range(row[c], row[c + 1]):
+                n[a] = -F[a] / size if size > 0.0 else n[a]
+
+
+@block
+def add_slip(
+    mech: Mech, k: Moving, c: int, direction: int, lam: Floats, L: Layers, row: int, value: float, full: bool,
+    address: Ints,
+) -> None:  # fmt: skip
+    """Add ``value dg`` of port c to a row (``full``: by velocity and position; else the derivative of g' by v')."""
+    port, table = mech.port, mech.joint.table
+    j = port.joint[c]
+    if j < 0:
+        a0 = port.slip.x_start[c] + 2 * direction
+        if full:
+            add_form(mech, k, L, row, port.slip, a0 + 1, value, mech.address)
+        else:
+            add_row(mech, k, L.A1, row, port.slip, a0, value, mech.address)
+        return
+    n_x = call_joint(mech, k, j, lam, 0, mech.address)
+    at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+    a0 = table.x_start[j]
+    for a in range(n_x):
+        if not full:
+            add_row(mech, k, L.A1, row, table, a0 + a, value * k.out[at + a], mech.address)
+            continue
+        add_form(mech, k, L, row, table, a0 + n_x + a, value * k.out[at + a], mech.address)
+        turn = 0.0
+        for b in range(n_x):
+            turn += k.out[at + n_x + b * n_x + a] * k.x[n_x + b]
+        add_form(mech, k, L, row, table, a0 + a, value * turn, mech.address)
+
+
+@block
+def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, address: Ints) -> float:
+    """Change of the slip velocity of port c by a unit force in its direction, were there no (other) joints."""
+    port, place, j = mech.port, mech.place, mech.port.joint[c]
+    table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
+    if j >= 0:
+        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        table, first = mech.joint.table, mech.joint.table.x_start[j]
+        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+    value = 0.0
+    for form in range(first, first + n_x):
+        factor = k.out[at + form - first] if j >= 0 else 1.0
+        for i in range(table.form_start[form], table.form_start[form + 1]):
+            e = table.form_index[i] - 1
+            if not 0 <= e < k.ddy.shape[0]:
+                continue
+            for b in range(place.y_start[e], place.y_start[e + 1]):
+                slope = factor * table.form_coefficient[i] * (1.0 if place.y_at[b] < 0 else k.grad[place.y_at[b]])
+                value += slope * slope / mech.mass[place.y_dof[b]]
+    return float(value)
+
+
+@block
+def add_stick(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, full: bool, address: Ints) -> None:
+    """Rows of a port that sticks."""
+    for a in range(mech.port.row[c + 1] - mech.port.row[c]):
+        add_slip(mech, k, c, a, lam, L, row + a, 1.0, full, mech.address)
+        soft = SOFT * lightness(mech, k, c, a, lam, mech.address)
+        add(mech.order, L.A2 if full else L.A1, row + a, row + a, soft)
+
+
+@block
+def add_load(
+    mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, value: float, full: bool, address: Ints
+) -> None:
+    """Add ``value dN`` of port c to a row; without ``full`` by the multipliers alone."""
+    port, joint = mech.port, mech.joint
+    j = port.joint[c]
+    if j < 0:
+        if full and port.normal[c] != NORMAL_CONSTANT:
+            normals, s = port.normals, k.s
+            n_x = gather(normals, c, s.X, s.x)
+            call(normals.address[c], s.x, 0, normals.p, normals.p_start[c], s.out, 0)
+            for i in range(n_x):
+                add_form(mech, k, L, row, normals, normals.x_start[c] + i, value * s.out[1 + i], mech.address)
+        return
+    n_x = call_joint(mech, k, j, lam, 0, mech.address)
+    m = joint.row[j + 1] - joint.row[j]
+    at = friction_at(n_x, m) + n_x + n_x * n_x + 1
+    first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1] - joint.row[-1]
+    for i in range(m):
+        add(mech.order, L.A1, row, first + joint.row[j] + i, value * k.out[at + i])
+    if full:
+        for a in range(n_x):
+            add_form(mech, k, L, row, joint.table, joint.table.x_start[j] + a, value * k.out[at + m + a], mech.address)

@@ -1,0 +1,108 @@
+"""Slip in two directions near rest: how the direction follows the force differs from stage to stage.
+
+The rows of ``_friction`` in the form that finds the direction have the derivative ``r_i / |F_i|`` by a turn of the
+force at stage i, r the slip speed.  Near rest r changes by as much as it is, so that Newton's method with the one
+Jacobian of all stages would not converge.  Its changes are corrected by what the few derivatives differ by (Woodbury).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._lu import lu_factor, lu_solve
+from fricmb.integrate._problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
+from fricmb.integrate._room import room
+from fricmb.integrate.constrained._pack import Mech
+
+#: A contact faster than what this many steps of its acceleration bring has a direction of its own.
+NEAR = 4.0
+#: Contacts that can be near rest at once and still step well.
+TOGETHER = 24
+
+
+class Turns(NamedTuple):
+    """Contacts near rest: ``which`` (k,) of them, ``near`` (1,) how many, ``tangent`` (k, 2) across their slip.
+
+    ``answer`` (k s, s, size): changes by a unit residual in the row of a direction; ``gain`` (k s, k s) the turns
+    among them; ``base`` (k,), ``spread`` (k s,): derivatives in the Jacobian, and what a stage's differ by.
+    """
+
+    which: Ints
+    near: Ints
+    tangent: Floats2
+    base: Floats
+    answer: Floats3
+    gain: Floats2
+    work: Floats2
+    spread: Floats
+    turn: Floats
+    sizes: Pivots
+    pivots: Pivots
+
+
+def turns_of(problem: Problem, s: int, size: int) -> Turns:
+    """Rooms for the contacts in two directions with set-valued laws."""
+    contacts = problem.contacts
+    k = int(((np.diff(contacts.row) == 2) & (contacts.law != LAW_SMOOTH)).sum())
+    k = min(k, TOGETHER) if s > 1 else 0
+    full = k * s
+    return room(Turns(
+        np.zeros(k, np.int64), np.zeros(1, np.int64), np.zeros((k, 2)), np.zeros(k), np.zeros((full, s, size)),
+        np.zeros((full, full)), np.zeros((full, full)), np.zeros(full), np.zeros(full), np.zeros(4, np.int32),
+        np.zeros(full, np.int32),
+    ))  # fmt: skip
+
+
+@kernel
+def force_place(mech: Mech, c: int) -> int:
+    """Place of the first force of port c among the unknowns of a stage."""
+    port = mech.port
+    return int(mech.order.place.shape[0] - port.z_start[-1] - port.row[-1] + port.row[c])
+
+
+@kernel
+def by_turn(mech: Mech, c: int, F: Floats, g: Floats) -> float:
+    """Derivative of the velocity across the direction of slip by the force across it: slip speed over force."""
+    a, b = mech.port.row[c], mech.port.row[c] + 1
+    square = F[a] * F[a] + F[b] * F[b]
+    return float(-(F[a] * g[a] + F[b] * g[b]) / square) if square > 0.0 else 0.0
+
+
+@kernel
+def spread_of_stages(mech: Mech, turns: Turns, F: Floats2, g: Floats2) -> None:
+    """What the derivatives at the stages differ by from those of the Jacobian, for forces and velocities (s, m_p)."""
+    s = F.shape[0]
+    for k in range(turns.near[0]):
+        for i in range(s):
+            turns.spread[k * s + i] = by_turn(mech, turns.which[k], F[i], g[i]) - turns.base[k]
+
+
+@kernel
+def across(mech: Mech, turns: Turns, k: int, x: Floats) -> float:
+    """The turn of contact k in a change x (size,) of the unknowns of a stage: force across its slip."""
+    place = force_place(mech, turns.which[k])
+    return float(turns.tangent[k, 0] * x[place] + turns.tangent[k, 1] * x[place + 1])
+
+
+@kernel
+def correct_turns(mech: Mech, turns: Turns, R: Floats2) -> None:
+    """From the changes R (s, size) by the Jacobian to those by the derivatives of every stage."""
+    s = R.shape[0]
+    full = turns.near[0] * s
+    work = turns.work[:full, :full]
+    for p in range(full):
+        turns.turn[p] = across(mech, turns, p // s, R[p % s])
+        for q in range(full):
+            work[p, q] = turns.gain[p, q] * turns.spread[q] + (1.0 if p == q else 0.0)
+    turn = turns.turn[:full]
+    if not lu_factor(work, turns.sizes, turns.pivots, mech.address):
+        return
+    lu_solve(work, turn, turns.sizes, turns.pivots, mech.address)
+    for q in range(full):
+        part = turns.spread[q] * turn[q]
+        for i in range(s):
+            for a in range(R.shape[1]):
+                R[i, a] -= part * turns.answer[q, i, a]
