@@ -114,7 +114,7 @@ def cost_against_size(rows: Rows, fits: dict[str, float | None], case: str, titl
         if not mine:
             continue
         power = fits.get(f"{case}/{method}")
-        label = method if power is None else f"{method}: n^{power:.1f}"
+        label = method if power is None else f"{method}: n^{power:.2f}"
         style = _style(method, method == "CVODE")
         axes.loglog([row["n"] for row in mine], [row["seconds"] for row in mine], label=label, **style)
     axes.set_xlabel("n")

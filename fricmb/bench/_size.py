@@ -54,6 +54,23 @@ def modal_belt(n: int) -> fm.Scene:
     return fm.Scene(f"bar of {n} modes", [bar, belt, sole])
 
 
+def grid(n: int) -> fm.Scene:
+    """About n blocks on a belt in a square, each tied to its four neighbours: as the chain, in two directions."""
+    side = round(math.sqrt(n))
+    blocks = [fm.Body(f"block{k}", mass=1.0, velocity={"x": 0.1}) for k in range(side * side)]
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    parts: list[Any] = [*blocks, belt]
+    for k, block in enumerate(blocks):
+        if (k + 1) % side:
+            parts.append(fm.Spring(f"row{k}", block, blocks[k + 1], axis="x", stiffness=100.0))
+        if k + side < len(blocks):
+            parts.append(fm.Spring(f"column{k}", block, blocks[k + side], axis="x", stiffness=100.0))
+        law = fm.laws.Coulomb(mu_s=1.2 + 0.1 * math.sin(7 * k), mu_k=1.0)
+        parts.append(fm.Spring(f"ground{k}", block, axis="x", stiffness=1.0))
+        parts.append(fm.Contact(f"sole{k}", block, belt, law=law, normal_force=1.0))
+    return fm.Scene(f"grid of {side} x {side} blocks", parts)
+
+
 def links(n: int) -> fm.Scene:
     """An open chain of n pinned links that starts level and swings down under its weight."""
     ends = {"a": (-0.5, 0.0), "b": (0.5, 0.0)}
@@ -69,6 +86,10 @@ SIZES = (
         sizes=(10, 30, 100, 300, 1000, 3000, 10_000, 30_000, 100_000),
     ),
     SizeCase(
+        name="grid", title="square of n blocks on a belt, t = 14, one step", build=grid, t_end=14.0,
+        sizes=(100, 400, 1600, 6400, 25_600), per_step=True,
+    ),
+    SizeCase(
         name="modes", title="bar of n modes with one contact, t = 20", build=modal_belt, t_end=20.0,
         sizes=(5, 16, 50, 160, 500, 1600, 5000),
     ),
@@ -80,9 +101,11 @@ SIZES = (
 
 
 def size_methods(case: SizeCase) -> list[str]:
-    """Integrators of variable step, and CVODE for the chain."""
+    """Integrators of variable step, and CVODE for the chain; for grids those that are made for large scenes."""
     if case.name == "links":
         return ["auto", "bdf"]
+    if case.name == "grid":
+        return ["taylor", "timestepping"]
     own = ["auto", *(name for name, kind in fm.integrators.items() if kind.adaptive)]
     return [*own, "CVODE"] if case.name == "chain" else own
 

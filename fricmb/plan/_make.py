@@ -9,8 +9,9 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate._storage import is_narrow
+from fricmb.plan._acting import links_of
 from fricmb.plan._graph import coupling, narrow_order
-from fricmb.plan._links import Flags, Links, links_of
+from fricmb.plan._links import Flags, Links
 from fricmb.plan._plan import Island, Plan
 from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
@@ -19,6 +20,7 @@ from fricmb.plan._tree import topology
 from fricmb.plan._truncate import truncated
 from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene
 from fricmb.scene._scene import BODIES
+from fricmb.values._pause import no_collection
 
 
 @dataclass
@@ -59,7 +61,8 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     key = ("plan", None if wanted is None else wanted.key)
     found = scene._cache.get(key)
     if found is None:
-        plan = _make(scene, wanted)
+        with no_collection(len(scene.parts)):
+            plan = _make(scene, wanted)
         cautions = (*short.notes, *plan.cautions)
         found = scene._cache[key] = replace(plan, notes=(*cautions, *plan.notes), cautions=cautions)
     return found

@@ -22,6 +22,7 @@ from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.values import value_of
+from fricmb.values._pause import no_collection
 
 #: Parts with degrees of freedom.
 BODIES = (Body, ModalBody, RigidBody)
@@ -77,7 +78,8 @@ class Scene:
         put(self, "_motions", None)
         put(self, "_cache", {})
         put(self, "_shared", shared)
-        check_scene(self)
+        with no_collection(len(self.parts)):
+            check_scene(self)
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"Scene {self.name!r} cannot be changed; use replace() or with_parameters()")

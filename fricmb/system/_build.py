@@ -19,6 +19,7 @@ from fricmb.system._mechanism import build_mechanism
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
+from fricmb.values._pause import no_collection
 
 
 def build(scene: Any, plan: Any = None) -> System:
@@ -46,7 +47,8 @@ def build(scene: Any, plan: Any = None) -> System:
     key = ("system", None if plan is None else plan.key)
     found = scene._cache.get(key)
     if found is None:
-        found = scene._cache[key] = _build(scene, plan)
+        with no_collection(len(scene.parts)):
+            found = scene._cache[key] = _build(scene, plan)
     return found  # type: ignore[no-any-return]
 
 
