@@ -29,7 +29,7 @@ class Own(Method):
     def settings(self, case: SceneCase, quick: bool) -> list[Setting]:
         """Tolerances, or the steps of the case."""
         if self._adaptive:
-            ladder = QUICK_LADDER if quick else LADDER
+            ladder: tuple[float, ...] = QUICK_LADDER if quick else LADDER
             if quick and self.name != "auto" and fm.integrators[self.name].order == "2":
                 ladder = ladder[:-1]  # a formula of order 2 takes longer for the tightest than the rest of the suite
             return [Setting(rtol=rtol) for rtol in ladder]

@@ -16,7 +16,7 @@ from fricmb.integrate._radau import Radau
 from fricmb.integrate._trajectory import Trajectory
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.collocation._prepare import is_single
-from fricmb.integrate.collocation._suits import against, port_rows
+from fricmb.integrate.collocation._suits import against, port_rows, too_far_apart
 from fricmb.integrate.taylor import Taylor
 from fricmb.integrate.timestepping import TimeStepping
 
@@ -104,11 +104,11 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     if problem.n >= WIDE and 0 < problem.m + problem.n_v <= many_rows(rtol) and is_banded(problem):
         return Bdf(), "few contacts on a structure that is a narrow band: the general method, transitions located"
     fast = Guarded()
-    refusal = fast.refuses(problem) if is_single(problem) else "several ports"
+    refusal = fast.refuses(problem) or too_far_apart(problem) if is_single(problem) else "several ports"
     if refusal is None:
         return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
     # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
-    reason = against(problem, rtol) or fast.refuses(problem)
+    reason = against(problem, rtol) or fast.refuses(problem) or too_far_apart(problem)
     if reason is None:
         rows = port_rows(problem)
         return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import fricmb as fm
+from fricmb.bench._closed import free_oscillator
+from fricmb.bench.stability._structures import stiff_pair
 from fricmb.integrate._choose import Guarded
 from fricmb.integrate.collocation import Collocation
 
@@ -102,3 +104,13 @@ def test_many_modes_under_few_contacts_are_run_in_a_band(modes, contacts, method
     assert sol.stats.method == method
     if method == "bdf":
         assert "transitions located" in sol.stats.why
+
+
+@pytest.mark.parametrize(("stiffness", "method"), [(1e10, "collocation"), (1e12, "bdf")])
+def test_modes_whose_eigenproblem_leaves_no_digits_are_left_to_steps(stiffness, method):
+    scene = stiff_pair(stiffness)
+    sol = fm.simulate(scene, t_end=50.0, rtol=1e-6)
+    assert sol.stats.method == method
+    assert not sol.stats.notes
+    true = free_oscillator(t_end=50.0)
+    assert np.abs(sol(true.t)[:2] - true.q).max() < 1e-4

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
+from fricmb.integrate.collocation._general_prepare import free_blocks
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant
 #: friction, and under constant friction at tight tolerances or where there are far more degrees of freedom.
@@ -13,6 +14,25 @@ VARYING_ROWS, FEW_ROWS, MOST_ROWS = 2, 4, 12
 TIGHT = 1e-7
 #: Degrees of freedom per port row beyond which condensing to the ports pays at any tolerance, and largest structure.
 WIDE, LARGEST = 5, 400
+
+#: Ratio of squared frequencies above which an eigenproblem leaves too few digits of the slow ones, and from which what
+#: is left of them is round-off of zero.
+APART, NOTHING = 1e11, 5e13
+
+
+def too_far_apart(problem: Problem) -> str | None:
+    """Why exact modes are not exact enough: their frequencies differ by too much; or None.
+
+    Eigenvalues are right to round-off of the largest: a tie 1e12 times as stiff as the spring to ground left an error
+    of 1e-3 after eight periods (docs/decisions/0023-stiffness-and-round-off.md).
+    """
+    w2 = np.abs(free_blocks(problem).w2)
+    most = w2.max(initial=0.0)
+    least = w2[w2 > most / NOTHING].min(initial=most)
+    if most <= APART * least:
+        return None
+    slow, fast = np.sqrt(least), np.sqrt(most)
+    return f"frequencies from {slow:.3g} to {fast:.3g}: an eigenproblem leaves the slow ones too few digits"
 
 
 def port_rows(problem: Problem) -> int:
