@@ -270,6 +270,10 @@ FURTHER = (
     "take_step",
     *MECHANISM_STEPS,
     "multistep",
+    "coupled_series",
+    "coupled_change",
+    "coupled_settle",
+    "coupled_pay",
 )
 PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}

@@ -103,8 +103,12 @@ def set_mode(net: Net, c: int, mode: int, direction: float) -> None:
 
 @kernel
 def hold_force(net: Net, c: int, s: float, h: float) -> float:
-    """The force that would hold contact c at s."""
+    """The force that would hold contact c at s; of coupled contacts its force."""
     value = 0.0
+    if net.coupled.F.shape[0] > 0:
+        for k in range(net.coupled.F.shape[0] - 1, -1, -1):
+            value = value * s + net.coupled.F[k, c]
+        return float(value)
     for e in range(net.row_start[c], net.row_start[c + 1]):
         j = net.row_dof[e]
         part = 0.0

@@ -6,9 +6,11 @@ import math
 
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._problem import STICK
+from fricmb.integrate.taylor._account import coupled_pay
 from fricmb.integrate.taylor._change import hold_force, taylor_change
 from fricmb.integrate.taylor._heap import pop_due, push_due
 from fricmb.integrate.taylor._layout import (
+    ALLOWED,
     END,
     INPUT,
     JUMP,
@@ -26,6 +28,7 @@ from fricmb.integrate.taylor._layout import (
     STEP,
     TIME,
     TOL,
+    UNTIL,
     WORK,
 )  # fmt: skip
 from fricmb.integrate.taylor._ledger import belt_work, count_rest
@@ -44,6 +47,8 @@ from fricmb.integrate.taylor._settle import EPS, set_window, settle
 
 #: Why a run came back.
 DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE = range(6)
+#: What round-off leaves between a prescribed function and its powers of s.
+ROUNDING = 1e-11
 #: Phases of a step.
 BEGIN, INSIDE, FINISH, SETTLE = range(4)
 
@@ -94,12 +99,14 @@ def begin_step(net: Net) -> bool:
         h = left
     elif h > 0.5 * left:
         h = 0.5 * left
+    fine = max(0.1 * net.x[TOL], ROUNDING)
     for _ in range(60):
         error = signal_series(net, t, h)
-        if error <= 0.1 * net.x[TOL]:
+        if error <= fine:
             break
-        h *= max(0.3, 0.9 * (0.1 * net.x[TOL] / error) ** 0.125)
+        h *= max(0.3, 0.9 * (fine / error) ** 0.125)
     net.x[STEP] = h
+    net.x[UNTIL] = net.x[ALLOWED] = 1.0
     busy = taylor_series(net, h, net.places)
     if not busy and net.series.shape[0] == 0:
         idle = idle_step(net, left)
@@ -110,9 +117,9 @@ def begin_step(net: Net) -> bool:
     error = tail_error(net, h)
     order = net.Q.shape[0] - 2.0
     factor = min(1.5, 0.95 * (error + 1e-30) ** (-1.0 / order))
-    if error > 1.0:
+    if error > 1.0 or net.x[ALLOWED] < 1.0:
         net.i[N_SHORTER] += 1
-        rescale(net, factor)
+        rescale(net, min(factor, net.x[ALLOWED]))
         factor = 1.0
     net.x[NEXT] = net.x[STEP] * factor
     return True
@@ -153,18 +160,19 @@ def next_sample(net: Net) -> float:
 def go_through(net: Net) -> int:
     """Transitions and samples of the step in order of time."""
     grain = 4.0 * EPS * max(abs(net.x[TIME]), net.x[STEP]) / net.x[STEP]
-    final = net.x[TIME] + net.x[STEP] >= net.x[END] - 8.0 * EPS * abs(net.x[END])
     while True:
         end = next_end(net)
         at = next_sample(net)
-        if at <= 1.0 + grain:
+        until = net.x[UNTIL]
+        final = net.x[TIME] + until * net.x[STEP] >= net.x[END] - 8.0 * EPS * abs(net.x[END])
+        if at <= until + grain:
             left = net.left[net.i[N_SAMPLES]] == 1
             edge = end + grain if left else end - grain
             # the right-hand value at the end of a step belongs to the next one
-            if at < edge and (left or final or at < 1.0 - grain):
-                sample(net, min(max(at, 0.0), 1.0))
+            if at < edge and (left or final or at < until - grain):
+                sample(net, min(max(at, 0.0), until))
                 continue
-        if end > 1.0:
+        if end > until:
             return DONE
         if net.i[N_EVENTS] >= net.events.shape[0]:
             return FULL
@@ -178,9 +186,22 @@ def go_through(net: Net) -> int:
 
 
 @kernel
+def end_early(net: Net) -> None:
+    """Close the account where contacts are coupled; what lies behind the point where the step is to end is given up."""
+    until = net.x[UNTIL]
+    coupled_pay(net, until, net.places)
+    if until < 1.0:
+        net.i[N_SHORTER] += 1
+        rescale(net, until)
+        net.x[UNTIL] = 1.0
+
+
+@kernel
 def finish_step(net: Net) -> int:
     """The state at the end of the step."""
     n = net.q.shape[0]
+    if net.coupled.F.shape[0] > 0:
+        end_early(net)
     h = net.x[STEP]
     last = net.Q.shape[0] - 1
     horner(net.Q, last, 1.0, net.q)

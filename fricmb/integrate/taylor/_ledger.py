@@ -58,6 +58,8 @@ def signal_power(net: Net, s: float, weight: float) -> None:
 @kernel
 def count_rest(net: Net, s0: float, sign: float) -> None:
     """Add ``sign`` times what dampers and prescribed motions do from s0 to the end of the step, contacts apart."""
+    if net.coupled.F.shape[0] > 0:
+        return  # see _account
     if net.damped[0] == 0 and net.series.shape[0] == 0:
         return
     n = net.q.shape[0]
@@ -108,9 +110,11 @@ def count_local(net: Net, count: int, s0: float, sign: float) -> None:
 
 @kernel
 def moving_belts(net: Net, s0: float) -> float:
-    """Work that belts of varying velocity bring in from s0 to the end of the step."""
+    """Work that belts of varying velocity bring in from s0 to the end of the step (of coupled ones: see _account)."""
     total = 0.0
     h = net.x[STEP]
+    if net.coupled.F.shape[0] > 0:
+        return 0.0
     for g in range(net.gauss.shape[1] if net.special.shape[0] > 0 else 0):
         s = s0 + (1.0 - s0) * net.gauss[0, g]
         for i in range(net.special.shape[0]):

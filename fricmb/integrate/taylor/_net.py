@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from fricmb.integrate._pack import Table
 from fricmb.integrate._problem import Codes, Codes2, Floats, Floats2, Floats3, Ints
+from fricmb.integrate.taylor._coupled import Coupled
 
 
 class Net(NamedTuple):
@@ -37,6 +38,7 @@ class Net(NamedTuple):
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
     is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.  ``places``: table of blocks.
+    ``coupled``: what contacts need that touch each other or whose friction depends on slip speed.
     """
 
     offset: Ints
@@ -117,3 +119,4 @@ class Net(NamedTuple):
     out_x: Floats2
     stops: Floats
     places: Ints
+    coupled: Coupled

@@ -9,16 +9,26 @@ import numpy as np
 from fricmb.integrate._kept import kept
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._pack import _table
-from fricmb.integrate._problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate._room import room
+from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate._room import PLACES, room
 from fricmb.integrate._sparse import Csr
+from fricmb.integrate.taylor import _coupled_change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor._prepare_coupled import (
+    against_groups,
+    coupled_arrays,
+    coupled_statics,
+    is_coupled,
+    nothing_coupled,
+)  # fmt: skip
 
 #: A structure of at most so many diagonals is kept by diagonals.
 DIAGONALS = 9
 #: Most dofs that the correction of one transition may touch.
 WIDEST = 8192
 BLOCKS = ("taylor_series", "taylor_search", "taylor_change")
+#: The same where contacts are coupled: the first and the last stand where the loop of a run calls those above.
+COUPLED = ("coupled_series", "taylor_search", "coupled_change", "coupled_settle", "coupled_pay")
 
 
 def refusal(problem: Problem) -> str | None:
@@ -30,18 +40,17 @@ def _refusal(problem: Problem) -> str | None:
     contacts, linear = problem.contacts, problem.linear
     if len(problem.elements.table.address):
         return "this scene has nonlinear elements"
-    if (contacts.law != LAW_CONSTANT).any() or (contacts.normal != NORMAL_CONSTANT).any() or problem.n_z:
-        return "every contact needs constant coefficients of friction and a constant normal force"
+    if (contacts.law == LAW_SMOOTH).any() or (contacts.normal != NORMAL_CONSTANT).any() or problem.n_z:
+        return "every contact needs a coefficient of friction and a constant normal force"
+    if (contacts.piecewise & (contacts.law != LAW_CONSTANT)).any():
+        return "coefficients of friction that depend on slip speed must be formulas"
     if problem.m != problem.n_c:
         return "every contact must slide along one direction"
     if not linear.csr("M").is_diagonal():
         return "the mass matrix must be diagonal"
     if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
         return "the stiffness must be symmetric"
-    W = contacts.csr("W")
-    if (np.bincount(W.rows, minlength=1) > 1).any():
-        return "contacts must not share a degree of freedom"
-    return None
+    return against_groups(problem)
 
 
 def _joint(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
@@ -139,7 +148,7 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     compliance = np.bincount(rows.rows, rows.value * push, m).astype(float)
     owner = np.full(n, -1, dtype=np.int64)
     owner[rows.index] = rows.rows
-    plain = (np.diff(rows.start) == 1) & (np.diff(Wu.start) == 0)
+    plain = (np.diff(rows.start) == 1) & (np.diff(Wu.start) == 0) & (not is_coupled(problem))
     N = contacts.N
     return {
         "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
@@ -173,6 +182,13 @@ def _net(problem: Problem, P: int) -> Net:
     # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
     wide = 8 * ((n + 7) // 8 | 1)
     i, z = np.int64, np.zeros
+    coupled = is_coupled(problem)
+    if coupled:
+        groups = coupled_statics(problem, 1.0 / statics["mass"])
+        widest = min(n + 8, WIDEST, widest * max(1, int(np.diff(groups["dof_start"]).max(initial=1))))
+        more = coupled_arrays(problem, P, widest, groups)
+    else:
+        more = nothing_coupled()
     arrays = {
         **statics,
         "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit(),
@@ -182,9 +198,20 @@ def _net(problem: Problem, P: int) -> Net:
         "flat": z((5, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
         "place": np.full(n, -1, dtype=i),
         "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)), "stops": z(1),
-        "places": addresses(*BLOCKS), **no_samples(n, m), "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)),
+        "places": _places(coupled), "coupled": room(more), **no_samples(n, m), "events": z((max(64, 4 * m), 3)),
+        "steps": z((256, 2)),
     }  # fmt: skip
     return room(Net(**{name: _solid(arrays[name]) for name in Net._fields}))
+
+
+def _places(coupled: bool) -> Ints:
+    """Table of blocks."""
+    if not coupled:
+        return addresses(*BLOCKS)
+    table = addresses(*COUPLED).copy()
+    for name, other in zip(BLOCKS, COUPLED, strict=False):
+        table[PLACES.index(name)] = table[PLACES.index(other)]
+    return table
 
 
 def _widest(statics: dict[str, Any], n: int, degree: int) -> int:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import SLIP
+from fricmb.integrate.taylor._account import coupled_pay
+from fricmb.integrate.taylor._change import hold_force
 from fricmb.integrate.taylor._layout import DAMPING, INPUT, N_SAMPLES, STEP
 from fricmb.integrate.taylor._ledger import belt_work, count_rest
 from fricmb.integrate.taylor._net import Net
@@ -20,6 +22,9 @@ def sample(net: Net, s: float) -> None:
     v = net.out_v[at]
     horner(net.Q, last, s, q)
     horner_rate(net.Q, last, s, h, v)
+    coupled = net.coupled.F.shape[0] > 0
+    if coupled:
+        coupled_pay(net, s, net.places)
     for c in range(net.mode.shape[0]):
         stuck = net.mode[c] != SLIP
         net.out_mode[at, c] = net.mode[c]
@@ -34,9 +39,9 @@ def sample(net: Net, s: float) -> None:
             g = -belt_value(net, c, s)
             for e in range(net.row_start[c], net.row_start[c + 1]):
                 g += net.row_coef[e] * v[net.row_dof[e]]
-            net.out_F[at, c] = -net.slip[c] * net.sigma[c]
+            net.out_F[at, c] = hold_force(net, c, s, h) if coupled else -net.slip[c] * net.sigma[c]
             net.out_g[at, c] = g
-            loss += net.slip[c] * abs(displacement(net, c, s, h) - net.mark[c])
+            loss += 0.0 if coupled else net.slip[c] * abs(displacement(net, c, s, h) - net.mark[c])
         net.out_loss[at, c] = loss
     brought, lost = net.x[INPUT], net.x[DAMPING]
     count_rest(net, s, -1.0)

@@ -17,6 +17,8 @@ from fricmb.integrate.taylor._series import belt_at, force_row
 
 #: Intervals in which a root is looked for (a step is at most about half a period of the fastest mode).
 PIECES = 4
+#: So near to its beginning, with a jump of acceleration and without one, a slip speed is less than round-off.
+NEAR = (1e-10, 1e-7)
 
 
 @kernel
@@ -181,11 +183,16 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         net.since[c] = since = 0.0
     if since < 0.0:
         return first_root(y, last, -1.0, low, 1.0)
-    shift_one(y, last, since)
     z = net.old[SHIFTED]
-    start = 1
-    if abs(y[1]) <= 1e-11 * size and last > 1:
-        start = 2
+    for k in range(last + 1):
+        z[k] = y[k]
+    shift_one(z, last, since)
+    # without a jump of the force the acceleration begins at 0, up to round-off of the forces
+    rounding = max(1e-11 * size, 1e-12 * net.compliance[c] * net.stick[c] * h)
+    start = 2 if abs(z[1]) <= rounding and last > 1 else 1
+    if low - since > NEAR[start - 1]:
+        # corrections since then have changed the polynomial where it began: what is left there is no root
+        return first_root(y, last, -1.0, low, 1.0)
     for k in range(start, last + 1):
-        z[k - start] = y[k]
+        z[k - start] = z[k]
     return float(since) + first_root(z, last - start, -1.0, low - since, 1.0 - since)

@@ -138,6 +138,8 @@ def structure_row(net: Net, k: int, h: float, out: Floats) -> None:
 @kernel
 def force_row(net: Net, c: int, k: int, h: float) -> float:
     """Coefficient k of the force of contact c."""
+    if net.coupled.F.shape[0] > 0:
+        return float(net.coupled.F[k, c])
     if net.mode[c] == SLIP:
         return float(-net.slip[c] * net.sigma[c]) if k == 0 else 0.0
     value = -belt_rate(net, c, k, h)
@@ -200,6 +202,10 @@ def rescale(net: Net, f: float) -> None:
             row = net.R[k]
             for j in range(n):
                 row[j] *= factor
+        if k < net.coupled.F.shape[0]:
+            row = net.coupled.F[k]
+            for c in range(row.shape[0]):
+                row[c] *= factor
         for u in range(net.series.shape[0]):
             net.series[u, k] *= factor
             net.rates[u, k] *= factor

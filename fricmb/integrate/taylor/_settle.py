@@ -7,6 +7,7 @@ import math
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor._change import MARGIN, hold_force, keep_event, set_mode
+from fricmb.integrate.taylor._coupled_settle import coupled_settle
 from fricmb.integrate.taylor._layout import LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._series import belt_value, displacement, relative, signal_series, taylor_series
@@ -30,6 +31,9 @@ def settle(net: Net, given: bool) -> None:
 
     Changes behind a breakpoint are transitions.
     """
+    if net.coupled.F.shape[0] > 0:
+        coupled_settle(net, given, net.places)
+        return
     h = min(net.x[LONGEST], net.stops[net.i[N_STOP]] - net.x[TIME])
     net.x[STEP] = h
     signal_series(net, net.x[TIME], h)

@@ -1,0 +1,72 @@
+"""Arrays of contacts that are coupled, or whose friction depends on slip speed.
+
+Forces of all contacts are polynomials ``F_c(s) = sum_k F[k, c] s^k`` here.  In slip ``F = -sigma N mu(r)``,
+``r = sigma g``; what sticks together on bodies that touch is solved together, group by group:
+
+    G F = -(W^T A - w'),    G = W^T M^-1 W over the contacts of the group that stick,
+
+with A the accelerations under all other forces.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from fricmb.integrate._pack import Table
+from fricmb.integrate._problem import Codes, Floats, Floats2, Floats3, Ints
+
+
+class Coupled(NamedTuple):
+    """Empty (``F`` without rows) in scenes that need none of it.
+
+    Groups: contacts on common dofs.  ``group`` (m,); ``group_start``, ``group_contact``; ``dof_start``, ``group_dof``:
+    dofs of a group; ``dof_group`` (n,): or -1; ``at``: where a group's matrix begins in ``G`` and in ``L`` (its
+    triangular factor over ``stuck``, the ``n_stuck`` contacts of the group that stick under the modes ``factored``);
+    ``rhs`` (m,).
+    Slip: ``lawful`` (m,): number of a contact whose coefficient depends on slip speed, or -1; ``laws``, ``N``;
+    ``curve`` (., D+1): mu on ``middle`` +- ``half`` in Chebyshev polynomials, of which ``terms`` count; ``rough``:
+    what is left beyond them, relative to what is allowed; ``nodes``, ``fit`` (D+1, D+1); ``b`` (., D+3, P+1): sums of
+    Clenshaw's recursion by powers of s, in the last row the argument.
+    Account: ``paid`` (m,), ``paid_dof`` (n,): s up to which losses and work are counted; ``rule`` (2, P): Gauss's.
+    Corrections: ``slot`` (m,) of a contact or -1; ``here``: contact of a slot; ``groups``: groups touched; ``was``:
+    forces before; ``dF``; ``local_b``: as b; ``first``: order from which a slot's argument changes.
+    """
+
+    F: Floats2
+    group: Ints
+    group_start: Ints
+    group_contact: Ints
+    dof_start: Ints
+    group_dof: Ints
+    dof_group: Ints
+    at: Ints
+    G: Floats
+    L: Floats
+    stuck: Ints
+    n_stuck: Ints
+    factored: Codes
+    rhs: Floats
+    lawful: Ints
+    laws: Table
+    N: Floats
+    curve: Floats2
+    middle: Floats
+    half: Floats
+    terms: Ints
+    rough: Floats
+    nodes: Floats
+    fit: Floats2
+    values: Floats
+    work: Floats
+    b: Floats3
+    paid: Floats
+    paid_dof: Floats
+    rule: Floats2
+    slot: Ints
+    here: Ints
+    groups: Ints
+    touched: Codes
+    was: Floats2
+    dF: Floats2
+    local_b: Floats3
+    first: Ints

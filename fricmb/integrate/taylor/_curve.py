@@ -1,0 +1,129 @@
+"""Friction as a polynomial of slip speed, and that of a polynomial slip speed as a power series.
+
+A law is a compiled function that gives values.  On the range of speeds of a step it is replaced by its interpolant in
+Chebyshev points, whose coefficients tell how good it is (L. N. Trefethen, Approximation theory and approximation
+practice, 2nd ed., SIAM 2019, chapters 3, 4, 8).  Clenshaw's recursion with power series for numbers gives the
+coefficients of mu(r(s)) order by order.
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate._call import call
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import Floats, Floats2
+from fricmb.integrate.taylor._layout import TOL
+from fricmb.integrate.taylor._net import Net
+
+#: Parts of the tolerance that may be missing in a coefficient of friction.
+SHARE = 0.1
+
+
+@kernel
+def coefficient_at(net: Net, c: int, r: float) -> float:
+    """mu(r) of contact c, for r < 0 that of 0."""
+    work, laws = net.coupled.work, net.coupled.laws
+    work[0] = max(r, 0.0)
+    work[1] = net.coupled.N[c]
+    call(laws.address[c], work, 0, laws.p, laws.p_start[c], work, 2)
+    return float(work[2])
+
+
+@kernel
+def fit_curve(net: Net, c: int, low: float, high: float) -> None:
+    """The coefficient of contact c between two slip speeds."""
+    at = net.coupled.lawful[c]
+    nodes, values, fit = net.coupled.nodes, net.coupled.values, net.coupled.fit
+    low = max(low, 0.0)
+    middle = 0.5 * (low + high)
+    half = max(0.5 * (high - low), 1e-12 * high + 1e-300)
+    net.coupled.middle[at] = middle
+    net.coupled.half[at] = half
+    count = nodes.shape[0]
+    for a in range(count):
+        values[a] = coefficient_at(net, c, middle + half * nodes[a])
+    row = net.coupled.curve[at]
+    size = 0.0
+    for j in range(count):
+        value = 0.0
+        for a in range(count):
+            value += fit[j, a] * values[a]
+        row[j] = value
+        size = max(size, abs(value))
+    allowed = max(SHARE * net.x[TOL], 2e-15) * size + 1e-300
+    net.coupled.rough[at] = (abs(row[count - 1]) + abs(row[count - 2])) / allowed
+    terms = count
+    left = 0.0
+    while terms > 1:
+        left += abs(row[terms - 1])
+        if left > allowed:
+            break
+        terms -= 1
+    net.coupled.terms[at] = terms
+
+
+@kernel
+def fit_around(net: Net, c: int, r: float, below: float, above: float) -> None:
+    """The same around slip speed r, on as much of the range ``below`` and ``above`` it as the interpolant is good on.
+
+    Exact at r: where slip begins without a jump of the force, a trace of one would end it at once.
+    """
+    at = net.coupled.lawful[c]
+    for _ in range(30):
+        fit_curve(net, c, r - below, r + above)
+        if net.coupled.rough[at] <= 1.0:
+            break
+        below *= 0.5
+        above *= 0.5
+    row = net.coupled.curve[at]
+    x = (max(r, 0.0) - net.coupled.middle[at]) / net.coupled.half[at]
+    one, two = 0.0, 0.0
+    for j in range(net.coupled.terms[at] - 1, 0, -1):
+        one, two = row[j] + 2.0 * x * one - two, one
+    row[0] += coefficient_at(net, c, r) - (row[0] + x * one - two)
+
+
+@kernel
+def compose(curve: Floats, terms: int, x: Floats, b: Floats2, k: int) -> float:
+    """Coefficient k of ``sum_j curve[j] T_j(x(s))``; b (., .) holds the sums of the orders before."""
+    top = terms - 1
+    if top == 0:
+        return float(curve[0] if k == 0 else 0.0)
+    b[top + 1, k] = 0.0
+    b[top, k] = curve[top] if k == 0 else 0.0
+    for j in range(top - 1, -1, -1):
+        above = b[j + 1]
+        value = 0.0
+        for i in range(k + 1):
+            value += x[i] * above[k - i]
+        if j > 0:
+            value *= 2.0
+        value -= b[j + 2, k]
+        b[j, k] = value + curve[j] if k == 0 else value
+    return float(b[0, k])
+
+
+@kernel
+def within(net: Net, at: int, x: Floats, last: int, length: float) -> float:
+    """Part of ``length`` in which the argument x(s) stays where the curve holds (from 1/12 on), 1.0 if in all of it."""
+    closed = net.coupled.middle[at] > 1.001 * net.coupled.half[at]
+    for i in range(1, 13):
+        s = length * i / 12.0
+        value = 0.0
+        for k in range(last, -1, -1):
+            value = value * s + x[k]
+        if value > 1.02 or (closed and value < -1.02):
+            return max(1, i - 1) / 12.0
+    return 1.0
+
+
+@kernel
+def range_of(x: Floats, last: int, length: float, high: bool) -> float:
+    """The largest (smallest) value of x(s) found."""
+    found = x[0]
+    for i in range(1, 13):
+        s = length * i / 12.0
+        value = 0.0
+        for k in range(last, -1, -1):
+            value = value * s + x[k]
+        found = max(found, value) if high else min(found, value)
+    return float(found)
