@@ -9,11 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb.plan._loads import highest_frequency
 from fricmb.reduction import Residual, flexibility, modal_residual, modes_to_keep
 from fricmb.scene import Contact, Element, ModalBody, Point, Scene, modal_matrices
 from fricmb.values import value_of
 
 Floats = NDArray[np.float64]
+
+
+#: Modes up to this multiple of the highest frequency of the loads are kept: those above follow it, an eighth too large.
+ABOVE = 3.0
 
 
 @dataclass(frozen=True)
@@ -36,9 +41,10 @@ def _truncate(scene: Scene) -> Truncated:
     bodies = [part for part in scene.parts if isinstance(part, ModalBody)]
     notes = [_neglected(body) for body in bodies if body.residual]
     changed = {}
+    fastest = highest_frequency(scene) if any(body.truncation is not None for body in bodies) else 0.0
     for body in bodies:
         if body.truncation is not None:
-            new, note = reduced(body, loaded_points(scene, body), value_of(body.truncation))
+            new, note = reduced(body, loaded_points(scene, body), value_of(body.truncation), fastest)
             notes.append(note)
             if new is not body:
                 changed[body.name] = new
@@ -50,7 +56,8 @@ def _neglected(body: ModalBody) -> str:
     return (
         f"{body.name}: {kept} modes and {body.residual} residual ones for those left out, which carry"
         f" {body.neglected:.1e} of the static flexibility at its points; displacement there is wrong by at most about"
-        f" {2.0 * body.neglected:.1e} of its elastic part where a force jumps"
+        f" {2.0 * body.neglected:.1e} of its elastic part where a force jumps or vibrates below"
+        f" {min(value_of(body.frequencies)[kept:]) / ABOVE:.3g} rad per unit of time"
     )
 
 
@@ -71,8 +78,10 @@ def _ends(part: Element | Contact) -> Iterator[object]:
         yield getattr(part, field.name)
 
 
-def reduced(body: ModalBody, points: tuple[str, ...], tolerance: float) -> tuple[ModalBody, str]:
+def reduced(body: ModalBody, points: tuple[str, ...], tolerance: float, fastest: float = 0.0) -> tuple[ModalBody, str]:
     """A body with as few modes as keep the error of displacement at the points below ``tolerance`` of its elastic part.
+
+    Modes that a load of angular frequency ``fastest`` might bring near resonance are kept, too.
 
     Returns
     -------
@@ -91,6 +100,7 @@ def reduced(body: ModalBody, points: tuple[str, ...], tolerance: float) -> tuple
     shapes = {name: np.asarray(value_of(shape), dtype=float) / np.sqrt(mass) for name, shape in body.shapes.items()}
     loads = np.vstack([shapes[name] for name in points]) if points else np.zeros((0, omega.size))
     count, _ = modes_to_keep(omega, loads, tolerance)
+    count = max(count, int(np.count_nonzero(omega <= ABOVE * fastest)))
     count = max([count, *(i + 1 for i, name in enumerate(body.dof_names) if _starts(body, name))])
     residual = modal_residual(omega[count:], loads[:, count:])
     if count + residual.frequencies.size >= body.n_modes:
@@ -100,7 +110,8 @@ def reduced(body: ModalBody, points: tuple[str, ...], tolerance: float) -> tuple
     note = (
         f"{body.name}: {count} of {body.n_modes} modes and {residual.frequencies.size} residual ones; those left out"
         f" carry {lost:.1e} of the static flexibility at {', '.join(points) or 'no load'}; displacement there is wrong"
-        f" by at most about {2.0 * lost:.1e} of its elastic part where a force jumps"
+        f" by at most about {2.0 * lost:.1e} of its elastic part where a force jumps or vibrates below"
+        f" {omega[count] / ABOVE:.3g} rad per unit of time"
     )
     return _with_residual(body, count, residual, {n: s[:, count:] for n, s in shapes.items()}, lost), note
 

@@ -37,9 +37,7 @@ def test_order_of_declaration(method):
     wild = fm.Scene("wild", [chain.parts[i] for i in order])
     assert wild.plan().bandwidth == chain.plan().bandwidth == 1
     tight = 1e-4 if method == "timestepping" else 1e-9
-    found, expected = (
-        fm.simulate(scene, t_end=END, rtol=tight, t_eval=GRID, method=method) for scene in (wild, chain)
-    )
+    found, expected = (fm.simulate(scene, t_end=END, rtol=tight, t_eval=GRID, method=method) for scene in (wild, chain))
     scale = np.abs(expected.q).max()
     for name in chain.dof_names:
         np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=10 * tight * scale)

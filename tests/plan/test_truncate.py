@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from fricmb.plan import truncated
@@ -42,6 +43,35 @@ def test_the_error_is_within_the_estimate_and_near_it(full, tolerance):
     for point in ("bar.tip.x", "bar.middle.x"):
         error = np.abs(short[point] - full[point]).max() / np.abs(full["bar.tip.x"]).max()
         assert promised / 50 < error < promised
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.0, 0.01, 0.1])
+@pytest.mark.parametrize("loads", ["one", "several", "slow", "resonant", "vibrating belt"])
+def test_the_estimate_holds_for_many_loads_and_dampings(loads, ratio):
+    """Loads near a mode that would be left out keep it; undamped runs are compared until transitions part."""
+    shapes = {p: np.sqrt(2) * np.sin(x * OMEGA)[None] for p, x in (("tip", 1.0), ("middle", 0.6), ("third", 0.31))}
+    speed = 0.5 + (0.2 * sympy.sin(OMEGA[7] * fm.t) if loads == "vibrating belt" else 0)
+    belt = fm.Driven("belt", velocity={"x": speed})
+    law = fm.laws.Coulomb(mu_s=1.0, mu_k=0.7)
+
+    def scene(truncation):
+        body = fm.ModalBody("bar", frequencies=OMEGA, damping_ratios=ratio, shapes=shapes, truncation=truncation)
+        at = {"tip": 0.5, "middle": 0.3, "third": 0.4} if loads == "several" else {"tip": 1.0}
+        parts = [fm.Contact(f"on {p}", body.point(p), belt, law=law, normal_force=N) for p, N in at.items()]
+        if loads in ("slow", "resonant"):
+            omega = fm.parameter("omega", 2.0 if loads == "slow" else float(OMEGA[5]))
+            value = 0.5 * sympy.sin(fm.t * omega)
+            parts.append(fm.Force("push", body.point("middle"), axis="x", value=value))
+        return fm.Scene(loads, [body, belt, *parts])
+
+    full = fm.simulate(scene(None), t_end=0.9, rtol=1e-7, t_eval=np.linspace(0, 0.9, 301))
+    short = fm.simulate(scene(0.1), t_end=0.9, rtol=1e-7, t_eval=full.t)
+    promised = estimate(scene(0.1))
+    if loads == "resonant":
+        assert "bar.mode6" in short.dof_names
+    error = np.abs(short["bar.tip.x"] - full["bar.tip.x"]).max() / np.abs(full["bar.tip.x"]).max()
+    assert promised / 100 < error < promised
 
 
 def test_static_flexibility_is_that_of_all_modes():
