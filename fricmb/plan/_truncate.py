@@ -19,6 +19,9 @@ Floats = NDArray[np.float64]
 
 #: Modes up to this multiple of the highest frequency of the loads are kept: those above follow it, an eighth too large.
 ABOVE = 3.0
+#: What the estimate is multiplied by where loads vibrate: above the lowest modes they move a body by less than the
+#: static displacement that the shares refer to (from experience, not a bound).
+VIBRATING = 2.0
 
 
 @dataclass(frozen=True)
@@ -99,7 +102,8 @@ def reduced(body: ModalBody, points: tuple[str, ...], tolerance: float, fastest:
     mass, _, _ = modal_matrices(body)
     shapes = {name: np.asarray(value_of(shape), dtype=float) / np.sqrt(mass) for name, shape in body.shapes.items()}
     loads = np.vstack([shapes[name] for name in points]) if points else np.zeros((0, omega.size))
-    count, _ = modes_to_keep(omega, loads, tolerance)
+    swing = 2.0 * (VIBRATING if fastest > 0.0 else 1.0)
+    count, _ = modes_to_keep(omega, loads, 2.0 * tolerance / swing)
     count = max(count, int(np.count_nonzero(omega <= ABOVE * fastest)))
     count = max([count, *(i + 1 for i, name in enumerate(body.dof_names) if _starts(body, name))])
     residual = modal_residual(omega[count:], loads[:, count:])
@@ -110,7 +114,7 @@ def reduced(body: ModalBody, points: tuple[str, ...], tolerance: float, fastest:
     note = (
         f"{body.name}: {count} of {body.n_modes} modes and {residual.frequencies.size} residual ones; those left out"
         f" carry {lost:.1e} of the static flexibility at {', '.join(points) or 'no load'}; displacement there is wrong"
-        f" by at most about {2.0 * lost:.1e} of its elastic part where a force jumps or vibrates below"
+        f" by at most about {swing * lost:.1e} of its elastic part where a force jumps or vibrates below"
         f" {omega[count] / ABOVE:.3g} rad per unit of time"
     )
     return _with_residual(body, count, residual, {n: s[:, count:] for n, s in shapes.items()}, lost), note
