@@ -37,11 +37,11 @@ if TYPE_CHECKING:
     from fricmb.equations._scene import SceneEquations
 
 
-def scene_equations(scene: Scene) -> SceneEquations:
+def scene_equations(scene: Scene, *, joint_coordinates: bool = False) -> SceneEquations:
     """The equations of motion of a whole scene in SymPy, on demand."""
     from fricmb.equations._scene import scene_equations as derive
 
-    return derive(scene)
+    return derive(scene, joint_coordinates=joint_coordinates)
 
 
 __all__ = [

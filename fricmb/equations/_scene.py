@@ -14,6 +14,7 @@ from fricmb.equations._collector import Collector, exact
 from fricmb.equations._friction import Friction, friction
 from fricmb.equations._mechanism import Constraint, add_gravity, add_joint, add_rigid_body
 from fricmb.equations._names import coordinate_symbols, subscript
+from fricmb.equations._tree import in_joint_coordinates
 from fricmb.scene import (
     Body,
     Contact,
@@ -110,11 +111,13 @@ class SceneEquations:
         return "\n".join(rows)
 
 
-def scene_equations(scene: Any) -> SceneEquations:
+def scene_equations(scene: Any, *, joint_coordinates: bool = False) -> SceneEquations:
     """The equations of motion of a scene."""
-    found = scene._cache.get("equations")
+    key = "equations in joint coordinates" if joint_coordinates else "equations"
+    found = scene._cache.get(key)
     if found is None:
-        found = scene._cache["equations"] = _derive(scene)
+        found = in_joint_coordinates(scene, scene_equations(scene)) if joint_coordinates else _derive(scene)
+        scene._cache[key] = found
     return found  # type: ignore[no-any-return]
 
 

@@ -300,11 +300,16 @@ class Scene:
         return scene
 
     # -- facades ------------------------------------------------------------------------------------------------
-    def equations(self) -> Any:
-        """The equations of motion in SymPy: ``.M``, ``.rhs``, ``.latex()``."""
+    def equations(self, *, joint_coordinates: bool = False) -> Any:
+        """The equations of motion in SymPy: ``.M``, ``.rhs``, ``.latex()``.
+
+        ``joint_coordinates``: bodies that hang on pins, guides and welds in the coordinates of these joints
+        (``"pin.angle"``, ``"guide.slide"``), whose reactions drop out; other joints, and those that close loops, stay
+        constraints.
+        """
         from fricmb.equations import scene_equations
 
-        return scene_equations(self)
+        return scene_equations(self, joint_coordinates=joint_coordinates)
 
     def plan(self) -> Any:
         """What will be built and what is left out, with counts; printable."""
