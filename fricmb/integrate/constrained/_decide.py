@@ -46,6 +46,18 @@ def release(mech: Mech, k: Moving, y: State, c: int) -> None:
 
 
 @kernel
+def hold(mech: Mech, y: State, c: int, anew: bool) -> None:
+    """Let port c stick; ``anew``: by no force yet.
+
+    Of ports that hold more than there is to hold Newton's changes are of least norm, so forces are, too, if they come
+    from 0; what they were before says nothing.
+    """
+    y.mode[c] = STICK
+    for a in range(mech.port.row[c], mech.port.row[c + 1] if anew else mech.port.row[c]):
+        y.F[a] = 0.0
+
+
+@kernel
 def ease(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
     """As ``react``; where ports set out in a plane, along a path from the forces that held them.
 
@@ -111,7 +123,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
             if c == forced:
                 release(mech, k, y, c)
             else:
-                y.mode[c] = STICK
+                hold(mech, y, c, y.mode[c] != STICK)
     for _ in range(4 * count + 4):
         if not ease(mech, k, w, y):
             break
@@ -167,7 +179,7 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
                 code //= 3
                 twice = twice or (digit == 2 and plane(mech, c))
                 if digit == 0:
-                    y.mode[c] = STICK
+                    hold(mech, y, c, True)
                 elif plane(mech, c):
                     release(mech, k, y, c)
                 else:

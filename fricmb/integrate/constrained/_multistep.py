@@ -20,7 +20,7 @@ from fricmb.integrate.constrained._locate import nears_singular, violated
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._past import Past, put, rescale
 from fricmb.integrate.constrained._record import Record, copy_state, record_step
-from fricmb.integrate.constrained._slip import aim
+from fricmb.integrate.constrained._slip import aim, keep_held
 from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained._state import Instant, State
 from fricmb.integrate.constrained._step import Control, measure, settle
@@ -83,6 +83,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         for part, target in ((end.lam, one.lam[0]), (end.F, one.F[0]), (end.z, one.Z[0])):
             for i in range(part.shape[0]):
                 target[i] = part[i]
+        keep_held(mech, y.mode, y.F, one.F[0])
         used = iterate_stages(mech, k, base, one, beta_h, accuracy, y.mode, mech.address)
         c.counts[2] += max(used, 1)
         if used == 0 or one.found[0] > SLOW:

@@ -8,7 +8,7 @@ from fricmb.integrate._call import call
 from fricmb.integrate._field import gather
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._laws import break_away
-from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, Codes, Floats, Ints
+from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate.constrained._field import call_joint, friction_at
 from fricmb.integrate.constrained._matrix import Layers, add, add_form, add_row
@@ -53,6 +53,22 @@ def stick_limit(mech: Mech, k: Moving, c: int, N: Floats) -> float:
     """Force up to which port c sticks."""
     load = max(N[c], 0.0)
     return float(break_away(mech.port, mech.port.laws, c, k.s, load) * load)  # type: ignore[arg-type]
+
+
+@kernel
+def keep_held(mech: Mech, mode: Codes, now: Floats, F: Floats) -> None:
+    """Predict what holds ports that stick by what it is ``now``, where there are several.
+
+    They may hold more than there is to hold.  What no equation determines of their forces is left as predicted, and
+    polynomials through its round-off would grow from step to step.
+    """
+    row = mech.port.row
+    held = 0
+    for c in range(mode.shape[0]):
+        held += row[c + 1] - row[c] if mode[c] == STICK else 0
+    for c in range(mode.shape[0] if held > 1 else 0):
+        for a in range(row[c], row[c + 1] if mode[c] == STICK else row[c]):
+            F[a] = now[a]
 
 
 @kernel

@@ -245,9 +245,10 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         if not (factored and n_c == 0) and instant_matrix(mech, k, w, y, ALL, mech.address) != 0:
             return False
         solve_instant(mech, w)
-        change, size = 0.0, size0
+        change, size, inertia = 0.0, size0, 0.0
         for i in range(n):
             y.a[i] -= w.r[i]
+            inertia = max(inertia, mech.mass[i] * abs(w.r[i]))
             change, size = max(change, abs(w.r[i])), max(size, abs(y.a[i]))
         # reactions may pass through 0: what is round-off is seen from the forces of inertia and weight, too
         force = 0.0
@@ -262,7 +263,9 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
             return False
         if (n_c == 0 and (iteration > 0 or not factored)) or (change <= 1e-12 * size and force <= 1e-12 * load):
             break
-        error = max(change / max(size, 1e-300), force / max(load, 1e-300))
+        # what rests accelerates by round-off of the forces that hold it
+        part = min(change / max(size, 1e-300), inertia / max(load, 1e-300))
+        error = max(part, force / max(load, 1e-300))
         if error < 1e-9 and error >= 0.5 * last:
             break
         last = error

@@ -13,7 +13,7 @@ from fricmb.integrate.constrained._field import forces, move
 from fricmb.integrate.constrained._near import choose_forms, prepare_turns
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_positions, project_velocities
-from fricmb.integrate.constrained._slip import aim
+from fricmb.integrate.constrained._slip import aim, keep_held
 from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained._state import Instant, State, powers, react
 
@@ -150,6 +150,8 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
         prepare_turns(mech, st)
     measure(c, y, h, st.scale)
     predict(c, y, st, h)
+    for i in range(st.tab.c.shape[0]):
+        keep_held(mech, y.mode, y.F, st.F[i])
     used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), y.mode, mech.address)
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     return used > 0
