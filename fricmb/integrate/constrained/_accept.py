@@ -23,8 +23,9 @@ class Watch(NamedTuple):
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` (1,) the least
     principal minor of the same for several of them (``which``, ``A``, ``B`` room for it).  ``sigma`` (4,): least
     singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak`` (m,) its direction.
-    ``trigger`` (2 n_c + n_j,): what must not fall below 0; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
-    there are; ``size`` (3,) running maxima of slip velocity, force and position.
+    ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
+    there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,): see ``_kinks``; ``size`` (3,) running
+    maxima of slip velocity, force and position.
     """
 
     margin: Floats
@@ -38,6 +39,10 @@ class Watch(NamedTuple):
     old: Floats
     gap: Floats
     opened: Ints
+    bends: Ints
+    kinked: Ints
+    kink: Floats
+    side: Floats
     size: Floats
     lam: Floats
 
@@ -45,12 +50,14 @@ class Watch(NamedTuple):
 def watch_of(problem: Problem) -> Watch:
     """Rooms for the problem."""
     m = mechanism_of(problem)
-    count = 2 * problem.n_c + len(m.joints.port)
+    count = 3 * problem.n_c + len(m.joints.port)
     return room(Watch(
         np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count), np.ones(count),
         np.zeros(len(m.joints.port)),
-        np.array([int((m.joints.dropped == 2).sum())]), np.zeros(3), np.zeros(m.n_rows + 1),
+        np.array([int((m.joints.dropped == 2).sum())]), np.zeros(len(m.joints.port), np.int64),
+        np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), np.zeros(3),
+        np.zeros(m.n_rows + 1),
     ))  # fmt: skip
 
 
@@ -217,7 +224,10 @@ def triggers(
     mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
     at_end: bool,
 ) -> None:  # fmt: skip
-    """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps)."""
+    """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps).
+
+    Behind them one a port whose load has a kink in the present step.
+    """
     port, joint = mech.port, mech.joint
     n_c = mode.shape[0]
     for c in range(n_c):
@@ -235,6 +245,14 @@ def triggers(
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
             out.trigger[2 * n_c + j] = out.gap[j] if at_end else 1.0
+    kinks = 2 * n_c + joint.port.shape[0]
+    for c in range(n_c):
+        out.trigger[kinks + c] = 1.0
+        if out.kinked[c] != 0:
+            j, value = port.joint[c], 0.0
+            for r in range(joint.row[j], joint.row[j + 1]):
+                value += out.kink[r] * lam[r]
+            out.trigger[kinks + c] = value
 
 
 @kernel

@@ -16,6 +16,7 @@ from fricmb.integrate.constrained._codes import (
     FAIL_STEP,
     REJECTED,
 )
+from fricmb.integrate.constrained._kinks import find_kinks
 from fricmb.integrate.constrained._locate import (
     dips,
     last_unique,
@@ -135,6 +136,7 @@ def radau_step(
             record_step(mech, rec, y, end, st, c, h, mech.address)
             copy_state(end, y, mech.address)
         return FAIL_MARGIN
+    find_kinks(mech, k, y, st, out)
     worst = violated(mech, k, out, end, st, mech.address)
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
@@ -153,6 +155,11 @@ def radau_step(
         c.h[0] = h * min(3.0, max(0.3, factor))
     if near_singular(mech, k, w, y, out, h):
         return FAIL_SINGULAR
+    if worst >= 2 * y.mode.shape[0] + mech.joint.port.shape[0]:
+        # a load that has a kink: nothing changes but the polynomials
+        c.h[1] = 0.0
+        c.made[0] = 0.0
+        return ACCEPTED
     if worst >= 0:
         rec.after[rec.used[0] - 1] = 1
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst, mech.address)

@@ -17,6 +17,7 @@ from fricmb.integrate.constrained._codes import (
     FULL,
 )
 from fricmb.integrate.constrained._decide import FOUND, SEVERAL, decide, mark_rest
+from fricmb.integrate.constrained._kinks import mark_bends
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_velocities
 from fricmb.integrate.constrained._record import Record, crowded
@@ -52,10 +53,11 @@ def begin(
         return FAIL_MARGIN
     out.sigma[0] = out.sigma[1]
     n_c = y.mode.shape[0]
+    mark_bends(mech, k, y, out)
     for _ in range(mech.joint.port.shape[0]):
         triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, False)
         worst = 2 * n_c
-        for j in range(2 * n_c, out.trigger.shape[0]):
+        for j in range(2 * n_c, 2 * n_c + mech.joint.port.shape[0]):
             worst = j if out.trigger[j] < out.trigger[worst] else worst
         if out.trigger[worst] >= 0.0:
             break

@@ -27,7 +27,7 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
     n_c = y.mode.shape[0]
     if is_slip(j, y):
         return float(1e-13 * out.size[0])
-    if j >= 2 * n_c and mech.joint.dropped[mech.joint.row[j - 2 * n_c]] == 2:
+    if 2 * n_c <= j < 2 * n_c + mech.joint.port.shape[0] and mech.joint.dropped[mech.joint.row[j - 2 * n_c]] == 2:
         return float(1e-13 * out.size[2])
     return float(1e-13 * out.size[1])
 

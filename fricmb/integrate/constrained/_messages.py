@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import SLIP, Problem
+from fricmb.integrate._problem import SLIP, STICK, Codes, Floats, Problem
 from fricmb.integrate.constrained._codes import (
     FAIL_HIT,
     FAIL_LOST,
@@ -38,10 +38,13 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
             " to be positive (the reaction grows with the friction that it causes faster than friction sheds it:"
             " Painleve, jamming)"
         )
-    if code == FAIL_NONE:
-        return "no combination of stick and slip satisfies friction and reactions together"
-    if code == FAIL_SEVERAL:
-        return "several combinations of stick and slip satisfy friction and reactions together"
+    if code in (FAIL_NONE, FAIL_SEVERAL):
+        slow = [c for c in range(problem.n_c) if _slip(problem, c, y.g) <= 1e-9 * float(out.size[0])]
+        at_rest = ", ".join(repr(names[c]) for c in slow)
+        which = "no combination of stick and slip satisfies" if code == FAIL_NONE else (
+            "several combinations of stick and slip satisfy"
+        )  # fmt: skip
+        return f"{which} friction and reactions together (at rest: {at_rest})"
     row = joints.row[:-1]
     if code == FAIL_LOST:
         held = (joints.one_sided != 0) & (joints.hands_over == 0)
@@ -59,4 +62,25 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
         )
     if code == FAIL_PROJECT:
         return "velocities could not be brought onto the constraints of what sticks"
-    return "the step size fell to round-off: the solution is not smooth here, or grows without bound"
+    text = "the step size fell to round-off: the solution is not smooth here, or grows without bound"
+    stuck = [repr(names[c]) for c in range(problem.n_c) if y.mode[c] == STICK]
+    return f"{text} (what sticks: {', '.join(stuck)})" if stuck else text
+
+
+def _slip(problem: Problem, c: int, g: Any) -> float:
+    row = problem.contacts.row
+    return float(np.linalg.norm(np.asarray(g)[row[c] : row[c + 1]]))
+
+
+def held_notes(problem: Problem, t: Floats, mode: Codes, opened: Codes) -> tuple[str, ...]:
+    """A note where ports stick that hold more than there is to hold: step starts t (k,), modes and open joints."""
+    m = mechanism_of(problem)
+    free = m.n - m.n_rows + int((m.joints.dropped == 1).sum()) + opened.sum(axis=1)
+    more = np.flatnonzero((mode == STICK) @ np.diff(problem.contacts.row) > free)
+    if not len(more):
+        return ()
+    stuck = ", ".join(repr(problem.contact_names[c]) for c in np.flatnonzero(mode[more[0]] == STICK))
+    return (
+        f"{stuck} stick together and hold more than there is to hold (first at t = {t[more[0]]:.6g}): what each of them"
+        " holds is not determined; forces of least norm are taken",
+    )

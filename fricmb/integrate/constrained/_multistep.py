@@ -16,6 +16,7 @@ from fricmb.integrate._room import block
 from fricmb.integrate.constrained._accept import Watch, margins
 from fricmb.integrate.constrained._advance import grow, near_singular
 from fricmb.integrate.constrained._codes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
+from fricmb.integrate.constrained._kinks import find_kinks
 from fricmb.integrate.constrained._locate import nears_singular, violated
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._past import Past, put, rescale
@@ -218,6 +219,7 @@ def multistep(
         return REJECTED
     update(past)
     inside(y, st, c, past)
+    find_kinks(mech, k, y, st, out)
     if margins(mech, k, w, end, out, False, mech.address) <= 0.0 or violated(mech, k, out, end, st, mech.address) >= 0:
         return HANDOVER
     for i in range(y.work.shape[0]):

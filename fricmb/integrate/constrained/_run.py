@@ -17,7 +17,7 @@ from fricmb.integrate.constrained._assemble import away, consistent_start
 from fricmb.integrate.constrained._codes import DONE, FULL
 from fricmb.integrate.constrained._drive import begin, drive
 from fricmb.integrate.constrained._least import mass_of, names_of_rows
-from fricmb.integrate.constrained._messages import failure_text
+from fricmb.integrate.constrained._messages import failure_text, held_notes
 from fricmb.integrate.constrained._pack import add_blocks, mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained._past import past_of
 from fricmb.integrate.constrained._record import Record, record_of
@@ -79,7 +79,9 @@ def run_mechanism(
     if code == DONE:
         load = _load(m, y)
         if not np.any(y.v) and (mass * np.abs(y.a)).max(initial=0.0) <= ROUND_OFF * load:
-            control.floor_v[:] = np.maximum(floor, _speed_to_come(problem, start, t_end, load, mass))
+            to_come = _speed_to_come(problem, start, t_end, load, mass)
+            control.floor_v[:] = np.maximum(floor, to_come)
+            out.size[0] = max(float(out.size[0]), to_come)
         control.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
         code = FULL
     while code == FULL:
@@ -93,6 +95,7 @@ def run_mechanism(
     steps = [np.concatenate(x) for x in zip(*chunks, strict=True)]
     span, values, force, mode, opened, after, event = steps
     failure = None if code == DONE else failure_text(code, problem, y, out)
+    notes = (*notes, *held_notes(problem, span[:, 0], mode, opened))
     done, rejected, rhs, jac, lu = (int(x) for x in control.counts[:5])
     final = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
     return StepTrajectory(

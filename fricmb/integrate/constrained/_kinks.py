@@ -1,0 +1,94 @@
+"""Where the load of a joint has a kink: a reaction passes through 0 that friction takes by its magnitude.
+
+Guides and points on surfaces are loaded by sums of magnitudes, N = sum_i |s_i . lam|: linear in the reactions lam until
+one of them changes its sign.  A formula of high order has its order on either side alone, so a step ends there.
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate._kernel import kernel
+from fricmb.integrate._problem import SLIP, Floats
+from fricmb.integrate.constrained._accept import Watch
+from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._stages import Stages
+from fricmb.integrate.constrained._state import State
+
+#: Directions of the reactions in which slopes of a load are compared.
+DIRECTIONS = 8
+#: Slopes that are the same to round-off, beside their size.
+SAME = 1e-9
+#: Reactions that are not 0 only by the round-off of locating where they are, beside the largest force.
+LEFT = 1e-11
+
+
+@kernel
+def slopes(mech: Mech, k: Moving, j: int) -> int:
+    """Where in ``k.out`` the slopes dN/dlam of joint j, just evaluated, begin."""
+    n_x = mech.joint.n_x[j]
+    return int(friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + n_x + n_x * n_x + 1)
+
+
+@kernel
+def mark_bends(mech: Mech, k: Moving, y: State, out: Watch) -> None:
+    """Mark the joints whose load is linear in the reactions by pieces: slopes stay where reactions change a little."""
+    joint = mech.joint
+    for j in range(joint.port.shape[0]):
+        out.bends[j] = 1 if joint.port[j] >= 0 else 0
+        first, last = joint.row[j], joint.row[j + 1]
+        for d in range(DIRECTIONS if out.bends[j] != 0 else 0):
+            for near in range(2):
+                for r in range(first, last):
+                    # irrational turns: no direction lies on an edge
+                    turn = (d + 1) * (r - first + 1) * 0.6180339887498949
+                    out.lam[r] = 2.0 * (turn - int(turn)) - 1.0 + near * 1e-4 * (r - first + 1)
+                if near == 0:
+                    read_slopes(mech, k, j, out.lam, out.side)
+                elif compare_slopes(mech, k, j, out.lam, out):
+                    out.bends[j] = 0
+
+
+@kernel
+def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
+    """Kinks of loads within the step from y whose stages are solved: ``kink . lam`` passes from above to below 0 there.
+
+    It is the slope of the load at the start less that at the first stage where it is another.  Where a step has just
+    ended at a kink, that at the start is what round-off makes of it, and the first stage serves instead.
+    """
+    joint = mech.joint
+    for c in range(y.mode.shape[0]):
+        out.kinked[c] = 0
+        j = mech.port.joint[c]
+        if j < 0 or y.mode[c] != SLIP or out.bends[j] == 0:
+            continue
+        read_slopes(mech, k, j, y.lam, out.side)
+        for i in range(st.tab.c.shape[0]):
+            if compare_slopes(mech, k, j, st.lam[i], out):
+                here = 0.0
+                for r in range(joint.row[j], joint.row[j + 1]):
+                    here += out.kink[r] * y.lam[r]
+                if i > 0 or here > LEFT * out.size[1]:
+                    out.kinked[c] = 1
+                    break
+                read_slopes(mech, k, j, st.lam[i], out.side)
+
+
+@kernel
+def read_slopes(mech: Mech, k: Moving, j: int, lam: Floats, out: Floats) -> None:
+    """Slopes dN/dlam of joint j into its rows of ``out``."""
+    call_joint(mech, k, j, lam, 0, mech.address)
+    at = slopes(mech, k, j)
+    for r in range(mech.joint.row[j], mech.joint.row[j + 1]):
+        out[r] = k.out[at + r - mech.joint.row[j]]
+
+
+@kernel
+def compare_slopes(mech: Mech, k: Moving, j: int, lam: Floats, out: Watch) -> bool:
+    """Whether the slopes at lam are others than in ``side``; the difference is put into ``kink``."""
+    read_slopes(mech, k, j, lam, out.kink)
+    differ = False
+    for r in range(mech.joint.row[j], mech.joint.row[j + 1]):
+        slope = out.kink[r]
+        out.kink[r] = out.side[r] - slope
+        differ = differ or abs(out.kink[r]) > SAME * max(abs(slope), abs(out.side[r]))
+    return differ
