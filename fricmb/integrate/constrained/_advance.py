@@ -121,6 +121,10 @@ def radau_step(
         c.h[0] = 0.4 * h
         return REJECTED
     error = error_of(c, y, st)
+    if not error < 1e300:
+        c.counts[1] += 1
+        c.h[0] = 0.4 * h
+        return REJECTED
     factor = 0.85 * max(error, 1e-12) ** (-1.0 / (s + 1))
     if error > 1.0:
         c.counts[1] += 1

@@ -112,18 +112,22 @@ def at_rest(mech: Mech, y: State, c: int, part: Codes) -> bool:
 def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int, address: Ints) -> int:
     """Modes of the ports in ``part`` (their slip is 0); the others keep theirs.  ``forced`` (or -1) does not stick.
 
-    Sticking first; the port that is furthest beyond its limit is released against its force, one that would slip the
-    wrong way sticks again.  Where that does not settle, every combination is tried.
+    Sticking first (what is at its limit already stays there where another breaks away); the port that is furthest
+    beyond its limit is released against its force, one that would slip the wrong way sticks again.  Where that does not
+    settle, every combination is tried.
     """
     n_c = y.mode.shape[0]
-    count = 0
+    count, anew = 0, True
+    for c in range(n_c):
+        # what has rested goes on from the forces that held it, as what is elastic does
+        anew = anew and not (at_rest(mech, y, c, part) and y.mode[c] == STICK)
     for c in range(n_c):
         if at_rest(mech, y, c, part):
             count += 1
             if c == forced:
                 release(mech, k, y, c)
-            else:
-                hold(mech, y, c, y.mode[c] != STICK)
+            elif forced < 0 or y.mode[c] == STICK or plane(mech, c):
+                hold(mech, y, c, anew)
     for _ in range(4 * count + 4):
         if not ease(mech, k, w, y):
             break
