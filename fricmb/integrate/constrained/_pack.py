@@ -215,7 +215,8 @@ class Moving(NamedTuple):
     (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
     ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
     their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``_friction``);
-    ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on.
+    ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
+    ``borne`` (1,) the largest force so far.
     """
 
     s: Scratch
@@ -232,6 +233,7 @@ class Moving(NamedTuple):
     form: Codes
     held: Floats
     part: Floats
+    borne: Floats
 
 
 def moving_of(problem: Problem) -> Moving:
@@ -258,7 +260,7 @@ def moving_of(problem: Problem) -> Moving:
         scratch, np.zeros(grad + 1), np.zeros(grad + 1), np.zeros(hess + 1), np.zeros(n_y), np.zeros(n_x),
         np.zeros(max(n_out, 2 + 2 * b + 2 * b * b)), np.zeros(n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
-        np.zeros(problem.n_c), np.ones(1),
+        np.zeros(problem.n_c), np.ones(1), np.zeros(1),
     ))  # fmt: skip
 
 

@@ -223,6 +223,8 @@ def largest(x: Floats) -> float:
     return value
 
 
+#: Forces below this part of the largest so far are left with the round-off of that, once all is at rest.
+HISTORY = 1e-8
 #: Newton's iterations at an instant: friction makes the problem piecewise linear, a law of the load nonlinear.
 ITERATIONS = 25
 
@@ -237,7 +239,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     last = np.inf
     # where everything comes to rest, round-off is that of what has been
-    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F))
+    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[0])
     for iteration in range(ITERATIONS):
         instant_residual(mech, k, w, y, mech.address)
         for i in range(nz):
@@ -261,9 +263,10 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
             force, load = max(force, abs(w.r[n + m + c])), max(load, abs(y.F[c]))
         if not (change < np.inf and force < np.inf):
             return False
-        if (n_c == 0 and (iteration > 0 or not factored)) or (change <= 1e-12 * size and force <= 1e-12 * load):
-            break
         # what rests accelerates by round-off of the forces that hold it
+        found = force <= 1e-12 * load and (change <= 1e-12 * size or inertia <= 1e-15 * load)
+        if found or (n_c == 0 and (iteration > 0 or not factored)):
+            break
         part = min(change / max(size, 1e-300), inertia / max(load, 1e-300))
         error = max(part, force / max(load, 1e-300))
         if error < 1e-9 and error >= 0.5 * last:
@@ -271,6 +274,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         last = error
     else:
         return False
+    k.borne[0] = max(k.borne[0], load)
     instant_residual(mech, k, w, y, mech.address)
     powers(mech, k, y.F, y.g, y.N, y.rate, mech.address)
     return True
