@@ -38,13 +38,11 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
             " to be positive (the reaction grows with the friction that it causes faster than friction sheds it:"
             " Painleve, jamming)"
         )
-    if code in (FAIL_NONE, FAIL_SEVERAL):
-        slow = [c for c in range(problem.n_c) if _slip(problem, c, y.g) <= 1e-9 * float(out.size[0])]
-        at_rest = ", ".join(repr(names[c]) for c in slow)
-        which = "no combination of stick and slip satisfies" if code == FAIL_NONE else (
-            "several combinations of stick and slip satisfy"
-        )  # fmt: skip
-        return f"{which} friction and reactions together (at rest: {at_rest})"
+    at_rest, stuck = _at_rest(problem, y, out), _stuck(problem, y)
+    if code == FAIL_NONE:
+        return f"no combination of stick and slip satisfies friction and reactions together{at_rest}"
+    if code == FAIL_SEVERAL:
+        return f"several combinations of stick and slip satisfy friction and reactions together{at_rest}"
     row = joints.row[:-1]
     if code == FAIL_LOST:
         held = (joints.one_sided != 0) & (joints.hands_over == 0)
@@ -62,14 +60,21 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
         )
     if code == FAIL_PROJECT:
         return "velocities could not be brought onto the constraints of what sticks"
-    text = "the step size fell to round-off: the solution is not smooth here, or grows without bound"
-    stuck = [repr(names[c]) for c in range(problem.n_c) if y.mode[c] == STICK]
-    return f"{text} (what sticks: {', '.join(stuck)})" if stuck else text
+    return f"the step size fell to round-off: the solution is not smooth here, or grows without bound{stuck}"
 
 
-def _slip(problem: Problem, c: int, g: Any) -> float:
+def _stuck(problem: Problem, y: Any) -> str:
+    """What sticks, in brackets."""
+    names = [repr(name) for name, mode in zip(problem.contact_names, y.mode, strict=True) if mode == STICK]
+    return f" (what sticks: {', '.join(names)})" if names else ""
+
+
+def _at_rest(problem: Problem, y: Any, out: Any) -> str:
+    """What is at rest, in brackets."""
     row = problem.contacts.row
-    return float(np.linalg.norm(np.asarray(g)[row[c] : row[c + 1]]))
+    g = np.asarray(y.g)
+    slow = [c for c in range(problem.n_c) if np.linalg.norm(g[row[c] : row[c + 1]]) <= 1e-9 * float(out.size[0])]
+    return f" (at rest: {', '.join(repr(problem.contact_names[c]) for c in slow)})" if slow else ""
 
 
 def held_notes(problem: Problem, t: Floats, mode: Codes, opened: Codes) -> tuple[str, ...]:
