@@ -52,9 +52,14 @@ def measure_order(label: str) -> dict[str, Any]:
         return {"method": label, "failure": one_line(reason)}
     first = next((i for i in range(1, len(steps)) if steps[i] < steps[i - 1]), len(steps))
     # fewer steps for a tighter tolerance: another formula has taken over
-    # two points have an order by chance
-    fitted = order(steps[:first], errors[:first]) if first > 2 else None
-    return {"method": label, "steps": steps, "errors": errors, "order": fitted}
+    return {"method": label, "steps": steps, "errors": errors, "order": _fitted(steps[:first], errors[:first])}
+
+
+def _fitted(steps: list[int], errors: list[float]) -> float | None:
+    """The order, where there are more than two points, and steps differ by enough to show one."""
+    if len(steps) < 3 or max(steps) < 2 * min(steps):
+        return None
+    return order(steps, errors)
 
 
 def _run(integrator: Integrator, setting: float) -> tuple[int, float]:
