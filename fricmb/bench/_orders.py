@@ -50,8 +50,8 @@ def measure_order(label: str) -> dict[str, Any]:
                 break
     except FricmbError as reason:
         return {"method": label, "failure": one_line(reason)}
-    first = next((i for i in range(1, len(steps)) if steps[i] < steps[i - 1]), len(steps))
     # fewer steps for a tighter tolerance: another formula has taken over
+    first = next((i for i in range(1, len(steps)) if steps[i] < steps[i - 1]), len(steps))
     return {"method": label, "steps": steps, "errors": errors, "order": _fitted(steps[:first], errors[:first])}
 
 

@@ -112,6 +112,7 @@ class Animation:
 
 
 def canvas(found: Layout, title: str, *, legend: bool = True) -> tuple[Figure, Axes]:
+    """An empty figure with room for the parts of a layout, and the ground."""
     places = np.array(list(found.places.values())) if found.places else np.zeros((1, 2))
     left, right = places[:, 0].min() - WIDTH - 1.2, places[:, 0].max() + WIDTH + 0.6
     top = places[:, 1].max() + HEIGHT + 0.5
