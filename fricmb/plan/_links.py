@@ -116,6 +116,7 @@ class Links:
         found = breadth_first_order(graph.tocsr(), n + k, return_predecessors=False)
         return np.sort(found[found < n]).tolist()  # type: ignore[no-any-return]
 
+    @cached_property
     def labels(self) -> Ints:
         """A number for each degree of freedom, the same for those that parts tie together (n,)."""
         bound = self.first[self.owner] >= 0
@@ -126,7 +127,7 @@ class Links:
 
     def groups(self, dofs: Sequence[int]) -> list[Ints]:
         """The given degrees of freedom in groups that parts tie together, in the order of the scene."""
-        return split_by(np.asarray(dofs, dtype=np.int64), self.labels()[np.asarray(dofs, dtype=np.int64)])
+        return split_by(np.asarray(dofs, dtype=np.int64), self.labels[np.asarray(dofs, dtype=np.int64)])
 
 
 def split_by(values: Ints, labels: Ints) -> list[Ints]:

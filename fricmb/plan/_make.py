@@ -155,7 +155,7 @@ def _parts(scene: Scene, links: Links, kept: Flags, inside: Flags) -> list[Part]
 
 def _islands(scene: Scene, links: Links, kept: Sequence[int], dofs: tuple[str, ...]) -> tuple[Island, ...]:
     owner = [body.name for body in scene.bodies for _ in body.dof_names]
-    label = links.labels()
+    label = links.labels
     groups = links.groups(kept)
     island = np.full(links.n, -1, dtype=np.int64)  # of each label
     for number, group in enumerate(groups):

@@ -49,7 +49,7 @@ def outside(scene: Scene, links: Links, kept: Flags, inside: Flags) -> list[Omis
     rest = np.flatnonzero(~kept)
     if not rest.size:
         return []
-    label, mine = links.labels(), ~inside & (links.first >= 0)
+    label, mine = links.labels, ~inside & (links.first >= 0)
     acting: dict[int, list[str]] = {}
     for i in np.flatnonzero(mine).tolist():
         acting.setdefault(int(label[links.first[i]]), []).append(links.parts[i].name)

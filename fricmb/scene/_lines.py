@@ -79,17 +79,13 @@ def _find(scene: Scene) -> Lines:
     for i, part in enumerate(scene.parts):
         kind: Any = type(part)
         if isinstance(part, Contact):
-            ends = _contact(part, spots)
-            for a, b in ends:
-                contacts[0].append(i)
-                contacts[1].append(a)
-                contacts[2].append(b)
+            ends, (at, first, second) = _contact(part, spots), contacts
         else:
-            ends = _element(part, spots) if _is_axial(kind) else ()
-            for a, b in ends:
-                elements[0].append(i)
-                elements[1].append(a)
-                elements[2].append(b)
+            ends, (at, first, second) = _element(part, spots) if _is_axial(kind) else (), elements
+        for a, b in ends:
+            at.append(i)
+            first.append(a)
+            second.append(b)
         if not ends:
             others.append(i)
     return Lines(elements=_rows(elements), contacts=_rows(contacts), motions=tuple(motions), others=others)

@@ -9,8 +9,8 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._problem import Codes, Floats, Problem, Start
-from fricmb.integrate.constrained._least import Least, constraints_at, mass_of, names_of_rows, unit_rows
-from fricmb.integrate.constrained._pack import mechanism_of
+from fricmb.integrate.constrained._least import Least, constraints_at, names_of_rows, unit_rows
+from fricmb.integrate.constrained._pack import masses, mechanism_of
 
 #: A constraint is satisfied to this part of the sizes that occur.
 CLOSED = 1e-12
@@ -28,7 +28,7 @@ def consistent_start(problem: Problem, start: Start) -> tuple[Start, tuple[str, 
     m = mechanism_of(problem)
     if not m.n_rows:
         return start, ()
-    weight = 1.0 / np.sqrt(mass_of(m))
+    weight = 1.0 / np.sqrt(masses(m))
     q, v = np.array(start.q, float), np.array(start.v, float)
     q = closed(problem, m, start.t, q, v, weight)
     there = constraints_at(problem, start.t, q, v)

@@ -12,8 +12,8 @@ from fricmb.errors import SceneError
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._problem import Floats, Ints, Problem, Start
 from fricmb.integrate.constrained._assemble import closed, consistent_start, listed
-from fricmb.integrate.constrained._least import Least, constraints_at, mass_of, names_of_rows, unit_rows
-from fricmb.integrate.constrained._pack import mechanism_of
+from fricmb.integrate.constrained._least import Least, constraints_at, names_of_rows, unit_rows
+from fricmb.integrate.constrained._pack import masses, mechanism_of
 
 #: Singular values this small beside the largest count as 0.
 RANK = 1e-9
@@ -50,7 +50,7 @@ def redundancy(problem: Problem, start: Start, groups: Sequence[Sequence[str]] =
     if not m.n_rows:
         return Redundancy(rows=np.zeros(0, np.int64), joints=())
     start, _ = consistent_start(problem, start)
-    weight = 1.0 / np.sqrt(mass_of(m))
+    weight = 1.0 / np.sqrt(masses(m))
     G = constraints_at(problem, start.t, start.q, start.v).G
     J = unit_rows(G, weight)[0]
     dropped: list[Ints] = []
@@ -120,6 +120,6 @@ def singular_joints(problem: Problem, t: float, q: Floats, v: Floats) -> list[st
     """Joints whose constraints are nearest to depending on one another."""
     m = mechanism_of(problem)
     kept = np.flatnonzero(m.joints.dropped == 0)
-    J = unit_rows(constraints_at(problem, t, q, v).G, 1.0 / np.sqrt(mass_of(m)))[0]
+    J = unit_rows(constraints_at(problem, t, q, v).G, 1.0 / np.sqrt(masses(m)))[0]
     left = np.abs(Least(J[kept]).weakest())
     return names_of_rows(m, kept[np.flatnonzero(left > 0.1 * left.max())])

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._problem import Floats, Ints, Problem
-from fricmb.integrate.constrained._pack import masses, mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained._sample import constraints
 
 #: What keeps the equations regular where constraints depend on one another, beside rows of length 1.
@@ -56,11 +56,6 @@ def _entries(mech: Any, m: Mechanism) -> int:
     start = np.asarray(table.form_start)
     per_joint = total[start[first + n_x]] - total[start[first]]
     return int((per_joint * np.diff(joint.row)).sum()) + 1
-
-
-def mass_of(m: Mechanism) -> Floats:
-    """Diagonal of the mass matrix (n,)."""
-    return masses(m)
 
 
 def names_of_rows(m: Mechanism, rows: Ints) -> list[str]:

@@ -16,9 +16,9 @@ from fricmb.integrate.constrained._accept import watch_of
 from fricmb.integrate.constrained._assemble import away, consistent_start
 from fricmb.integrate.constrained._codes import DONE, FULL
 from fricmb.integrate.constrained._drive import begin, drive
-from fricmb.integrate.constrained._least import mass_of, names_of_rows
+from fricmb.integrate.constrained._least import names_of_rows
 from fricmb.integrate.constrained._messages import failure_text, held_notes
-from fricmb.integrate.constrained._pack import add_blocks, mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained._pack import add_blocks, masses, mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained._past import past_of
 from fricmb.integrate.constrained._record import Record, record_of
 from fricmb.integrate.constrained._stages import stages_of
@@ -59,7 +59,7 @@ def run_mechanism(
     mech, k, w = mech_of(problem), moving_of(problem), instant_of(problem)
     y, end, before = (state_of(problem, start) for _ in range(3))
     st, out = stages_of(problem, radau(stages)), watch_of(problem)
-    mass = mass_of(m)
+    mass = masses(m)
     if (m.joints.dropped == 1).any():
         rows = np.flatnonzero(m.joints.dropped == 1).astype(np.int64)
         listed = ", ".join(repr(name) for name in names_of_rows(m, rows))
