@@ -9,9 +9,10 @@ from fricmb.integrate._factor import Factor, port_inputs, port_outputs
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._lapack import BAND_FACTOR, BAND_SOLVE, addresses, call_lapack
 from fricmb.integrate._pack import Packed
+from fricmb.integrate._places import CORE, PLACES
 from fricmb.integrate._port_state import PortState
 from fricmb.integrate._problem import Ints, Pivots
-from fricmb.integrate._room import CORE, PLACES, block
+from fricmb.integrate._room import block
 from fricmb.integrate._stages import Stages
 from fricmb.integrate._tableau import Complexes, Complexes2, Tableau
 

@@ -10,8 +10,11 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from llvmlite import ir
-from numba import cfunc, types
+from numba import types
+from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
+
+from fricmb.integrate._kernel_cache import kept
 
 #: Signature of every template.
 TEMPLATE = types.void(types.CPointer(types.float64), types.CPointer(types.float64), types.CPointer(types.float64))
@@ -19,7 +22,9 @@ TEMPLATE = types.void(types.CPointer(types.float64), types.CPointer(types.float6
 
 def template(function: Any) -> Any:
     """Compile ``function(x, p, out)`` as a template, kept in numba's disk cache; division by zero follows IEEE 754."""
-    return cfunc(TEMPLATE, cache=True, error_model="numpy")(function)
+    made = CFunc(function, (TEMPLATE.args, TEMPLATE.return_type), locals={}, options={"error_model": "numpy"})
+    kept(made).compile()
+    return made
 
 
 def _pointer(context: Any, builder: Any, array_type: Any, array: Any, offset: Any) -> Any:

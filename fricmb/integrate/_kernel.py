@@ -7,6 +7,8 @@ from typing import Any, TypeVar, cast
 
 from numba import njit
 
+from fricmb.integrate._kernel_cache import kept
+
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
@@ -22,4 +24,4 @@ def kernel(function: _Function) -> _Function:
 
 def entry(function: _Function) -> _Function:
     """Compile ``function`` on its first call from Python; kept in the disk cache with all that it calls."""
-    return cast(_Function, njit(error_model="numpy", cache=True, no_cfunc_wrapper=True)(function))
+    return cast(_Function, kept(njit(error_model="numpy", no_cfunc_wrapper=True)(function)))

@@ -11,8 +11,8 @@ from numba import types
 from numba.extending import get_cython_function_address, intrinsic
 
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._places import LAPACK, PLACES
 from fricmb.integrate._problem import Floats
-from fricmb.integrate._room import LAPACK, PLACES
 from fricmb.integrate._share import shared_addresses
 
 #: Routines that came later and stand at the end of the table; their places.

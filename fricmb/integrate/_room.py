@@ -29,6 +29,10 @@ from numba.extending import (
     unbox,
 )
 
+from fricmb.integrate._content import describe_signature
+from fricmb.integrate._kernel_cache import kept
+from fricmb.integrate._places import PLACES
+
 _Tuple = TypeVar("_Tuple")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _WORD = 8
@@ -177,105 +181,6 @@ def _room_attribute(context: Any, builder: Any, kind: RoomType, value: Any, name
     return array._getvalue()
 
 
-#: Places in the table of addresses: LAPACK, what every run needs, and what single integrators add.  They are compiled
-#: into the callers, so they may not depend on which module is imported first.
-LAPACK = ("dgesv", "zgesv")
-CORE = (
-    "solve_ports",
-    "factorise",
-    "solve_stages",
-    "complete",
-    "settle",
-    "mark_rest",
-    "find_open",
-    "attempt",
-    "finish",
-    "find_trigger",
-    "locate",
-    "transition",
-    "record_inside",
-    "advance",
-)
-#: Blocks of steps on constraints, compiled one by one.
-MECHANISM = (
-    "move",
-    "forces",
-    "call_joint",
-    "add_extended",
-    "add_form",
-    "add_column",
-    "add_row",
-    "add_stiffness",
-    "add_pairs",
-    "add_joints",
-    "add_structure",
-    "add_contacts",
-    "add_slip",
-    "add_load",
-    "add_friction",
-    "friction_residual",
-    "instant_residual",
-    "instant_matrix",
-    "react",
-    "powers",
-    "linearise",
-    "factor_stages",
-    "stage_residual",
-    "newton_change",
-    "iterate_stages",
-    "try_step",
-    "project_positions",
-    "project_velocities",
-    "end_step",
-    "decide",
-    "enumerate_modes",
-    "margins",
-    "change_modes",
-)
-#: What came later to them.
-MECHANISM_STEPS = ("violated", "sigma_after", "record_step", "copy_state", "radau_step", "lightness", "add_stick")
-FURTHER = (
-    "start_history",
-    "bdf_step",
-    "solve_with",
-    "transfer_weights",
-    "solve_slip",
-    "land",
-    "arrive",
-    "begin_phase",
-    "stick_phase",
-    "slip_phase",
-    "taylor_series",
-    "taylor_search",
-    "taylor_change",
-    *MECHANISM,
-    "dgetrf",
-    "dgetrs",
-    "plain_ports",
-    "exact_tables",
-    "exact_attempt",
-    "exact_ports",
-    "exact_error",
-    "exact_finish",
-    "exact_record",
-    "step_error",
-    "zgbtrf",
-    "zgbtrs",
-    "structure_correction",
-    "factorise_band",
-    "correct_band",
-    "newton_band",
-    "newton_condensed",
-    "review_balls",
-    "take_step",
-    *MECHANISM_STEPS,
-    "multistep",
-    "coupled_series",
-    "coupled_change",
-    "coupled_settle",
-    "coupled_pay",
-)
-PLACES = LAPACK + CORE + FURTHER
 _blocks: dict[str, Any] = {}
 
 
@@ -294,7 +199,7 @@ def block(function: _Function) -> _Function:
     def resolve(note: str) -> Any:
         return _SCALARS.get(note) or _array_type(note) or room_type(around[note])
 
-    compiled = njit(error_model="numpy", cache=True)(function)
+    compiled = kept(njit(error_model="numpy")(function))
     signature_of = lambda: (tuple(resolve(note) for note in notes.values()), resolve(wanted))  # noqa: E731
     _blocks[function.__name__] = (compiled, signature_of)
 
@@ -315,7 +220,9 @@ def block(function: _Function) -> _Function:
     names = ", ".join(notes)
     scope: dict[str, Any] = {"typer": typer}
     exec(f"def {function.__name__}(typingctx, {names}):\n    return typer(typingctx, {names})", scope)
-    return cast(_Function, intrinsic(scope[function.__name__]))
+    called = intrinsic(scope[function.__name__])
+    called.called_by_address = lambda: f"{function.__name__} {index} {describe_signature(signature_of()[0])} {wanted}"
+    return cast(_Function, called)
 
 
 def block_address(name: str) -> int:

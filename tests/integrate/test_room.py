@@ -9,8 +9,9 @@ import pytest
 from numba import njit
 
 from fricmb.integrate._lapack import addresses
+from fricmb.integrate._places import CORE, FURTHER, LAPACK, PLACES
 from fricmb.integrate._problem import Codes, Floats, Floats2, Floats3, Ints
-from fricmb.integrate._room import CORE, FURTHER, LAPACK, PLACES, Room, block, block_address, room, room_type
+from fricmb.integrate._room import Room, block, block_address, room, room_type
 
 
 class Inner(NamedTuple):

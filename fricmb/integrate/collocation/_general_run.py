@@ -19,10 +19,11 @@ from fricmb.integrate._integrator import Tolerance
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._onestep import OneStep
 from fricmb.integrate._pack import packed_of
+from fricmb.integrate._places import CORE, PLACES
 from fricmb.integrate._plain_ports import plain_ports
 from fricmb.integrate._port_state import port_state
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
-from fricmb.integrate._room import CORE, PLACES, room
+from fricmb.integrate._room import room
 from fricmb.integrate._stages import Stages
 from fricmb.integrate._tableau import radau
 from fricmb.integrate._trajectory import Counters, Trajectory, Transitions

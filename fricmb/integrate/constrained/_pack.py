@@ -11,8 +11,9 @@ from fricmb.integrate._field import Scratch
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._pack import Spread, Table, _table
+from fricmb.integrate._places import MECHANISM, MECHANISM_STEPS, PLACES
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
-from fricmb.integrate._room import MECHANISM, MECHANISM_STEPS, PLACES, block_address, room
+from fricmb.integrate._room import block_address, room
 from fricmb.integrate.constrained._band import band_addresses, band_sizes
 from fricmb.integrate.constrained._pattern import ordering
 

@@ -7,9 +7,11 @@ from typing import Any, TypeVar, cast
 
 from numba import njit
 
+from fricmb.integrate._kernel_cache import kept
+
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def kernel(function: _Function) -> _Function:
     """Compile at the first call, not at import; kept in the disk cache; division by zero gives inf."""
-    return cast(_Function, njit(cache=True, error_model="numpy")(function))
+    return cast(_Function, kept(njit(error_model="numpy")(function)))

@@ -9,8 +9,9 @@ import numpy as np
 from fricmb.integrate._kept import kept
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._pack import _table
+from fricmb.integrate._places import PLACES
 from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate._room import PLACES, room
+from fricmb.integrate._room import room
 from fricmb.integrate._sparse import Csr
 from fricmb.integrate.taylor import _coupled_change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor._net import Net

@@ -19,8 +19,9 @@ from __future__ import annotations
 
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._lapack import solve_real
+from fricmb.integrate._places import PLACES
 from fricmb.integrate._problem import Floats, Floats2, Ints
-from fricmb.integrate._room import PLACES, block
+from fricmb.integrate._room import block
 from fricmb.integrate.timestepping._balls import all_flat, keep_piece, project, residual, same_piece
 from fricmb.integrate.timestepping._band import (
     add_contacts,

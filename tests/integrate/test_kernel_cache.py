@@ -1,0 +1,89 @@
+"""Machine code is kept by content: an edit of what a kernel calls is seen, what is damaged is made again."""
+
+import os
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+PROGRAM = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from outer import outer
+print(outer(2.0), sum(outer.stats.cache_misses.values()))
+"""
+INNER = """
+from fricmb.integrate._kernel import kernel
+FACTOR = {factor}
+@kernel
+def inner(x: float) -> float:
+    \"\"\"{doc}\"\"\"
+    return FACTOR * x + {shift}
+"""
+OUTER = """
+from fricmb.integrate._kernel import entry
+from inner import inner
+@entry
+def outer(x: float) -> float:
+    return inner(x) + 1.0
+"""
+
+
+@pytest.fixture
+def run(tmp_path):
+    (tmp_path / "outer.py").write_text(textwrap.dedent(OUTER))
+    kept = str(tmp_path / "kept")
+    folders = {"NUMBA_CACHE_DIR": kept, "FRICMB_CACHE_DIR": kept, "TMPDIR": str(tmp_path)}
+
+    def once(*, factor=3.0, shift=0.0, doc="Words."):
+        (tmp_path / "inner.py").write_text(textwrap.dedent(INNER.format(factor=factor, shift=shift, doc=doc)))
+        os.utime(tmp_path / "inner.py", (1e9, 1e9))  # times of files tell nothing
+        command = [sys.executable, "-B", "-c", PROGRAM, str(tmp_path)]
+        out = subprocess.run(command, env={**os.environ, **folders}, capture_output=True, text=True, check=True)
+        value, misses = out.stdout.split()
+        return float(value), int(misses), out.stderr
+
+    once.kept = tmp_path / "kept" / "fricmb"
+    return once
+
+
+def test_an_edit_of_a_called_kernel_is_seen(run):
+    assert run()[:2] == (7.0, 1)
+    assert run()[:2] == (7.0, 0)
+    assert run(shift=0.5)[:2] == (7.5, 1)
+    assert run(factor=4.0)[:2] == (9.0, 1)
+    assert run()[:2] == (7.0, 0), "what was compiled before is still there"
+    assert run(doc="Other words.")[:2] == (7.0, 0), "a docstring is no code"
+
+
+DAMAGES = [lambda data: b"", lambda data: data[: len(data) // 2], lambda data: os.urandom(4000)]
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=["empty", "cut off", "foreign"])
+def test_damaged_files_are_made_again_with_one_line(run, damage):
+    run()
+    (path,) = run.kept.glob("outer-*.nbc")
+    path.write_bytes(damage(path.read_bytes()))
+    value, misses, said = run()
+    assert (value, misses) == (7.0, 1)
+    assert said.count("\n") == 1
+    assert "damaged" in said
+    assert run() == (7.0, 0, "")
+
+
+def test_a_single_flipped_bit_is_seen(run):
+    run()
+    (path,) = run.kept.glob("outer-*.nbc")
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(bytes(data))
+    assert run()[:2] == (7.0, 1)
+
+
+def test_a_folder_that_cannot_be_made_falls_back(run):
+    run.kept.parent.write_text("a file stands where the folder should be")
+    value, misses, said = run()
+    assert (value, misses) == (7.0, 1)
+    assert said.count("\n") == 1
+    assert "cannot be kept" in said
