@@ -19,9 +19,10 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "reference/_*.md"]
+exclude_patterns = ["_build", "jupyter_execute", "reference/_*.md"]  # what an earlier build left is no page
 KINDS = "ipynb", "py", "md5", "json", "zip"
 exclude_patterns += [f"gallery/{deep}*.{kind}" for deep in ("", "**/") for kind in KINDS]
 

@@ -86,8 +86,8 @@ def test_pictures_say_what_they_show(page):
 
 
 def test_readme_has_exactly_two_set_up_commands():
-    indented = re.findall(r"^    (\S.*)$", (ROOT / "README.md").read_text().partition("## A scene")[0], re.MULTILINE)
-    assert indented == ["pip install . && fricmb run brake4dof", 'pip install ".[test]" && pytest']
+    fenced = re.findall(r"^```\n(.*?)\n```$", (ROOT / "README.md").read_text().partition("## A scene")[0], re.MULTILINE)
+    assert fenced == ["pip install . && fricmb run brake4dof", 'pip install ".[test]" && pytest']
 
 
 def test_reference_names_all_that_is_public():
