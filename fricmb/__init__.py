@@ -19,7 +19,14 @@ def __getattr__(name: str) -> Any:
             return version("fricmb")
         except PackageNotFoundError:
             return "0+unknown"
-    return _load(name)
+    try:
+        return _load(name)
+    except AttributeError:
+        if name.startswith("_") or name in _names:
+            raise
+        from fricmb.errors import no_attribute
+
+        raise no_attribute(__name__, name, __all__) from None
 
 
 def __dir__() -> list[str]:

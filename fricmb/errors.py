@@ -65,3 +65,10 @@ def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameEr
     else:
         hint = "there are none"
     return UnknownNameError(f"unknown {kind} {name!r}; {hint}")
+
+
+def no_attribute(module: str, name: str, known: Iterable[str]) -> AttributeError:
+    """The error of a module without a public name, which lists those near; an AttributeError, as Python asks."""
+    near = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
+    hint = f"; did you mean {', '.join(near)}?" if near else ""
+    return AttributeError(f"{module} has no {name!r}{hint}", name=name)

@@ -13,6 +13,8 @@ from fricmb.analysis._spectrum import maximum_entropy_spectrum
 
 Estimate = Callable[[Floats, float], tuple[Floats, Floats]]
 _WHO = "spectral_peaks"
+#: Peaks that a printed list holds at most, those of most power.
+_SHOWN = 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,10 +49,15 @@ class Peaks:
     def __str__(self) -> str:
         rows = [f"{'omega':>12} {'+-':>9} {'power':>11} {'+-':>9} {'width':>9} {'dB':>6}"]
         columns = (self.omega, self.uncertainty, self.power, self.power_uncertainty, self.width, self.prominence)
+        shown = np.sort(np.argsort(-self.power, kind="stable")[:_SHOWN])
         rows += [
             f"{w:12.6g} {dw:9.2g} {p:11.4g} {dp:9.2g} {b:9.2g} {d:6.1f}"
-            for w, dw, p, dp, b, d in zip(*columns, strict=True)
+            for w, dw, p, dp, b, d in zip(*(column[shown] for column in columns), strict=True)
         ]
+        if len(self) > _SHOWN:
+            rows.append(f"and {len(self) - _SHOWN} of less power")
+        if np.isinf(self.uncertainty[shown]).any():
+            rows.append("inf: found in fewer than two parts of the record, so its spread is not known")
         return "\n".join(rows)
 
     def near(self, omega: float) -> int:

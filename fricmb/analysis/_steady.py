@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _MOST_STEPS = 60
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class SteadySliding:
     """Equilibrium of a scene in steady sliding.
 
@@ -45,6 +45,21 @@ class SteadySliding:
     held: tuple[str, ...]
     acceleration: dict[str, float]
     at: Linearised
+
+    def __str__(self) -> str:
+        """A table of degrees of freedom and one of contacts."""
+        rows = [f"{'degree of freedom':24} {'position':>13} {'velocity':>13}"]
+        for i, name in enumerate(self.system.dof_names):
+            held = f"  held, acceleration {self.acceleration[name]:.3g}" if name in self.acceleration else ""
+            rows.append(f"{name:24} {self.q[i]:13.6g} {self.v[i]:13.6g}{held}")
+        rows += ["", f"{'contact':24} {'normal force':>13} {'slip speed':>13} {'friction':>13}"]
+        for name in self.system.contact_names:
+            slip, force = (np.linalg.norm(value) for value in (self.relative_velocity(name), self.force(name)))
+            rows.append(f"{name:24} {self.normal_force(name):13.6g} {slip:13.6g} {force:13.6g}")
+        return "\n".join(rows)
+
+    def __repr__(self) -> str:
+        return f"SteadySliding of {self.scene.name!r}: {len(self.q)} degrees of freedom, {len(self.at.N)} contacts"
 
     def position(self, name: str) -> float:
         """Position of a degree of freedom."""

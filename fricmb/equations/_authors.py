@@ -10,7 +10,7 @@ from fricmb.equations._element import ElementMath, local_symbols
 from fricmb.equations._law import derive_coefficient, derive_smooth
 from fricmb.errors import SceneError
 from fricmb.laws._numeric import coefficient_expression, force_expression
-from fricmb.values import symbolic
+from fricmb.values import in_symbols, symbolic
 
 
 def element_math(element: Any, n: int) -> ElementMath:
@@ -18,10 +18,13 @@ def element_math(element: Any, n: int) -> ElementMath:
     stand = symbolic(element)
     x, v, d, t = local_symbols(n)
     author = stand.standin
-    potential = author.define_potential(x)
-    dissipation = author.define_dissipation(x, v)
-    force = author.define_force(x, v, t)
     label = f"{type(element).__name__} {element.name!r}"
+    with in_symbols(SceneError, label, "define_potential"):
+        potential = author.define_potential(x)
+    with in_symbols(SceneError, label, "define_dissipation"):
+        dissipation = author.define_dissipation(x, v)
+    with in_symbols(SceneError, label, "define_force"):
+        force = author.define_force(x, v, t)
     entries = _vector(force, n, label)
     for what, expression in (("define_potential", potential), ("define_dissipation", dissipation)):
         if isinstance(expression, list | tuple):

@@ -7,6 +7,7 @@ from typing import Any
 
 import sympy
 
+from fricmb.equations._latex import typeset
 from fricmb.equations._names import subscript
 from fricmb.equations._normal import normal_expression
 from fricmb.laws._numeric import coefficient_expression, force_expression
@@ -62,12 +63,12 @@ class Friction:
     def latex_rows(self) -> list[str]:
         """Rows of an ``align*`` environment."""
         law = "" if self.coefficient is None else r" \quad \text{(slip)}"
-        rows = [f"{sympy.latex(s)} &= {sympy.latex(e)}{law}" for s, e in zip(self.force, self.slip, strict=True)]
+        rows = [f"{typeset(s)} &= {typeset(e)}{law}" for s, e in zip(self.force, self.slip, strict=True)]
         if self.break_away is not None:
-            length, cone = sympy.latex(_norm(self.force)), sympy.latex(self.break_away * self.normal_force)
-            rows += [f"{sympy.latex(g)} &= 0" + r" \quad \text{(stick)}" for g in self.velocity]
+            length, cone = typeset(_norm(self.force)), typeset(self.break_away * self.normal_force)
+            rows += [f"{typeset(g)} &= 0" + r" \quad \text{(stick)}" for g in self.velocity]
             rows.append(f"{length} &\\leq {cone}" + r" \quad \text{(stick)}")
-        return rows + [f"\\frac{{d}}{{d t}} {sympy.latex(s)} &= {sympy.latex(e)}" for s, e in self.states.items()]
+        return rows + [f"\\frac{{d}}{{d t}} {typeset(s)} &= {typeset(e)}" for s, e in self.states.items()]
 
 
 def _norm(components: Any) -> Any:

@@ -11,6 +11,7 @@ import sympy
 from fricmb.equations._collector import Collector, exact
 from fricmb.equations._friction import Friction, law_terms
 from fricmb.equations._joint import joint_math
+from fricmb.equations._latex import typeset
 from fricmb.equations._names import coordinate_symbols, subscript
 from fricmb.scene import Body, Gravity, Joint, RigidBody
 from fricmb.values import is_expression, value_of
@@ -31,7 +32,7 @@ class Constraint:
 
     def latex_rows(self) -> list[str]:
         """Rows of an ``align*`` environment."""
-        return [f"{sympy.latex(expression)} &= 0" for expression in self.expressions]
+        return [f"{typeset(expression)} &= 0" for expression in self.expressions]
 
 
 def add_rigid_body(collector: Collector, body: RigidBody, index: Mapping[str, int], M: Any) -> None:

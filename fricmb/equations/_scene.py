@@ -12,6 +12,7 @@ import sympy
 from fricmb.equations._authors import element_math
 from fricmb.equations._collector import Collector, exact
 from fricmb.equations._friction import Friction, friction
+from fricmb.equations._latex import typeset
 from fricmb.equations._mechanism import Constraint, add_gravity, add_joint, add_rigid_body
 from fricmb.equations._names import coordinate_symbols, subscript
 from fricmb.equations._tree import in_joint_coordinates
@@ -93,10 +94,10 @@ class SceneEquations:
 
     def latex(self) -> str:
         r"""The equations of motion, the friction laws and the prescribed motions as an ``align*`` environment."""
-        rows = [f"{sympy.latex(eq.lhs)} &= {sympy.latex(eq.rhs)}" for eq in self.equations]
+        rows = [f"{typeset(eq.lhs)} &= {typeset(eq.rhs)}" for eq in self.equations]
         rows += [row for constraint in self.constraints for row in constraint.latex_rows()]
         rows += [row for contact in self.contacts for row in contact.latex_rows()]
-        rows += [f"{sympy.latex(symbol)} &= {sympy.latex(e)}" for symbol, e in self.prescribed.items()]
+        rows += [f"{typeset(symbol)} &= {typeset(e)}" for symbol, e in self.prescribed.items()]
         return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
 
     def _repr_latex_(self) -> str:

@@ -85,8 +85,8 @@ class KernelCache(Cache):  # type: ignore[misc]
             if payload is not None:
                 try:
                     return self._impl.rebuild(target_context, pickle.loads(payload))
-                except Exception:  # whatever an unsound file can bring about: the kernel is made again
-                    _say(f"a kept kernel cannot be used and is compiled again: {folder / name}")
+                except Exception as error:  # whatever an unsound file can bring about: the kernel is made again
+                    _say(f"a kept kernel cannot be used and is compiled again: {folder / name} ({error!r})")
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:

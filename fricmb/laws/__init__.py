@@ -24,7 +24,14 @@ __all__ = [*_names, "names", "published"]
 
 
 def __getattr__(name: str) -> Any:
-    return _load(name)
+    try:
+        return _load(name)
+    except AttributeError:
+        if name.startswith("_") or name in _names:
+            raise
+        from fricmb.errors import no_attribute
+
+        raise no_attribute(__name__, name, __all__) from None
 
 
 def __dir__() -> list[str]:

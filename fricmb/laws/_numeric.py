@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.errors import LawError
-from fricmb.values import Declaration, Symbolic, held, symbolic
+from fricmb.values import Declaration, Symbolic, held, in_symbols, symbolic
 
 _Functions = dict[tuple[Any, ...], Callable[..., Any]]
 _functions: WeakKeyDictionary[type, _Functions] = WeakKeyDictionary()
@@ -27,7 +27,8 @@ def coefficient_expression(law: Any, stand: Symbolic) -> tuple[Any, Any, Any]:
     import sympy
 
     r, N = sympy.Symbol("|v|", nonnegative=True), sympy.Symbol("N[]", nonnegative=True)
-    mu = stand.standin.define_coefficient(r, N) if law.load_dependent else stand.standin.define_coefficient(r)
+    with in_symbols(LawError, law._label(), "define_coefficient"):
+        mu = stand.standin.define_coefficient(r, N) if law.load_dependent else stand.standin.define_coefficient(r)
     return r, N, sympy.sympify(mu)
 
 
@@ -38,8 +39,10 @@ def force_expression(law: Any, stand: Symbolic, d: int) -> tuple[Any, Any, Any, 
     v = tuple(sympy.Symbol(f"v[{i}]", real=True) for i in range(d))
     z = tuple(sympy.Symbol(f"z[{i}]", real=True) for i in range(law.n_states(d)))
     N = sympy.Symbol("N[]", nonnegative=True)
-    force = _vector(law, "define_force", stand.standin.define_force(v, N, z), d)
-    rate = _vector(law, "define_rate", stand.standin.define_rate(v, N, z), len(z)) if z else ()
+    with in_symbols(LawError, law._label(), "define_force"):
+        force = _vector(law, "define_force", stand.standin.define_force(v, N, z), d)
+    with in_symbols(LawError, law._label(), "define_rate"):
+        rate = _vector(law, "define_rate", stand.standin.define_rate(v, N, z), len(z)) if z else ()
     return v, N, z, force, rate
 
 

@@ -258,3 +258,13 @@ def test_a_critical_value_on_the_grid_is_found_as_well_as_one_between(n):
     assert critical.value == pytest.approx(0.1, rel=1e-12)
     assert critical.frequency == pytest.approx(1.0, rel=1e-12)
     assert not critical.unstable_above
+
+
+def test_printed_is_a_table_of_motion_and_contacts():
+    steady = fm.analysis.steady_sliding(fm.models.minimal_flutter())
+    lines = str(steady).splitlines()
+    assert len(lines) == 6
+    assert lines[1].split()[0] == "block.x"
+    assert float(lines[1].split()[1]) == pytest.approx(steady.position("block.x"), rel=1e-5)
+    assert lines[-1].split()[0] == "sole"
+    assert len(repr(steady)) < 100

@@ -256,7 +256,7 @@ def test_equations_of_a_mechanism():
     assert [str(e) for e in pin.expressions] == ["x_arm - 0.7*cos(theta_arm)", "y_arm - 0.7*sin(theta_arm)"]
     # the pin's torque about the centre of mass
     assert "0.7*lambda_pin_1*sin(theta_arm) - 0.7*lambda_pin_2*cos(theta_arm)" in str(equations.rhs[2])
-    assert equations.latex().count("lambda_{pin 1}") > 0
+    assert equations.latex().count("lambda_{pin, 1}") > 0
 
 
 def test_nothing_is_derived_for_more_links():

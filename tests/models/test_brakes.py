@@ -141,3 +141,9 @@ def test_a_pad_that_sticks_splits_the_pair():
 def test_wrong_arguments_of_rotor_doublet(arguments):
     with pytest.raises(fm.SceneError, match=next(iter(arguments))):
         fm.models.rotor_doublet(**arguments)
+
+
+@pytest.mark.parametrize("wrong", [-1.0, 0.0, float("nan"), float("inf")])
+def test_a_wrong_mass_ratio_is_named_as_given(wrong):
+    with pytest.raises(fm.SceneError, match="mass_ratio must be a finite number > 0"):
+        fm.models.brake4dof(mass_ratio=wrong)
