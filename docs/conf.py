@@ -22,7 +22,7 @@ extensions = [
     "sphinx-mathjax-offline",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "jupyter_execute", "reference/_*.md"]  # what an earlier build left is no page
+exclude_patterns = ["_build", "_made", "jupyter_execute", "reference/_*.md"]  # what an earlier build left is no page
 KINDS = "ipynb", "py", "md5", "json", "zip"
 exclude_patterns += [f"gallery/{deep}*.{kind}" for deep in ("", "**/") for kind in KINDS]
 
@@ -44,7 +44,9 @@ numpydoc_xref_param_type = False
 
 html_theme = "furo"
 html_title = f"fricmb {release}"
-html_static_path = ["static"]
+MADE = "_made"  # what these pages are made of beside text, written when they are built
+os.makedirs(os.path.join(os.path.dirname(__file__), MADE), exist_ok=True)
+html_static_path = ["static", MADE]
 html_css_files = ["pages.css"]
 
 sphinx_gallery_conf = {
@@ -75,13 +77,26 @@ def keep_bars(app, what, name, obj, options, lines):
 def benchmark_pages(app):
     """The measured pages, out of the results that were committed."""
     import json
+    from functools import partial
     from pathlib import Path
 
-    from fricmb.bench import report_body
+    from fricmb.bench import page, report_body
     from fricmb.bench.stability import stability_body
 
     here = Path(app.srcdir)
-    for name, body in (("benchmark", report_body), ("stability", stability_body)):
+    kept = here / MADE / "benchmark"
+    kept.mkdir(parents=True, exist_ok=True)
+
+    def put(name, content, words):
+        """A picture or a table of runs as a file of its own: the page stays small."""
+        is_picture = name.endswith(".svg")
+        file = kept / name.replace(" ", "_").replace(",", "")
+        file.write_text(content if is_picture else page(words, [content]), encoding="utf-8")
+        url = f"../_static/benchmark/{file.name}"
+        shown = f'<img src="{url}" alt="{words}" loading="lazy">' if is_picture else f'<a href="{url}">{words}</a>'
+        return f"<p>{shown}</p>"
+
+    for name, body in (("benchmark", partial(report_body, put=put)), ("stability", stability_body)):
         data = here / "benchmark" / f"{'result' if name == 'benchmark' else name}.json"
         html = body(json.loads(data.read_text(encoding="utf-8")))
         (here / "reference" / f"_{name}.html").write_text(html, encoding="utf-8")

@@ -15,7 +15,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "_own": ["Own", "own_methods"],
         "_own_laws": ["law_costs"],
         "_reference": ["Reference", "Transitions"],
-        "_report": ["report", "report_body"],
+        "_report": ["page", "report", "report_body"],
         "_run": ["Run", "Setting"],
         "_scenes": ["SCENES"],
         "_startup": ["start_up_times"],

@@ -78,6 +78,39 @@ def work_precision(rows: Rows) -> Any:
     return figure
 
 
+#: Where a mark stands that has no other program to compare with.
+_EDGE = 1e3
+
+
+def ahead(board: Rows) -> Any:
+    """Time of the best peer over that of fricmb's default, a row a scene, a mark for each level of error."""
+    cases = list(dict.fromkeys(entry["case"] for entry in board))
+    levels = sorted({entry["level"] for entry in board}, reverse=True)
+    figure = _figure(7.2, 0.9 + 0.24 * len(cases))
+    axes = figure.subplots()
+    for i, level in enumerate(levels):
+        colour, height = ("C1", "C0", "C2", "C3")[i % 4], 0.22 * (i - 0.5 * (len(levels) - 1))
+        ratios, rows, alone = [], [], []
+        for entry in (entry for entry in board if entry["level"] == level):
+            own, peer = entry["auto"] or entry["own"], entry["peer"]
+            place = len(cases) - 1 - cases.index(entry["case"]) - height
+            if own is not None and peer is not None:
+                ratios.append(min(peer["seconds"] / own["seconds"], _EDGE))
+                rows.append(place)
+            elif own is not None:
+                alone.append(place)
+        axes.semilogx(ratios, rows, "o", color=colour, markersize=4, label=f"error {level:g}")
+        axes.semilogx([_EDGE] * len(alone), alone, "o", color=colour, markersize=4, markerfacecolor="none")
+    axes.axvline(1.0, color="0.2", linewidth=1.0)
+    axes.set_yticks(range(len(cases)), cases[::-1], fontsize=8)
+    axes.set_ylim(-0.7, len(cases) - 0.3)
+    axes.set_xlabel("time of the fastest other program / time of fricmb")
+    axes.grid(True, axis="x", which="major", linewidth=0.3)
+    axes.grid(True, axis="y", linewidth=0.2)
+    figure.legend(loc="outside upper right", ncols=len(levels), fontsize=8, frameon=False)
+    return figure
+
+
 def _widen(axes: Any) -> None:
     """At least a decade of time, with labels on powers of ten alone: closer ones would lie on each other."""
     from matplotlib.ticker import NullFormatter

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from fricmb.bench import _plots as plots
@@ -47,20 +47,39 @@ def page(title: str, parts: Iterable[str]) -> str:
     return f"{head}<style>{_STYLE}</style><h1>{html.escape(title)}</h1>\n" + "\n".join(parts) + "</html>\n"
 
 
+#: Takes the name of a file, its content, and what it shows; gives the HTML that stands for it on the page.
+Put = Callable[[str, str, str], str]
+
+
 def report(result: dict[str, Any]) -> str:
     """The report of a result of :func:`fricmb.bench.run`."""
-    return page("fricmb: error against run time", _parts(result))
+    return page("fricmb: error against run time", _parts(result, _inside))
 
 
-def report_body(result: dict[str, Any]) -> str:
-    """The same without the frame of a page, for another one."""
-    return "\n".join(_parts(result))
+def report_body(result: dict[str, Any], *, put: Put | None = None) -> str:
+    """The same without the frame of a page, for another one.
+
+    Parameters
+    ----------
+    result : dict
+        What :func:`fricmb.bench.run` gives, or ``result.json`` holds.
+    put : callable, optional
+        ``put(name, content, words)`` keeps a picture (``name`` ends in ".svg") or a table of all runs (".html") as a
+        file of its own and gives the HTML that refers to it; default: all of it stands in the text.
+    """
+    return "\n".join(_parts(result, put or _inside))
 
 
-def _parts(result: dict[str, Any]) -> Iterator[str]:
+def _inside(name: str, content: str, words: str) -> str:
+    return content if name.endswith(".svg") else f"<details><summary>{html.escape(words)}</summary>{content}</details>"
+
+
+def _parts(result: dict[str, Any], put: Put) -> Iterator[str]:
     about = result["about"]
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
     yield f"<p>{html.escape(about['date'])}, {html.escape(about['machine'])}; {html.escape(versions)}.</p>"
+    yield "<h2>Who is ahead</h2>" + _AHEAD
+    yield put("ahead.svg", plots.svg(plots.ahead(_board(result))), "time of the best peer over that of auto, by scene")
     yield _NOTES
     yield "<h2>Time to reach an error</h2>" + scoreboard_table(result)
     yield "<h2>What a tolerance means</h2>" + _tolerance(result)
@@ -70,18 +89,22 @@ def _parts(result: dict[str, Any]) -> Iterator[str]:
         title = result["titles"].get(case, case)
         yield f"<h3>{html.escape(title)}</h3>"
         if any(row["metrics"] for row in rows):
-            yield plots.svg(plots.work_precision(rows))
-        yield f"<details><summary>all runs</summary>{_runs(rows)}</details>"
+            yield put(f"{case}.svg", plots.svg(plots.work_precision(rows)), f"error against processor time: {title}")
+        yield put(f"{case}.html", _runs(rows), "all runs")
     yield "<h2>Order of convergence</h2>" + _ORDERS
     formulas = [row for row in result["orders"] if "steps" in row]
     for family in dict.fromkeys(row["method"].partition(",")[0] for row in formulas):
         rows = [row for row in formulas if row["method"].partition(",")[0] == family]
-        yield plots.svg(plots.convergence(rows, family))
-    yield "<h2>Cost against size</h2>" + "".join(_sizes(result))
+        yield put(f"order_{family}.svg", plots.svg(plots.convergence(rows, family)), f"error against steps: {family}")
+    yield "<h2>Cost against size</h2>" + "".join(_sizes(result, put))
     yield "<h2>Not run</h2>" + table(
         ("scene", "method", "why"), ((row["case"], row["method"], (row["why"], "text")) for row in result["refusals"])
     )
 
+
+_AHEAD = """<p class="note">For each scene, the processor time of the fastest other program over that of
+<code>auto</code>, where both reach an error of 1e-2 to 1e-8. To the right of the line fricmb is ahead; an open
+mark at the edge: no other program that was tried reaches that error.</p>"""
 
 _NOTES = """<p class="note">State error: largest error of a position or velocity over the grid of the reference, each
 signal over its largest value. References: event-driven solutions in 30-digit arithmetic, closed forms, published
@@ -97,9 +120,13 @@ ends of steps). bdf leaves the run to Radau IIA at tight tolerances, with fewer 
 there.</p>"""
 
 
+def _board(result: dict[str, Any]) -> list[dict[str, Any]]:
+    return scoreboard([*result["cells"], *result["daes"]])
+
+
 def scoreboard_table(result: dict[str, Any]) -> str:
     """Milliseconds to each level: auto, best of fricmb, best peer."""
-    board = scoreboard([*result["cells"], *result["daes"]])
+    board = _board(result)
     head = ["scene", *(f"{who}, {level:g}" for level in LEVELS for who in ("auto", "best peer"))]
     rows = []
     for case in dict.fromkeys(entry["case"] for entry in board):
@@ -160,13 +187,12 @@ def _run(row: dict[str, Any]) -> list[Any]:
     ]
 
 
-def _sizes(result: dict[str, Any]) -> Iterator[str]:
+def _sizes(result: dict[str, Any], put: Put) -> Iterator[str]:
     powers = fits(result["sizes"])
     for case in dict.fromkeys(row["case"] for row in result["sizes"]):
         rows = [row for row in result["sizes"] if row["case"] == case]
         title = result["titles"].get(case, case)
-        yield plots.svg(plots.cost_against_size(rows, powers, case, title))
+        yield put(f"size_{case}.svg", plots.svg(plots.cost_against_size(rows, powers, case, title)), f"cost: {title}")
         head = ("method", "n", "run s", "building the scene s", "transitions", "error", "failure")
         keys = ("method", "n", "seconds", "build", "events", "error", "failure")
-        every = table(head, ([row.get(key) for key in keys] for row in rows))
-        yield f"<details><summary>all runs</summary>{every}</details>"
+        yield put(f"size_{case}.html", table(head, ([row.get(key) for key in keys] for row in rows)), "all runs")

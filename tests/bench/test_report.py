@@ -1,15 +1,18 @@
 """The suite as a whole: what is run, going on after an interruption, the report."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 import fricmb as fm
-from fricmb.bench import Options, Own, Setting, Store, fingerprint, measure_cell, names, report
+from fricmb.bench import Options, Own, Setting, Store, fingerprint, measure_cell, names, report, report_body
 from fricmb.bench._orders import measure_order
+from fricmb.bench._plots import ahead
 from fricmb.bench._scenes import SCENES
 from fricmb.bench._suite import Cell, about, measure_named, plan, run, titles
 
+ROOT = Path(__file__).parents[2]
 FREE = next(case for case in SCENES if case.name == "free")
 
 
@@ -55,7 +58,7 @@ def test_the_report_needs_no_network_and_shows_failures():
         "about": about(Options()), "refusals": [], "cells": [*good, bad], "daes": [], "orders": [order], "sizes": sizes,
         "titles": titles(),
     })  # fmt: skip
-    assert text.count("<svg") == 3
+    assert text.count("<svg") == 4
     assert "gave up &lt;here&gt;" in text
     assert "n^1.0" in text
     assert all(word not in text for word in ("<script", "src=", 'href="http', "@import", "url(http"))
@@ -69,3 +72,34 @@ def test_the_published_scheme_is_of_order_two():
 def test_cells_are_named_by_what_is_hard_in_them():
     cell = Cell("size", "chain", "auto", Setting(rtol=1e-4), 100)
     assert (cell.key, cell.row) == ("size/chain/auto/100", "size/chain/auto")
+
+
+def test_a_page_of_its_own_refers_to_pictures_and_tables():
+    """The committed result: one picture before any table, and a page that loads at once."""
+    result = json.loads((ROOT / "docs" / "benchmark" / "result.json").read_text(encoding="utf-8"))
+    files = {}
+
+    def put(name, content, words):
+        assert name not in files, "each picture has a file of its own"
+        files[name] = content
+        return f"<a>{name}</a>"
+
+    text = report_body(result, put=put)
+    assert len(text) < 500_000
+    assert text.index("ahead.svg") < text.index("<table")
+    assert "nan" not in text
+    assert all(files[f"{case}.html"].startswith("<table") for case in {cell["case"] for cell in result["cells"]})
+
+
+def test_the_first_picture_shows_who_is_ahead():
+    """A mark per scene and level where both reach it, right of 1 where fricmb is faster, open where it is alone."""
+    own = {"seconds": 0.1, "metrics": {}}
+    board = [
+        {"case": "a", "level": 1e-2, "auto": own, "own": own, "peer": {"seconds": 0.5}},
+        {"case": "a", "level": 1e-4, "auto": own, "own": own, "peer": None},
+        {"case": "b", "level": 1e-2, "auto": None, "own": own, "peer": {"seconds": 0.05}},
+        {"case": "b", "level": 1e-4, "auto": None, "own": None, "peer": {"seconds": 0.05}},
+    ]
+    (axes,) = ahead(board).axes
+    marks = [sorted(line.get_xdata()) for line in axes.lines[:-1]]
+    assert marks == [[0.5, 5.0], [], [], [1000.0]]
