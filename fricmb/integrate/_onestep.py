@@ -72,7 +72,7 @@ def widest(x: Floats) -> float:
 
 @kernel
 def newton_tolerances(ports: Ports, acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
-    """Accuracy of velocities (n,) and of relative velocities (n_c,) to which a step's equations are solved."""
+    """Accuracy to which a step's equations are solved: velocities (n,); relative velocities, then states (n_c + n_z,)."""
     top = widest(acc.v)
     relative = max(part * acc.rtol[0], 1e-14)
     moving = 0.0
@@ -81,8 +81,11 @@ def newton_tolerances(ports: Ports, acc: Accuracy, h: float, y: State, tol: Floa
         here = max(acc.v[i], abs(y.v[i]) + h * abs(y.a[i]), acc.floor_v[i], 1e-10 * top, 1e-290)
         moving = max(moving, here)
         scale[i] = relative * here
-    for k in range(tol.shape[0]):
+    n_c = acc.r.shape[0]
+    for k in range(n_c):
         tol[k] = relative * max(acc.r[k], 1e-8 * moving, ports.noise[k], 1e-290)
+    for a in range(y.z.shape[0]):
+        tol[n_c + a] = relative * max(acc.z[a], abs(y.z[a]) + h * abs(y.zd[a]))
 
 
 @block

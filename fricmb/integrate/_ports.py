@@ -29,6 +29,8 @@ from fricmb.integrate._room import block
 
 #: Angle to which directions of slip are found: close to landing they decide, and no velocity shows their error.
 DIRECTION = 1e-9
+#: Part of the tolerance of velocities that the force of a law's state may move a contact by without being looked at.
+UNFELT = 1e-6
 
 
 @kernel
@@ -225,11 +227,56 @@ def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
     return change
 
 
+@kernel
+def state_miss(ports: Ports, w: PortState, hA: Floats2, tol: Floats, i: int, k: int, a: int, size: float) -> float:
+    """Residual ``size`` of state a of contact k at stage i, in units of what is allowed.
+
+    Allowed are the state's tolerance, a force that no velocity shows, and round-off of its rate: a stiff rate
+    (h dz'/dz large) divides a residual before it reaches the state.
+    """
+    row0, z0 = ports.row[k], ports.z_start[k]
+    d, nz = ports.row[k + 1] - row0, ports.z_start[k + 1] - z0
+    L, x, mi = w.L[i, k], a - z0, w.Fin.shape[1]
+    felt, rate = 1e-290, 0.0
+    for b in range(d):
+        felt = max(felt, abs(w.G[i * mi + row0 + b, i * mi + row0 + b] * L[b, d + 1 + x]))
+        rate += abs(L[d + x, b] * w.g[i, row0 + b])
+    for b in range(nz):
+        rate += abs(L[d + x, d + 1 + b] * w.z[i, z0 + b])
+    n_c = ports.row.shape[0] - 1
+    stiff = 1.0 + abs(hA[i, i] * L[d + x, d + 1 + x])
+    allowed = stiff * max(tol[n_c + a], UNFELT * tol[k] / felt)
+    return float(size / (allowed + 2e-15 * (abs(w.z[i, a]) + abs(hA[i, i]) * rate) + 1e-290))
+
+
+@kernel
+def smooth_miss(ports: Ports, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> float:
+    """Largest residual in ``rhs`` of the equations of smooth laws, in units of what is allowed.
+
+    Corrections alone do not tell: where a bristle is bent to its limit, none of its states follows the first
+    correction of the velocity, though this may have turned round.
+    """
+    m, nz, mi = w.F.shape[1], w.z.shape[1], w.Fin.shape[1]
+    u1 = nz + mi
+    miss = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            if ports.law[k] != LAW_SMOOTH:
+                continue
+            for a in range(ports.row[k], ports.row[k + 1]):
+                off = abs(w.rhs[i * u1 + a]) / max(tol[k], round_off(w, i, mi, a, w.g[i, a]))
+                miss = max(miss, off) if off < np.inf else np.inf
+            for a in range(ports.z_start[k], ports.z_start[k + 1]):
+                off = state_miss(ports, w, hA, tol, i, k, a, abs(w.rhs[i * u1 + m + a]))
+                miss = max(miss, off) if off < np.inf else np.inf
+    return float(miss)
+
+
 @block
 def solve_ports(
     ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats, address: Ints
 ) -> int:
-    """Newton on the port unknowns from their present values; ``tol`` (n_c,) on relative velocities.
+    """Newton on the port unknowns from their present values; ``tol`` (n_c + n_z,) on relative velocities and states.
 
     The factors of the Jacobian are kept while directions hardly turn.  Returns the number of iterations, or -1 where
     it does not converge.
@@ -238,6 +285,7 @@ def solve_ports(
         return 0
     evaluate_ports(ports, laws, s, w, mode)
     linear = all_linear(ports, mode)
+    smooth = some_smooth(ports)
     renew = True
     close = not some_stick(mode)
     last, last_turn = np.inf, np.inf
@@ -267,6 +315,9 @@ def solve_ports(
         if ports.soft[0] > 0.0:
             # softened Jacobians are not exact, and converge as they do only where they are new
             good = change < 1.0 and turn < 0.5
+        if good and smooth:
+            port_residual(ports, w, hA, mode)
+            good = smooth_miss(ports, w, hA, mode, tol) < 1.0
         # what sticks must not creep by what the last iteration leaves
         if good and close:
             return iteration + 1
@@ -282,6 +333,15 @@ def some_stick(mode: Codes) -> bool:
     found = False
     for k in range(mode.shape[0]):
         found = found or mode[k] == STICK
+    return bool(found)
+
+
+@kernel
+def some_smooth(ports: Ports) -> bool:
+    """Whether some contact has a law without stick."""
+    found = False
+    for k in range(ports.law.shape[0]):
+        found = found or ports.law[k] == LAW_SMOOTH
     return bool(found)
 
 
