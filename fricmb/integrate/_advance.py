@@ -93,7 +93,7 @@ def advance(
         return end_round_off(packed, s, y, r, old, out, clock, address)
     error = np.inf
     if attempt(packed, s, y, one, acc, h, address):
-        error = step_error(packed, y, one, acc, h, address)
+        error = step_error(packed, s, y, one, acc, h, address)
     if not error < np.inf:
         one.counts[1] += 1
         clock.h[0] = 0.25 * h

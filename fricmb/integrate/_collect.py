@@ -53,8 +53,8 @@ def one_step(problem: Problem, tableau: Tableau, counts: np.ndarray) -> OneStep:
     s, nc = len(tableau.c), problem.n_c
     return room(OneStep(
         tableau, factor(problem, tableau), stages(problem, tableau), port_state(problem, s),
-        np.zeros(nc + problem.n_z), np.zeros(problem.n), np.zeros(2), counts, np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s),
-        np.zeros(s + 1), np.zeros((s, nc)), no_exact(),
+        np.zeros(nc + problem.n_z), np.zeros(problem.n), np.zeros(2), counts, np.zeros((s, nc + 2)),
+        np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1), np.zeros((s, nc)), no_exact(),
     ))  # fmt: skip
 
 

@@ -72,7 +72,7 @@ def widest(x: Floats) -> float:
 
 @kernel
 def newton_tolerances(ports: Ports, acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
-    """Accuracy to which a step's equations are solved: velocities (n,); relative velocities, then states (n_c + n_z,)."""
+    """Accuracy to which a step is solved: of velocities (n,), of relative ones and states ``tol`` (n_c + n_z,)."""
     top = widest(acc.v)
     relative = max(part * acc.rtol[0], 1e-14)
     moving = 0.0

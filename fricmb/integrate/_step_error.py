@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import State
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._law_defect import law_defect
 from fricmb.integrate._onestep import Accuracy, OneStep, state_noise, widest
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._port_state import PortState
@@ -51,7 +53,9 @@ def grain(packed: Packed, y: State, w: PortState, acc: Accuracy, h: float, i: in
 
 
 @block
-def step_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> float:
+def step_error(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
+) -> float:
     """Largest scaled error: the last Legendre coefficients of velocity, position, states, against tolerance."""
     st, tab = one.st, one.tab
     n_s = tab.c.shape[0]
@@ -80,6 +84,7 @@ def step_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, 
             e_z += tab.top[0, j + 1] * one.w.z[j, a]
             size_z = max(size_z, abs(one.w.z[j, a]))
         worst = max(worst, abs(e_z) / size_z)
+    worst = max(worst, law_defect(packed, s, y, one, acc, h))
     return float(max(worst / acc.rtol[0], unseen_force(packed, y, one, acc, h)))
 
 

@@ -151,7 +151,7 @@ def locate(
             f_hi = np.nan
             step = lo + 0.5 * (step - lo)
             continue
-        error = step_error(packed, y, one, acc, step, address)
+        error = step_error(packed, s, y, one, acc, step, address)
         if error > 1.0:
             retry[0] = step * max(0.1, 0.85 * error**-s_order)
             return -1

@@ -76,9 +76,9 @@ def exact_step(problem: Problem, exact: Exact, counts: Ints) -> OneStep:
         none, empty,
     )  # fmt: skip
     return room(OneStep(
-        radau(s), _no_factor(), room(stages), port_state(problem, s), np.zeros(nc + problem.n_z), np.zeros(problem.n),
-        np.zeros(2), counts, np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1), np.zeros((s, nc)),
-        exact,
+        radau(s), _no_factor(), room(stages), port_state(problem, s), np.zeros(nc + problem.n_z),
+        np.zeros(problem.n), np.zeros(2), counts, np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s),
+        np.zeros(s + 1), np.zeros((s, nc)), exact,
     ))  # fmt: skip
 
 

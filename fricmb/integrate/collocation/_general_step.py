@@ -10,6 +10,7 @@ from fricmb.integrate._exact_step import CAP, FASTEST_BLOCK, INPUTS, LEDGER, SAF
 from fricmb.integrate._field import Scratch, powers, set_state, set_time
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._law_defect import law_defect
 from fricmb.integrate._onestep import Accuracy, OneStep, state_noise, widest
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import LAW_SMOOTH, SLIP, STICK, Floats, Ints
@@ -148,11 +149,14 @@ def stiff_error(y: State, one: OneStep, acc: Accuracy, h: float, tol: float) -> 
 
 
 @block
-def exact_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> float:
+def exact_error(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
+) -> float:
     """Error of the step just solved in units of the tolerance (stands in for :func:`step_error`)."""
     tol = one.exact.par[SAFETY] * acc.rtol[0]
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
-    error = max(error, state_error(packed, y, one, acc, h) / acc.rtol[0])
+    off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
+    error = max(error, off / acc.rtol[0])
     return float(max(error, search_error(packed, y, one, acc, h)))
 
 
