@@ -14,6 +14,7 @@ import numpy as np
 from fricmb.integrate._advance import ACCEPTED, FAIL_LAW, REJECTED
 from fricmb.integrate._factor import forget, prepare
 from fricmb.integrate._field import Scratch, normal_force
+from fricmb.integrate._growth import too_long
 from fricmb.integrate._history import History, admissible, rescale
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
@@ -256,6 +257,7 @@ def bdf_step(
         hist.d[i] = hist.new[i] - hist.guess[i]
     state_noise(packed, one, acc, hist.h[0])
     error = scaled(packed, y, one, acc, hist, hist.d, 1.0 / (k + 1))
+    error = max(error, too_long(packed, s, y, one, hist.h[0], k))
     if not error <= 1.0:
         hist.status[3] += 1
         one.counts[1] += 1

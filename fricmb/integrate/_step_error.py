@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate._field import Scratch
+from fricmb.integrate._growth import too_long
 from fricmb.integrate._instant import State
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._law_defect import law_defect
@@ -85,7 +86,8 @@ def step_error(
             size_z = max(size_z, abs(one.w.z[j, a]))
         worst = max(worst, abs(e_z) / size_z)
     worst = max(worst, law_defect(packed, s, y, one, acc, h))
-    return float(max(worst / acc.rtol[0], unseen_force(packed, y, one, acc, h)))
+    worst = max(worst / acc.rtol[0], too_long(packed, s, y, one, h, n_s))
+    return float(max(worst, unseen_force(packed, y, one, acc, h)))
 
 
 @kernel

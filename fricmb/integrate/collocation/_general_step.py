@@ -8,6 +8,7 @@ import numpy as np
 
 from fricmb.integrate._exact_step import CAP, FASTEST_BLOCK, INPUTS, LEDGER, SAFETY, STIFF_AT
 from fricmb.integrate._field import Scratch, powers, set_state, set_time
+from fricmb.integrate._growth import too_long
 from fricmb.integrate._instant import State, complete, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._law_defect import law_defect
@@ -156,7 +157,7 @@ def exact_error(
     tol = one.exact.par[SAFETY] * acc.rtol[0]
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
     off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
-    error = max(error, off / acc.rtol[0])
+    error = max(error, off / acc.rtol[0], too_long(packed, s, y, one, h, one.tab.c.shape[0]))
     return float(max(error, search_error(packed, y, one, acc, h)))
 
 
