@@ -17,7 +17,7 @@ from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
 from fricmb.scene import Scene
-from fricmb.solution import Flags, Motion, Names, Origin
+from fricmb.solution import Flags, Motion, Names, Origin, builder
 from fricmb.system import System, build
 
 
@@ -171,6 +171,7 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
     return mechanics_of(scene, observe=None if observe is None else tuple(observe))
 
 
+@builder("scene", Scene)
 def mechanics_of(
     scene: Scene,
     *,

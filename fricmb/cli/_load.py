@@ -81,9 +81,7 @@ def _built_in(
 
 
 def _from_file(path: Path, settings: dict[str, Any]) -> Loaded:
-    if not path.is_file():
-        raise SceneError(f"there is no file {str(path)!r}")
-    module = _module(path)
+    module = module_of(path)
     scene = getattr(module, "scene", None)
     if not isinstance(scene, fm.Scene):
         found = "none" if scene is None else repr(scene)
@@ -95,8 +93,10 @@ def _from_file(path: Path, settings: dict[str, Any]) -> Loaded:
     return Loaded(scene=_with_parameters(scene, settings), label=path.stem, t_end=t_end, units=units)
 
 
-def _module(path: Path) -> ModuleType:
+def module_of(path: Path) -> ModuleType:
     """The file as a module that is known by name, so that laws defined in it can be derived and pickled."""
+    if not path.is_file():
+        raise SceneError(f"there is no file {str(path)!r}")
     name = "fricmb_scene_" + re.sub(r"\W", "_", path.stem)
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:

@@ -199,6 +199,7 @@ def _add_plot(commands: _Commands) -> None:
         metavar="KIND",
         help="velocities, phase, force, transitions, energy, spectrum, spectrogram, orders, animation, sound or view",
     )
+    sub.add_argument("--laws", type=Path, metavar="FILE.py", help="where own laws are defined; this file is run")
     sub.add_argument("--of", metavar="NAME", help="the dof, contact or signal that is shown, such as pad.y")
     sub.add_argument("--out", type=Path, metavar="FILE", help="default: KIND.png, .gif, .wav or .html beside FILE")
     sub.add_argument("--t-start", type=float, metavar="T", help="animation: start; default: that of the run")

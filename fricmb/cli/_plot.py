@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import fricmb as fm
+from fricmb.cli._load import module_of
 from fricmb.errors import SceneError, unknown_name
+from fricmb.values import Declaration
 
 #: Kinds that need a signal or contact (``--of``), and those that write a file of their own.
 NEED_NAME = ("phase", "force", "spectrum", "spectrogram", "orders", "sound")
@@ -24,11 +26,20 @@ def plot(options: argparse.Namespace) -> int:
     if kind in NEED_NAME and name is None:
         raise SceneError(f"fricmb plot {kind}: --of is missing: the name of a dof, contact or signal")
     path: Path = options.out or options.solution.with_name(f"{kind}{OWN_FILE.get(kind, '.png')}")
-    sol = fm.Solution.load(options.solution)
+    sol = fm.Solution.load(options.solution, laws=_laws(options.laws))
     path.parent.mkdir(parents=True, exist_ok=True)
     _draw(sol, kind, name, path, options)
     print(path)
     return 0
+
+
+def _laws(path: Path | None) -> list[type]:
+    """The laws and elements of a Python file, which is run for that."""
+    if path is None:
+        return []
+    module = module_of(path)
+    held = vars(module).values()
+    return [kind for kind in held if isinstance(kind, type) and issubclass(kind, Declaration)]
 
 
 def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: argparse.Namespace) -> None:

@@ -86,7 +86,7 @@ class KernelCache(Cache):  # type: ignore[misc]
                 try:
                     return self._impl.rebuild(target_context, pickle.loads(payload))
                 except Exception as error:  # whatever an unsound file can bring about: the kernel is made again
-                    _say(f"a kept kernel cannot be used and is compiled again: {folder / name} ({error!r})")
+                    _say(f"a kept kernel cannot be used ({error!r}) and is compiled again: {folder / name}")
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:

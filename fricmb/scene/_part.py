@@ -174,6 +174,9 @@ class PointEnd(End):
 class Ground(PartEnd):
     """What never moves; there is one, :data:`GROUND`."""
 
+    #: Files hold a word for it.
+    _is_ground: ClassVar[bool] = True
+
     name: str = "ground"
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,9 @@ class Scene:
     """
 
     __slots__ = ("_by_name", "_cache", "_motions", "_shared", "dof_names", "name", "parts")
+
+    #: Arguments from which a file makes it again.
+    _stored: ClassVar[tuple[str, ...]] = ("name", "parts")
 
     name: str
     parts: tuple[Part, ...]

@@ -7,6 +7,7 @@ from fricmb.solution._names import Motion, Names
 from fricmb.solution._run import Flags, Mechanics, Origin, Piece, Record, Run, first_bad, times_inside
 from fricmb.solution._solution import Solution
 from fricmb.solution._stats import IslandStats, Stats
+from fricmb.solution._stored import builder
 
 __all__ = [
     "Energy",
@@ -24,6 +25,7 @@ __all__ = [
     "Run",
     "Solution",
     "Stats",
+    "builder",
     "first_bad",
     "take",
     "times_inside",

@@ -1,11 +1,19 @@
-"""Solutions in npz files: plain arrays, and beside them a pickle of the run for the dense output."""
+"""Solutions in npz files: plain arrays, JSON, and the run as data; nothing in a file is ever executed.
+
+Format 2.  Every entry is a numpy array that ``numpy.load(path, allow_pickle=False)`` reads.  ``about`` is JSON: format,
+version, names, counters, and the digest of every other entry; ``digest`` is that of ``about``.  ``run`` is JSON of the
+scene and of what the dense output needs (:mod:`fricmb.solution._data`), its arrays stand in ``run_float64``, ....
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
-import pickle
 import secrets
+import warnings
+import zipfile
+import zlib
 from dataclasses import asdict, fields
 from os import PathLike
 from pathlib import Path
@@ -16,14 +24,24 @@ import numpy as np
 import fricmb
 from fricmb.errors import FricmbError
 from fricmb.integrate import Samples
+from fricmb.solution._check_file import check_arrays
+from fricmb.solution._data import TYPES
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Event, Events
+from fricmb.solution._formulas import NotStored
 from fricmb.solution._names import Motion, Names
-from fricmb.solution._run import Record, Run
+from fricmb.solution._run import Record
 from fricmb.solution._solution import Solution, restore
 from fricmb.solution._stats import IslandStats, Stats
+from fricmb.solution._stored import Stored, store
 
-FORMAT = 1
+FORMAT = 2
+#: What the run of a file of format 1 is, and what to do about it.
+_OLD = (
+    "its format is 1, where the scene was a pickle, which runs code when it is opened; simulate again and save, or "
+    "go on with its arrays, which are read"
+)
+_RUN = "run_"
 
 
 def save(sol: Solution, path: str | PathLike[str]) -> None:
@@ -31,50 +49,74 @@ def save(sol: Solution, path: str | PathLike[str]) -> None:
     target = Path(path)
     if not target.suffix:
         target = target.with_suffix(".npz")
+    entries = _entries(sol)
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         with part.open("xb") as file:
-            np.savez(file, **_arrays(sol))
+            np.savez(file, **entries)
         os.replace(part, target)
     finally:
         part.unlink(missing_ok=True)
 
 
-def load(path: str | PathLike[str]) -> Solution:
-    """Read a file of :func:`save`."""
+def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
+    """Read a file of :func:`save`; FricmbError, with file and entry, for anything else."""
     source = Path(path)
     if not source.exists() and not source.suffix:
         source = source.with_suffix(".npz")
-    with np.load(source, allow_pickle=False) as data:
-        if "about" not in data:
-            raise FricmbError(f"{source} is no solution of fricmb: it has no entry 'about'")
-        about = json.loads(str(data["about"]))
-        if about["format"] > FORMAT:
-            raise FricmbError(f"{source} was written by a later fricmb ({about['fricmb']})")
-        names = _names(data, about)
-        values = {f.name: data[f.name] for f in fields(Samples)}
+    held = _read(source)
+    about = _about(source, held)
+    try:
+        names = _names(held, about)
+        values = {f.name: held[f.name] for f in fields(Samples)}
+        check_arrays(held, values, names, about)
         values["F"], values["g"] = values["F"] / names.row_scale, values["g"] * names.row_scale
         return restore(
             names=names,
             stats=_stats(about["stats"]),
-            events=_events(data),
-            record=Record(samples=Samples(**values), piece=data.get("piece")),
-            span=(about["t_start"], about["t_end"]),
-            has_rows=about["has_rows"],
-            energies=(data["kinetic"], data["potential"]),
+            events=_events(held),
+            record=Record(samples=Samples(**values), piece=held.get("piece")),
+            span=(float(about["t_start"]), float(about["t_end"])),
+            has_rows=bool(about["has_rows"]),
+            energies=(held["kinetic"], held["potential"]),
             reference=Reference(**about["energy"]),
-            run=data["run"].tobytes(),
+            run=_stored(source, held, about, laws),
         )
+    except FricmbError as error:
+        raise FricmbError(f"{source}: {error}") from error
+    except KeyError as error:
+        raise FricmbError(f"{source} has no entry {error}") from error
+    except (ValueError, TypeError, IndexError, AttributeError, OverflowError, RecursionError) as error:
+        raise FricmbError(f"{source}, entry 'about' is inconsistent: {error}") from error
 
 
-def open_run(data: bytes) -> Run:
-    """Unpickle the run of a file."""
-    if not data:
-        raise FricmbError("this file holds no scene and no dense output: its scene could not be pickled")
-    run = pickle.loads(data)
-    if not isinstance(run, Run):
-        raise FricmbError(f"this file holds no run but a {type(run).__name__}")
-    return run
+# ---- writing
+
+
+def _entries(sol: Solution) -> dict[str, Any]:
+    entries = _arrays(sol)
+    run, missing = _run_of(sol)
+    digests = {name: _digest(value) for name, value in (entries | run).items()}
+    about = json.dumps({**_words(sol), "missing": missing, "digests": digests})
+    return entries | run | {"about": np.array(about), "digest": np.array(_digest(np.array(about)))}
+
+
+def _run_of(sol: Solution) -> tuple[dict[str, Any], str]:
+    """Entries of the run, and why there are none."""
+    stored = sol._run
+    try:
+        if isinstance(stored, Stored):  # not opened since it was read
+            if stored.missing:
+                return {}, stored.missing
+            text, arrays = stored.text, stored.arrays
+        else:
+            text, arrays = store(stored)
+    except NotStored as error:
+        warnings.warn(f"the file will hold neither scene nor dense output: {error}", stacklevel=4)
+        return {}, str(error)
+    return {"run": np.frombuffer(text.encode(), dtype=np.uint8)} | {
+        _RUN + name: value for name, value in arrays.items()
+    }, ""
 
 
 def _arrays(sol: Solution) -> dict[str, Any]:
@@ -83,7 +125,21 @@ def _arrays(sol: Solution) -> dict[str, Any]:
     arrays["F"], arrays["g"] = arrays["F"] * names.row_scale, arrays["g"] / names.row_scale
     if record.piece is not None:
         arrays["piece"] = record.piece
-    about = {
+    return arrays | {
+        "kinetic": energy.kinetic,
+        "potential": energy.potential,
+        "residual": energy.residual,
+        "dof_names": np.array(names.dofs, dtype=np.str_),
+        "contact_names": np.array(names.contacts, dtype=np.str_),
+        "event_t": sol.events.t,
+        "event_contact": np.array([event.contact for event in sol.events], dtype=np.str_),
+        "event_kind": np.array([event.kind for event in sol.events], dtype=np.str_),
+    }
+
+
+def _words(sol: Solution) -> dict[str, Any]:
+    names = sol.names
+    return {
         "format": FORMAT,
         "fricmb": fricmb.__version__,
         "directions": names.directions,
@@ -98,27 +154,101 @@ def _arrays(sol: Solution) -> dict[str, Any]:
         "t_start": sol.t_start,
         "t_end": sol.t_end,
         "has_rows": sol.has_rows,
-        "energy": asdict(energy.reference),
-    }
-    return arrays | {
-        "kinetic": energy.kinetic,
-        "potential": energy.potential,
-        "residual": energy.residual,
-        "dof_names": np.array(names.dofs, dtype=np.str_),
-        "contact_names": np.array(names.contacts, dtype=np.str_),
-        "event_t": sol.events.t,
-        "event_contact": np.array([event.contact for event in sol.events], dtype=np.str_),
-        "event_kind": np.array([event.kind for event in sol.events], dtype=np.str_),
-        "about": np.array(json.dumps(about)),
-        "run": np.frombuffer(_pickled(sol), dtype=np.uint8),
+        "energy": asdict(sol.energy.reference),
     }
 
 
-def _pickled(sol: Solution) -> bytes:
+def _digest(value: Any) -> str:
+    array = np.asarray(value)
+    digest = hashlib.sha256(f"{array.dtype.str} {array.shape}".encode())
+    digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+# ---- reading
+
+
+def _read(source: Path) -> dict[str, Any]:
+    """Every entry of an npz file."""
+    if not source.is_file():
+        raise FricmbError(f"there is no file {str(source)!r}")
+    entry = ""
     try:
-        return pickle.dumps(sol.run, protocol=pickle.HIGHEST_PROTOCOL)
-    except (pickle.PicklingError, AttributeError, TypeError):
-        return b""  # a law defined inside a function: the arrays are worth saving all the same
+        with source.open("rb") as file:
+            start = file.read(4)
+        if not start:
+            raise FricmbError(f"{source} is empty")
+        if start[:2] != b"PK":
+            raise FricmbError(f"{source} is no solution of fricmb: it is no npz file")
+        held = {}
+        with np.load(source, allow_pickle=False) as data:
+            if len(set(data.zip.namelist())) < len(data.zip.namelist()):
+                raise FricmbError(f"{source} is damaged: an entry is there twice")
+            for entry in data.files:
+                held[entry] = data[entry]
+                if not isinstance(held[entry], np.ndarray):
+                    raise FricmbError(f"{source}, entry {entry!r} is no array")
+        return held
+    except FricmbError:
+        raise
+    except (OSError, ValueError, EOFError, KeyError, TypeError, SyntaxError, zipfile.BadZipFile, zlib.error) as error:
+        raise FricmbError(f"{source} is damaged{_at(entry)}: {error}") from error
+    except (NotImplementedError, RuntimeError, MemoryError, OverflowError, AttributeError, IndexError) as error:
+        raise FricmbError(f"{source} is damaged{_at(entry)}: {type(error).__name__} {error}") from error
+    except Exception as error:  # zip files can be wrong in ways that the library does not foresee
+        if type(error).__module__ in ("struct", "tokenize", "lzma", "_lzma", "binascii"):
+            raise FricmbError(f"{source} is damaged{_at(entry)}: {error}") from error
+        raise
+
+
+def _at(entry: str) -> str:
+    return f" at the entry {entry!r}" if entry else ""
+
+
+def _about(source: Path, held: dict[str, Any]) -> dict[str, Any]:
+    """What the file says about itself, once it is seen to be what was written."""
+    if "about" not in held:
+        raise FricmbError(f"{source} is no solution of fricmb: it has no entry 'about'")
+    try:
+        about = json.loads(str(held["about"]))
+        number, version = about["format"], str(about["fricmb"])
+        if type(number) is not int or not isinstance(about, dict):
+            raise ValueError(f"the format is {number!r}")
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise FricmbError(f"{source}, entry 'about' is damaged: {error}") from error
+    if number > FORMAT:
+        raise FricmbError(f"{source} was written by a later fricmb ({version}) in format {number}: read it with that")
+    if number < 1:
+        raise FricmbError(f"{source}, entry 'about': there is no format {number}")
+    if number == FORMAT:
+        _check_digests(source, held, about)
+    return about  # type: ignore[no-any-return]
+
+
+def _check_digests(source: Path, held: dict[str, Any], about: dict[str, Any]) -> None:
+    if str(held.get("digest", "")) != _digest(held["about"]):
+        raise FricmbError(f"{source}, entry 'about' is not what was written: its digest differs")
+    digests = about.get("digests")
+    if not isinstance(digests, dict):
+        raise FricmbError(f"{source}, entry 'about' holds no digests")
+    for name in sorted(digests.keys() | held.keys() - {"about", "digest"}):
+        if name not in held:
+            raise FricmbError(f"{source} has no entry {name!r}")
+        if name not in digests or digests[name] != _digest(held[name]):
+            raise FricmbError(f"{source}, entry {name!r} is not what was written: its digest differs")
+
+
+def _stored(source: Path, held: dict[str, Any], about: dict[str, Any], laws: Any) -> Stored:
+    span = float(about["t_start"]), float(about["t_end"])
+    if about["format"] < FORMAT:
+        return Stored(str(source), "", {}, span, missing=_OLD, laws=())
+    missing = str(about["missing"])
+    text = "" if missing else held["run"].tobytes().decode()
+    arrays = {name: held[_RUN + name] for name in TYPES if _RUN + name in held}
+    for name, values in arrays.items():
+        if values.dtype.name != name or values.ndim != 1:
+            raise FricmbError(f"entry {_RUN + name!r} holds {values.dtype} of shape {values.shape}")
+    return Stored(str(source), text, arrays, span, missing=missing, laws=laws)
 
 
 def _names(data: Any, about: dict[str, Any]) -> Names:

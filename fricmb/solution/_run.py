@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import SceneError
+from fricmb.errors import FricmbError, SceneError
 from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate._long import concatenate, take
 from fricmb.integrate._problem import Floats, Ints
@@ -69,16 +69,40 @@ class Piece:
         self._trajectory = trajectory
         self.origin = origin
         self._mechanics = mechanics
+        self._source = ""
         self.t_start, last = trajectory.ends
         self.t_end = last if t_end is None else t_end
+
+    @classmethod
+    def again(cls, trajectory: Trajectory, origin: Origin, t_start: float, t_end: float, source: str) -> Piece:
+        """A piece out of a file, whose trajectory has no problem yet; tried out when that is first needed."""
+        piece = cls.__new__(cls)
+        piece._trajectory, piece.origin, piece._mechanics = trajectory, origin, None
+        piece.t_start, piece.t_end, piece._source = t_start, t_end, source
+        return piece
 
     @property
     def mechanics(self) -> Mechanics:
         """The scene as mechanics, built at first use in a process."""
-        if self._mechanics is None:
+        if self._mechanics is None and self._source:
+            self._mechanics = self._tried_out()
+        elif self._mechanics is None:
             self._mechanics = self.origin.build(self.origin.scene, **self.origin.options)
             self._mechanics.attach(self._trajectory)
         return self._mechanics
+
+    def _tried_out(self) -> Mechanics:
+        """Build, attach what a file holds and look at its ends: FricmbError where they do not fit one another."""
+        try:
+            mechanics = self.origin.build(self.origin.scene, **self.origin.options)
+            mechanics.attach(self._trajectory)
+            ends = self._trajectory.sample(np.array([self.t_start, self.t_end]))
+            first, last = self._trajectory.ends
+            if not (is_finite(ends) and first <= self.t_start <= self.t_end <= last):
+                raise ValueError("its ends are not those of a run")
+        except Exception as error:  # arrays that do not fit one another fail anywhere
+            raise FricmbError(f"{self._source}, entry 'run' does not fit its scene: {error}") from error
+        return mechanics
 
     @property
     def trajectory(self) -> Trajectory:
@@ -90,7 +114,7 @@ class Piece:
     @property
     def is_whole(self) -> bool:
         """Whether the piece reaches to the end of its trajectory."""
-        return self.t_end >= self._trajectory.ends[1]
+        return self.t_end >= self.trajectory.ends[1]
 
     def rows(self) -> Samples:
         """Values at the accepted steps."""
@@ -100,7 +124,7 @@ class Piece:
         return take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**vars(self), "_mechanics": None}
+        return {**vars(self), "_mechanics": None}  # a trajectory pickles without its problem
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,6 +17,7 @@ from fricmb.solution._events import Events
 from fricmb.solution._names import Names
 from fricmb.solution._run import Record, Run, first_bad, is_finite
 from fricmb.solution._stats import Stats
+from fricmb.solution._stored import Stored
 from fricmb.solution._summary import describe, summarise
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Solution:
     ) -> None:
         self.names = names
         self.stats = stats
-        self._run: Run | bytes = run
+        self._run: Run | Stored = run
         self._events = events
         self._span = run.t_start, run.t_end
         self.has_rows = times is None
@@ -227,10 +228,8 @@ class Solution:
     @property
     def run(self) -> Run:
         """The run behind the arrays (of a loaded file opened at first use)."""
-        if isinstance(self._run, bytes):
-            from fricmb.solution._files import open_run
-
-            self._run = open_run(self._run)
+        if not isinstance(self._run, Run):
+            self._run = self._run.open()
         return self._run
 
     # ---- whole
@@ -271,15 +270,28 @@ class Solution:
         save(self, path)
 
     @staticmethod
-    def load(path: str | PathLike[str]) -> Solution:
+    def load(path: str | PathLike[str], *, laws: Any = ()) -> Solution:
         """Read a file that :meth:`save` wrote.
 
-        Arrays, names, events and energies are plain numpy.  The scene and the dense output (``sol(t)``, ``sol.at``) are
-        a pickle inside the file, which is opened when one of them is first asked for: do that with files you trust.
+        Nothing in a file is executed: arrays, names, events and energies are numpy arrays, scene and dense output
+        (``sol(t)``, ``sol.at``) are data, opened when one of them is first asked for.  What belongs to fricmb is found
+        by its name; own laws and elements are found where their module has been imported already.
+
+        Parameters
+        ----------
+        path : path
+        laws : class, iterable of classes, dict of name to class, or "import"
+            Own laws and elements that the file refers to; "import": import the modules that the file names, which runs
+            their code.  Without them the arrays can be read all the same.
+
+        Raises
+        ------
+        FricmbError
+            For a file that is damaged, inconsistent, or no solution; names file and entry.
         """
         from fricmb.solution._files import load
 
-        return load(path)
+        return load(path, laws)
 
     @staticmethod
     def join(solutions: Iterable[Solution]) -> Solution:
@@ -325,9 +337,9 @@ def restore(
     has_rows: bool,
     energies: tuple[Floats, Floats],
     reference: Reference,
-    run: bytes,
+    run: Stored,
 ) -> Solution:
-    """A solution from what a file holds; ``run`` is its pickle, left closed until it is needed."""
+    """A solution from what a file holds; ``run`` is left closed until it is needed."""
     sol = Solution.__new__(Solution)
     sol.names, sol.stats, sol.record, sol.has_rows = names, stats, record, has_rows
     sol._events, sol._span, sol._energies, sol._run = events, span, energies, run

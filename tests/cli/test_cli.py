@@ -254,3 +254,42 @@ def test_pictures_of_an_earlier_run_go(capsys, tmp_path):
     (tmp_path / "phase.png").touch()
     run(capsys, "run", "puck_on_belt", "--no-plots", "--out", tmp_path)
     assert not list(tmp_path.glob("*.png"))
+
+
+OWN_LAW = """
+from dataclasses import dataclass
+import fricmb as fm
+
+@dataclass(frozen=True, kw_only=True)
+class Mine(fm.FrictionLaw):
+    mu: float
+
+    def define_coefficient(self, r):
+        return self.mu / (1 + r)
+
+block = fm.Body("block", mass=2.0, velocity={"x": 1.0})
+scene = fm.Scene("own", [block, fm.Contact("sole", block, law=Mine(mu=0.5), normal_force=4.0)])
+t_end = 0.5
+"""
+
+
+def test_plot_runs_a_file_of_laws_when_it_is_told_to(capsys, tmp_path, monkeypatch):
+    file = tmp_path / "own_scene.py"
+    file.write_text(OWN_LAW)
+    assert run(capsys, "run", file, "--no-plots", "--out", tmp_path)[0] == 0
+    monkeypatch.delitem(sys.modules, "fricmb_scene_own_scene")
+    status, _, complaint = run(capsys, "plot", tmp_path / "solution.npz", "force", "--of", "sole")
+    assert status == 2
+    assert "Mine" in complaint
+    assert "return self.mu / (1 + r)" in complaint
+    status, _, complaint = run(capsys, "plot", tmp_path / "solution.npz", "force", "--of", "sole", "--laws", file)
+    assert (status, complaint) == (0, "")
+
+
+def test_plot_of_a_damaged_file_is_bad_input(capsys, tmp_path):
+    path = tmp_path / "solution.npz"
+    path.write_bytes(b"PK\x03\x04 and nothing else")
+    status, _, complaint = run(capsys, "plot", path, "energy")
+    assert status == 2
+    assert complaint.count("\n") == 1
+    assert str(path) in complaint

@@ -5,7 +5,7 @@ import pytest
 
 from fricmb.integrate._problem import Contacts, Elements, Linear, Problem, Signals, Start
 from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
-from fricmb.solution import Motion, Names, Origin, Piece, Run, Solution, Stats
+from fricmb.solution import Motion, Names, Origin, Piece, Run, Solution, Stats, builder
 
 X0, FRICTION = 0.95, 0.1
 #: Half cycles until it rests at (-1)^k (X0 - 0.2 k) with |x| <= 0.1.
@@ -98,6 +98,7 @@ class Mechanics:
         return 0.1 * t[None], np.full((1, t.size), 0.1)
 
 
+@builder("test", str)
 def build(scene, **options):
     return Mechanics(**options)
 

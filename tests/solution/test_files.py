@@ -1,8 +1,12 @@
+import json
+import pickle
+
 import numpy as np
 import pytest
 
 from fricmb.errors import FricmbError
 from fricmb.solution import Solution
+from fricmb.solution._stored import Stored
 
 
 def test_a_file_is_read_by_numpy_alone(sol, tmp_path):
@@ -31,18 +35,19 @@ def test_a_loaded_solution_is_the_same(make, tmp_path, times):
     assert (back.t_start, back.t_end) == (0.0, 20.0)
     np.testing.assert_array_equal(back.energy.residual, sol.energy.residual)
     np.testing.assert_array_equal(back["mass.tip.x"], sol["mass.tip.x"])
-    assert isinstance(back._run, bytes), "the pickle is opened only when it is needed"
+    assert isinstance(back._run, Stored), "the run is opened only when it is needed"
     np.testing.assert_array_equal(back(1.5), sol(1.5))
     assert back.scene == "a scene"
 
 
-def test_a_scene_that_cannot_pickle_loses_the_dense_output_alone(make, tmp_path):
+def test_a_scene_that_is_no_data_loses_the_dense_output_alone(make, tmp_path):
     sol = make()
     object.__setattr__(sol.run.pieces[0].origin, "scene", lambda: None)
-    sol.save(tmp_path / "run.npz")
+    with pytest.warns(UserWarning, match="neither scene nor dense output"):
+        sol.save(tmp_path / "run.npz")
     back = Solution.load(tmp_path / "run.npz")
     np.testing.assert_array_equal(back.q, sol.q)
-    with pytest.raises(FricmbError, match="could not be pickled"):
+    with pytest.raises(FricmbError, match="function is no data"):
         back(1.0)
 
 
@@ -67,3 +72,85 @@ def test_a_file_has_the_permissions_of_any_other(sol, tmp_path):
     (tmp_path / "other").touch()
     assert (tmp_path / "run.npz").stat().st_mode == (tmp_path / "other").stat().st_mode
     assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "run.npz"]
+
+
+def rewritten(path, **changes):
+    """The file with other entries, made as a program with numpy alone would."""
+    with np.load(path, allow_pickle=False) as data:
+        entries = {**data, **changes}
+    np.savez(path, **{name: value for name, value in entries.items() if value is not None})
+
+
+def refused(path, text):
+    with pytest.raises(FricmbError, match=text) as caught:
+        Solution.load(path)
+    assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"t": np.full(46, np.nan)}, "entry 't'"),
+        ({"q": np.zeros((1, 3))}, "entry 'q'"),
+        ({"mode": np.full((1, 46), 7, np.int8)}, "entry 'mode'"),
+        ({"event_t": np.zeros(2)}, "entry 'event_"),
+        ({"kinetic": None}, "no entry 'kinetic'"),
+        ({"about": np.array("{")}, "entry 'about' is damaged"),
+        ({"more": np.zeros(3)}, "entry 'more'"),
+        ({"run": np.zeros(3, np.uint8)}, "entry 'run'"),
+    ],
+    ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
+)
+def test_files_that_are_inconsistent_are_refused_by_entry(sol, tmp_path, changes, text):
+    path = tmp_path / "run.npz"
+    sol.save(path)
+    rewritten(path, **changes)
+    refused(path, text)
+
+
+def test_a_change_that_fits_is_seen_by_its_digest(sol, tmp_path):
+    path = tmp_path / "run.npz"
+    sol.save(path)
+    rewritten(path, q=1.0001 * sol.q)
+    refused(path, "entry 'q' is not what was written")
+
+
+@pytest.mark.parametrize("n", [0, 1, 100, 3000, -1])
+def test_a_file_that_is_cut_off_is_refused(sol, tmp_path, n):
+    path = tmp_path / "run.npz"
+    sol.save(path)
+    path.write_bytes(path.read_bytes()[:n])
+    refused(path, "is empty" if n == 0 else "is damaged|no npz")
+
+
+def test_no_file_and_a_folder_are_refused(tmp_path):
+    refused(tmp_path / "none.npz", "there is no file")
+    refused(tmp_path, "there is no file")
+
+
+class Harm:
+    """Makes a file when it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return open, (str(self.path), "w")
+
+
+def test_a_file_of_format_1_gives_its_arrays_and_no_scene(sol, tmp_path):
+    path = tmp_path / "run.npz"
+    sol.save(path)
+    with np.load(path) as data:
+        about = json.loads(str(data["about"]))
+    run = np.frombuffer(pickle.dumps(Harm(tmp_path / "harm")), np.uint8)
+    rewritten(path, about=np.array(json.dumps({**about, "format": 1})), run=run, digest=None)
+    back = Solution.load(path)
+    np.testing.assert_array_equal(back.q, sol.q)
+    assert back.events == sol.events
+    for ask in (lambda: back.scene, lambda: back(1.0)):
+        with pytest.raises(FricmbError, match=r"format is 1, where the scene was a pickle.*simulate again"):
+            ask()
+    assert not (tmp_path / "harm").exists()
+    rewritten(path, about=np.array(json.dumps({**about, "format": 3, "fricmb": "9.9"})))
+    refused(path, r"later fricmb \(9.9\)")
