@@ -3,9 +3,16 @@
 Every public name is listed in ``__init__.pyi`` and loaded when it is first used.
 """
 
+import os.path
 from typing import Any
 
 import lazy_loader
+
+# In a checkout the models stand beside this folder: they are found where the working folder comes before what is
+# installed, as with `python -c` and `python -m pytest` in the root of a clone.
+_root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+if not os.path.isdir(os.path.join(_root, "fricmb", "models")) and os.path.isfile(os.path.join(_root, "pyproject.toml")):
+    __path__.append(_root)
 
 _load, _, _names = lazy_loader.attach_stub(__name__, __file__)
 __all__ = [*_names, "__version__"]

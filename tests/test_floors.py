@@ -1,6 +1,8 @@
 """The order of the layers, and that what is packaged is what is there."""
 
 import ast
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -110,3 +112,13 @@ def test_models_have_one_name():
     source = (ROOT / "models" / "__init__.py").read_text()
     with pytest.raises(ImportError, match=r"fricmb\.models"):
         exec(compile(source, "models/__init__.py", "exec"), {"__name__": "models"})
+
+
+def test_models_are_found_from_the_root_of_a_clone():
+    """Where the working folder comes before what is installed, the models are those beside it."""
+    code = (
+        "import sys; sys.meta_path = [f for f in sys.meta_path if 'editable' not in repr(f).lower()]\n"
+        "import fricmb as fm; print(fm.models.__file__, len(fm.models.brake4dof().parts))"
+    )
+    found = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert found.stdout.split() == [str(ROOT / "models" / "__init__.py"), "9"]

@@ -6,9 +6,10 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import NoReturn, TypeAlias
+
+from fricmb import __version__
 
 DONE, BAD_INPUT, FAILED = 0, 2, 3
 
@@ -57,7 +58,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    top.add_argument("--version", action="version", version=f"fricmb {version('fricmb')}")
+    top.add_argument("--version", action="version", version=f"fricmb {__version__}")
     commands = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
     _add_run(commands)
     _add_list(commands)
