@@ -1,44 +1,45 @@
-"""Derived templates on disk: one module with the compiled kernel and one JSON file of facts, keyed by content.
+"""Derived templates on disk: one file of facts and of the source of the compiled kernel, keyed by content.
 
-Several processes may start together on an empty cache: a file is written beside its place and renamed, and a file that
-is there already is left alone (its content is given by its key), so that numba's own cache of it stays valid.
+Several processes may start together on an empty cache: a file appears whole, and its content is given by its key.  It
+begins with a line that holds the digest of the rest (:mod:`fricmb.integrate._cache_files` says what becomes of files
+that are damaged and of folders that cannot be written).
 """
 
 from __future__ import annotations
 
 import ctypes
 import hashlib
-import importlib.util
 import json
-import os
+import linecache
 import sys
-import tempfile
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
+from fricmb.integrate._cache_files import CacheFiles
+
 #: Raised by one whenever the shape of the stored facts or of the kernels changes.
-FORMAT = 1
+FORMAT = 2
+
+
+
+
+def _seal(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest().encode() + b"\n" + text
+
+
+def _unseal(data: bytes) -> bytes | None:
+    digest, _, text = data.partition(b"\n")
+    return text if hashlib.sha256(text).hexdigest().encode() == digest else None
+
+
+_files = CacheFiles("templates", _seal, _unseal, "derived again")
 
 
 def folder() -> Path:
-    """Where derived templates are kept: ``FRICMB_CACHE_DIR``, else the user's cache folder, else a temporary one."""
-    return _folder(os.environ.get("FRICMB_CACHE_DIR"))
-
-
-@cache
-def _folder(wanted: str | None) -> Path:
-    if wanted is None:
-        from platformdirs import user_cache_dir
-
-        wanted = user_cache_dir("fricmb")
-    path = Path(wanted) / "templates"
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path):
-            return path
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="fricmb-templates-"))
+    """Where derived templates are kept."""
+    return _files.folder
 
 
 @cache
@@ -58,47 +59,45 @@ def key(kind: str, *content: object) -> str:
     return f"{kind}_{hashlib.sha256(text.encode()).hexdigest()[:24]}"
 
 
+def _held(name: str) -> dict[str, Any] | None:
+    text = _files.read(f"{name}.json")
+    return None if text is None else dict(json.loads(text))
+
+
 def read(name: str) -> dict[str, Any] | None:
     """Facts stored under a key, or None."""
-    try:
-        facts: dict[str, Any] = json.loads((folder() / f"{name}.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    complete = not facts["compiled"] or (folder() / f"{name}.py").exists()
-    return facts if complete else None
+    held = _held(name)
+    return None if held is None else {**held["facts"], "compiled": held["source"] is not None}
 
 
 def write(name: str, facts: dict[str, Any], source: str | None) -> None:
-    """Store facts and the source of the kernel; the facts last, so that whoever sees them finds the kernel."""
+    """Store facts and the source of the kernel."""
     facts["compiled"] = source is not None
+    _files.write(f"{name}.json", json.dumps({"facts": facts, "source": source}, indent=1).encode())
     if source is not None:
-        _write(folder() / f"{name}.py", source)
-    _write(folder() / f"{name}.json", json.dumps(facts, indent=1))
+        _sources[name] = source
 
 
-def _write(path: Path, text: str) -> None:
-    if path.exists() and path.read_text(encoding="utf-8") == text:
-        return
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8") as file:
-        file.write(text)
-    os.replace(file.name, path)
+#: Sources that this process derived or read.
+_sources: dict[str, str] = {}
 
 
 @cache
-def _module(path: Path) -> Any:
-    name = f"fricmb_template_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot load the derived template {path}")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
+def _module(name: str) -> Any:
+    """The module of a kernel, known by name, its source to be found by tracebacks."""
+    source = _sources.get(name) or (_held(name) or {})["source"]
+    path = f"<template {name}>"
+    linecache.cache[path] = len(source), None, source.splitlines(keepends=True), path
+    module = ModuleType(f"fricmb_template_{name}")
+    module.__file__ = path
+    sys.modules[module.__name__] = module
+    exec(compile(source, path, "exec"), vars(module))
     return module
 
 
 def address(name: str) -> int:
-    """Address of the compiled kernel stored under a key; compiled, or read from numba's cache, on first use."""
-    return int(_module(folder() / f"{name}.py").kernel.address)
+    """Address of the compiled kernel stored under a key; compiled, or read from the cache, on first use."""
+    return int(_module(name).kernel.address)
 
 
 _POINTER = ctypes.POINTER(ctypes.c_double)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,12 @@ from fricmb.errors import FricmbError
 from fricmb.integrate import EVENT_KINDS
 from fricmb.solution._names import Names
 from fricmb.solution._run import ROUND_OFF
+from fricmb.solution._stats import Stats
 
 
 def check_arrays(held: Mapping[str, Any], values: Mapping[str, Any], names: Names, about: Mapping[str, Any]) -> None:
     """FricmbError that names the entry for anything that does not fit; ``values`` are the samples among them."""
+    _check_numbers(about)
     _check_names(names, held)
     n, n_c, t = len(names.dofs), len(names.contacts), held["t"]
     _expect("t", t, (t.size,), "f")
@@ -31,6 +34,34 @@ def check_arrays(held: Mapping[str, Any], values: Mapping[str, Any], names: Name
         _expect("piece", held["piece"], t.shape, "i")
     _check_times(t, about)
     _check_events(held, names, about)
+
+
+def check_stats(stats: Stats) -> None:
+    """FricmbError for counters that are none."""
+    for one in (stats, *stats.islands):
+        for f in fields(one):
+            value, wanted = getattr(one, f.name), str(f.type)
+            good = (
+                (wanted == "str" and isinstance(value, str))
+                or (wanted == "int" and type(value) is int)
+                or (wanted == "float" and type(value) in (int, float))
+                or (wanted.startswith("tuple[str") and all(isinstance(word, str) for word in value))
+                or wanted.startswith("tuple[IslandStats")
+            )
+            if not good:
+                raise FricmbError(f"entry 'about': {f.name} of the stats is {value!r}")
+
+
+def _check_numbers(about: Mapping[str, Any]) -> None:
+    numbers = {name: about[name] for name in ("t_start", "t_end")}
+    numbers |= {f"energy {name}": value for name, value in about["energy"].items()}
+    for name, motion in about["motions"].items():
+        for key in ("offset", "arm"):
+            held = motion.get(key, 0.0)
+            numbers |= {f"{key} {i} of {name}": x for i, x in enumerate(held if isinstance(held, list) else [held])}
+    for name, value in numbers.items():
+        if type(value) not in (int, float) or not np.isfinite(value):
+            raise FricmbError(f"entry 'about': {name} is {value!r}; expected a finite number")
 
 
 def _check_names(names: Names, held: Mapping[str, Any]) -> None:

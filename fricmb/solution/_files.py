@@ -24,7 +24,7 @@ import numpy as np
 import fricmb
 from fricmb.errors import FricmbError
 from fricmb.integrate import Samples
-from fricmb.solution._check_file import check_arrays
+from fricmb.solution._check_file import check_arrays, check_stats
 from fricmb.solution._data import TYPES
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Event, Events
@@ -274,7 +274,9 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
 
 def _stats(held: dict[str, Any]) -> Stats:
     islands = tuple(IslandStats(**{**one, "dofs": tuple(one["dofs"])}) for one in held.get("islands", ()))
-    return Stats(**{**held, "notes": tuple(held["notes"]), "islands": islands})
+    stats = Stats(**{**held, "notes": tuple(held["notes"]), "islands": islands})
+    check_stats(stats)
+    return stats
 
 
 def _events(data: Any) -> Events:

@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from fricmb.equations import _store
+from fricmb.integrate import _cache_files
 
 BRAKE = """
 import json, sys, time
@@ -81,17 +82,35 @@ def cache(tmp_path, monkeypatch):
     return tmp_path / "templates"
 
 
-def test_facts_without_their_kernel_do_not_count(cache):
+def test_damaged_files_are_derived_again_with_one_line(cache, capsys):
     key = _store.key("test", "a")
     assert _store.read(key) is None
     _store.write(key, {"n": 1}, "kernel = None\n")
     assert _store.read(key) == {"n": 1, "compiled": True}
-    (cache / f"{key}.py").unlink()
-    assert _store.read(key) is None
+    path = cache / f"{key}.json"
+    whole = path.read_bytes()
+    flipped = bytearray(whole)
+    flipped[-5] ^= 1
+    for broken in (b"", whole[:-20], os.urandom(300), b"{ cut off", bytes(flipped)):
+        path.write_bytes(broken)
+        capsys.readouterr()
+        assert _store.read(key) is None
+        assert capsys.readouterr().err.count("\n") == 1
+        assert not path.exists()
     _store.write(key, {"n": 2}, None)
     assert _store.read(key) == {"n": 2, "compiled": False}
-    (cache / f"{key}.json").write_text("{ cut off")
-    assert _store.read(key) is None
+
+
+def test_old_files_go(tmp_path, monkeypatch):
+    monkeypatch.setenv("FRICMB_CACHE_DIR", str(tmp_path))
+    (tmp_path / "templates").mkdir()
+    for name in ("old.json", "old.py", "killed.part"):
+        (tmp_path / "templates" / name).touch()
+        os.utime(tmp_path / "templates" / name, (1e9, 1e9))
+    (tmp_path / "templates" / "new.json").touch()
+    key = _store.key("test", "cleaning")
+    _store.write(key, {"n": 1}, None)
+    assert sorted(path.name for path in (tmp_path / "templates").iterdir()) == sorted(["new.json", f"{key}.json"])
 
 
 def test_keys_tell_content_apart():
@@ -100,10 +119,62 @@ def test_keys_tell_content_apart():
     assert _store.key("a", 1) in keys
 
 
-def test_a_folder_that_cannot_be_written_is_replaced(tmp_path, monkeypatch):
+def test_a_folder_that_cannot_be_written_is_replaced(tmp_path, monkeypatch, capsys):
     blocked = tmp_path / "file"
     blocked.write_text("")
     monkeypatch.setenv("FRICMB_CACHE_DIR", str(blocked))
+    monkeypatch.setattr(_store._files, "_other", None)
     key = _store.key("test", "blocked")
     _store.write(key, {"n": 1}, None)
     assert _store.read(key) == {"n": 1, "compiled": False}
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "cannot be kept" in said
+
+
+def test_a_full_disk_leaves_them_in_memory(tmp_path, monkeypatch, capsys):
+    def full(*args, **kwargs):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setenv("FRICMB_CACHE_DIR", str(tmp_path / "full"))
+    monkeypatch.setattr(_store._files, "_other", None)
+    monkeypatch.setattr(_cache_files, "_write", full)
+    key = _store.key("test", "full")
+    _store.write(key, {"n": 1}, None)
+    assert _store.read(key) == {"n": 1, "compiled": False}
+    assert "No space left on device" in capsys.readouterr().err
+
+
+def test_a_read_only_warm_cache_is_used(tmp_path):
+    """As in the image of a cluster: nothing new, nothing said, nothing written."""
+    cold = result(start(tmp_path))
+    (tmp_path / "templates" / "templates" / "killed.part").touch()
+    for path in tmp_path.rglob("*"):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    try:
+        before = sorted(tmp_path.rglob("*"))
+        process = start(tmp_path)
+        out, err = process.communicate(timeout=120)
+        assert (process.returncode, err) == (0, "")
+        assert json.loads(out)["derived"] == 0
+        assert json.loads(out)["K"] == cold["K"]
+        assert sorted(tmp_path.rglob("*")) == before
+    finally:
+        for path in tmp_path.rglob("*"):
+            path.chmod(0o755)
+
+
+def test_without_a_home_files_are_kept_for_the_process(monkeypatch, capsys):
+    monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: f"~/.cache/{name}")
+    for name in ("FRICMB_CACHE_DIR", "NUMBA_CACHE_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    for one in (_cache_files._folder, _cache_files._temporary):
+        one.cache_clear()
+    try:
+        found = [_cache_files.cache_folder(room) for room in ("kernels", "templates", "kernels")]
+        assert all(path.is_absolute() and path.is_dir() for path in found)
+        assert found[0] == found[2]
+        assert "no home folder" in capsys.readouterr().err
+    finally:
+        for one in (_cache_files._folder, _cache_files._temporary):
+            one.cache_clear()

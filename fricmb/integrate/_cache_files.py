@@ -1,0 +1,174 @@
+"""Files that can be made again: machine code and derived templates, in the user's cache folder.
+
+Every file is checked before it is used; one that is damaged is said, removed and made again.  A folder that cannot be
+written is read all the same (a warm cache in an image); what is new goes to a temporary folder of this process, and
+where that fails, too, stays in memory.  Nothing here ever stops a run.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+#: Files that no run has used for so long are removed.
+_DAYS = 60
+_DAY = 86_400.0
+
+
+def cache_folder(room: str) -> Path:
+    """Where the files of a room ("kernels", "templates") are: ``FRICMB_CACHE_DIR/room``, else the user's cache folder.
+
+    Of kernels ``NUMBA_CACHE_DIR/fricmb``, if that is set.
+    """
+    numba = os.environ.get("NUMBA_CACHE_DIR") if room == "kernels" else None
+    return _folder(room, numba, os.environ.get("FRICMB_CACHE_DIR"))
+
+
+@cache
+def _folder(room: str, numba: str | None, ours: str | None) -> Path:
+    if numba:
+        return Path(numba) / "fricmb"
+    if not ours:
+        from platformdirs import user_cache_dir
+
+        ours = user_cache_dir("fricmb")
+        if not Path(ours).is_absolute():  # nobody knows of a home
+            return _temporary(room, f"there is no home folder to keep {room} in")
+    return Path(ours) / room
+
+
+@cache
+def _temporary(room: str, why: str) -> Path:
+    path = Path(tempfile.mkdtemp(prefix=f"fricmb-{room}-"))
+    say(f"{why}; this process keeps them in {path}")
+    return path
+
+
+def say(text: str) -> None:
+    """One line on stderr."""
+    with contextlib.suppress(OSError, ValueError):
+        print(f"fricmb: {text}", file=sys.stderr)
+
+
+class CacheFiles:
+    """The files of one room.
+
+    Parameters
+    ----------
+    room : str
+        "kernels" or "templates".
+    seal : callable
+        From what is kept to the bytes of a file.
+    unseal : callable
+        The way back; None where the bytes are not what was written.
+    again : str
+        What is done about a damaged file ("compiled again").
+    """
+
+    def __init__(
+        self, room: str, seal: Callable[[bytes], bytes], unseal: Callable[[bytes], bytes | None], again: str
+    ) -> None:
+        self._room, self._seal, self._unseal, self._again = room, seal, unseal, again
+        self._other: Path | None = None
+        self._memory: dict[str, bytes] = {}
+
+    @property
+    def folder(self) -> Path:
+        """The folder that is meant."""
+        return cache_folder(self._room)
+
+    def read(self, name: str) -> bytes | None:
+        """What is kept under a name, or None."""
+        if name in self._memory:
+            return self._memory[name]
+        for folder in (self.folder, self._other):
+            if folder is not None and (held := self._read(folder / name)) is not None:
+                return held
+        return None
+
+    def _read(self, path: Path) -> bytes | None:
+        try:
+            data = path.read_bytes()
+        except OSError:
+            return None
+        held = self._unseal(data)
+        if held is None:
+            say(f"a kept file of the {self._room} is damaged and is {self._again}: {path}")
+            remove(path)
+        else:
+            _touch(path)
+        return held
+
+    def write(self, name: str, held: bytes) -> None:
+        """Keep something, on disk if that can be."""
+        data = self._seal(held)
+        if self._other is None:
+            try:
+                _write(self.folder / name, data)
+                _clean(self.folder)
+                return
+            except OSError as error:
+                why = error.strerror or str(error)
+                with contextlib.suppress(OSError):
+                    self._other = _temporary(self._room, f"{self._room} cannot be kept in {self.folder} ({why})")
+        try:
+            if self._other is not None:
+                _write(self._other / name, data)
+                return
+        except OSError:
+            pass
+        self._memory[name] = held
+
+    def discard(self, name: str) -> None:
+        """Remove a file that cannot be used."""
+        self._memory.pop(name, None)
+        for folder in (self.folder, self._other):
+            if folder is not None:
+                remove(folder / name)
+
+
+def remove(path: Path) -> None:
+    """Remove a file, if that can be."""
+    with contextlib.suppress(OSError):
+        path.unlink()
+
+
+def _touch(path: Path) -> None:
+    """Mark a file as used, at most once a day."""
+    with contextlib.suppress(OSError):
+        if time.time() - path.stat().st_mtime > _DAY:
+            os.utime(path)
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write a file at once or not at all, whoever else writes it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        os.replace(part, path)
+    except BaseException:
+        remove(Path(part))
+        raise
+
+
+@cache
+def _clean(folder: Path) -> None:
+    """Remove what nothing has used for long, and what older versions and killed processes left; once a process."""
+    now = time.time()
+    with contextlib.suppress(OSError):
+        for path in folder.iterdir():
+            with contextlib.suppress(OSError):
+                days = (now - path.stat().st_mtime) / _DAY
+                if path.name == "__pycache__" and days > _DAYS:
+                    shutil.rmtree(path, ignore_errors=True)
+                elif path.is_file() and days > (1.0 if path.suffix == ".part" else _DAYS):
+                    path.unlink()
