@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import pickle
 import secrets
@@ -9,12 +10,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from fricmb._sweep._fingerprint import fingerprint
+from fricmb._sweep._fingerprint import Fingerprint
+from fricmb._sweep._processes import say
 from fricmb.errors import SceneError
+
+_DIGEST = 32
 
 
 class Store:
     """A folder of pickled results, named by what they are results of (scene, values, options, ``reduce``).
+
+    Each file begins with the digest of the rest: one that is damaged counts as none, which is said.
 
     Parameters
     ----------
@@ -29,27 +35,49 @@ class Store:
         if self.path.exists() and not self.path.is_dir():
             raise SceneError(f"store: got {str(path)!r}, which is a file; expected a folder, or a path for a new one")
         self.path.mkdir(parents=True, exist_ok=True)
-        self._shared = fingerprint(*shared)
+        found = Fingerprint()
+        self._shared = found.of(*shared)
+        for thing in found.unseen:
+            say(f"the store cannot see changes of {thing}: use another folder when it changes")
+        self._full = False
 
     def file(self, parameters: dict[str, Any]) -> Path:
         """The file of one run."""
-        return self.path / f"{fingerprint(self._shared, parameters)[:32]}.pickle"
+        return self.path / f"{Fingerprint().of(self._shared, parameters)[:32]}.pickle"
 
     def get(self, parameters: dict[str, Any]) -> tuple[bool, Any]:
         """Whether the run was made before, and its result; a file that cannot be read counts as none."""
+        path = self.file(parameters)
         try:
-            with self.file(parameters).open("rb") as file:
-                return True, pickle.load(file)
-        except (FileNotFoundError, EOFError, pickle.UnpicklingError, AttributeError, ImportError, IndexError):
+            data = path.read_bytes()
+        except FileNotFoundError:
+            return False, None
+        except OSError as error:
+            say(f"a result cannot be read and is made again: {path} ({error.strerror})")
+            return False, None
+        held = data[_DIGEST:]
+        if hashlib.sha256(held).digest() != data[:_DIGEST]:
+            say(f"a kept result is damaged and is made again: {path}")
+            return False, None
+        try:
+            return True, pickle.loads(held)
+        except Exception as error:  # of a class that is gone, say
+            say(f"a kept result cannot be read and is made again: {path} ({error})")
             return False, None
 
     def put(self, parameters: dict[str, Any], result: Any) -> None:
-        """Keep a result; the file appears whole or not at all."""
+        """Keep a result; the file appears whole or not at all.  A full disk is said, and the sweep goes on."""
         target = self.file(parameters)
         part = target.with_name(f".{secrets.token_hex(8)}.part")
+        held = pickle.dumps(result, protocol=pickle.HIGHEST_PROTOCOL)
         try:
             with part.open("xb") as file:
-                pickle.dump(result, file, protocol=pickle.HIGHEST_PROTOCOL)
+                file.write(hashlib.sha256(held).digest())
+                file.write(held)
             os.replace(part, target)
+        except OSError as error:
+            if not self._full:
+                say(f"results cannot be kept in {self.path}: {error.strerror}")
+            self._full = True
         finally:
             part.unlink(missing_ok=True)

@@ -7,9 +7,10 @@ from os import PathLike
 from typing import Any
 
 import fricmb
+from fricmb._sweep._processes import say
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
-from fricmb.errors import SceneError
+from fricmb.errors import IntegrationError, SceneError
 from fricmb.solution import Solution
 
 
@@ -23,6 +24,7 @@ def sweep(
     progress: bool = True,
     store: str | PathLike[str] | None = None,
     parameters: Mapping[str, Any] | None = None,
+    run_limit: float | None = None,
     **options: Any,
 ) -> list[Any]:
     """Simulate a scene once for each set of values, on all cores or on a cluster.
@@ -43,9 +45,14 @@ def sweep(
         Show a bar on the terminal.
     store : path, optional
         A folder that keeps each result as it comes in.  The same sweep with the same store goes on where it stopped;
-        a run is made again where scene, values, options or ``reduce`` have changed.
+        a run is made again where scene, values, options, ``reduce``, a law, or a function or global that these use has
+        changed.  What cannot be followed (a file that ``reduce`` reads) is not seen; what can be seen to be so is said.
+        Results are pickles: do not use a folder that others can write to.
     parameters : dict, optional
         Values that all runs share; those of a run win.
+    run_limit : float, optional
+        Seconds that a run may take with its ``reduce``; then its process is ended, and an IntegrationError stands in
+        its place.  A process that dies costs its run alone, too.
     **options
         As :func:`fricmb.simulate`.
 
@@ -59,12 +66,17 @@ def sweep(
     ------
     SceneError
         For a wrong name or value, before anything is run.
+    KeyboardInterrupt
+        After Ctrl-C, once the runs under way are done (at once after a second one); its ``results`` are those that
+        were made, None for others.
     """
     values = [{**(parameters or {}), **_checked(run, i)} for i, run in enumerate(runs)]
     for value in values:
         scene.with_parameters(value)
     if reduce is not None and not callable(reduce):
         raise SceneError(f"reduce: got {reduce!r}; expected a function of a Solution, or None")
+    if run_limit is not None and not (isinstance(run_limit, int | float) and run_limit > 0):
+        raise SceneError(f"run_limit: got {run_limit!r}; expected a number of seconds > 0, or None")
     job = Job(scene=scene, reduce=reduce, options={"t_end": t_end, **options})
     kept = None if store is None else Store(store, (fricmb.__version__, scene, reduce, job.options))
     results: list[Any] = [None] * len(values)
@@ -74,14 +86,27 @@ def sweep(
             there, results[i] = kept.get(value)
             if there:
                 del missing[i]
-    made = outcomes(job, missing, workers)
+    made = outcomes(job, dict(missing), workers, run_limit)
     with _bar(len(values), len(values) - len(missing), progress) as bar:
-        for i, result in made:
-            results[i] = result
-            if kept is not None:
-                kept.put(values[i], result)
-            bar.update()
+        try:
+            for i, result in made:
+                results[i] = result
+                del missing[i]
+                if kept is not None and not _is_lost(result):
+                    kept.put(values[i], result)
+                bar.update()
+        except KeyboardInterrupt as stop:
+            stop.results = results  # type: ignore[attr-defined]
+            done = f"{len(values) - len(missing)} of {len(values)} runs are done"
+            where = "nowhere: give store=" if kept is None else f"in {kept.path}"
+            say(f"interrupted: {done}, kept {where}{'' if kept is None else '; the same call goes on from there'}")
+            raise
     return results
+
+
+def _is_lost(result: Any) -> bool:
+    """Whether a run was ended from outside, so that another try is worth while."""
+    return isinstance(result, IntegrationError) and getattr(result, "lost", False)
 
 
 def _checked(run: Any, i: int) -> Mapping[str, Any]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import Any
 
 from fricmb._simulate import simulate
+from fricmb._sweep._processes import lost, run_in_processes, say
 from fricmb.errors import FricmbError, IntegrationError, SceneError
 from fricmb.solution import Solution
 
@@ -36,10 +37,15 @@ class Job:
 Outcomes = Iterator[tuple[int, Any]]
 
 
-def outcomes(job: Job, runs: Mapping[int, dict[str, Any]], workers: Any) -> Outcomes:
-    """Make the runs with ``workers``: None (as many processes as cores), a number, an Executor or a dask Client."""
+def outcomes(job: Job, runs: Mapping[int, dict[str, Any]], workers: Any, limit: float | None = None) -> Outcomes:
+    """Make the runs with ``workers``: None (as many processes as cores), a number, an Executor or a dask Client.
+
+    ``limit``: seconds that a run may take, in processes of this machine.
+    """
     if not runs:
         return iter(())
+    if limit is not None and (isinstance(workers, Executor) or _is_dask_client(workers)):
+        raise SceneError("run_limit: only processes that the sweep starts itself can be ended; leave workers out")
     if isinstance(workers, Executor):
         return _executor(job, runs, workers)
     if _is_dask_client(workers):
@@ -52,7 +58,7 @@ def outcomes(job: Job, runs: Mapping[int, dict[str, Any]], workers: Any) -> Outc
             "concurrent.futures or a dask.distributed.Client"
         )
     workers = min(workers, len(runs))
-    return _here(job, runs) if workers == 1 else _processes(job, runs, workers)
+    return _here(job, runs) if workers == 1 and limit is None else run_in_processes(job.run, runs, workers, limit)
 
 
 def _cores() -> int:
@@ -64,41 +70,16 @@ def _here(job: Job, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
         yield i, job.run(parameters)
 
 
-_job: Job | None = None
-
-
-def _set_job(job: Job) -> None:
-    global _job
-    _job = job
-
-
-def _run(parameters: dict[str, Any]) -> Any:
-    if _job is None:
-        raise FricmbError("a worker process of a sweep was started without its job")
-    return _job.run(parameters)
-
-
-def _processes(job: Job, runs: Mapping[int, dict[str, Any]], workers: int) -> Outcomes:
-    """Each process gets the job once, when it starts."""
-    pool = ProcessPoolExecutor(workers, initializer=_set_job, initargs=(job,))
-    try:
-        futures = {pool.submit(_run, parameters): i for i, parameters in runs.items()}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
-    except BrokenProcessPool as error:
-        raise FricmbError(
-            "a worker process of the sweep ended before its run did: out of memory, or a script that starts the sweep "
-            "outside of `if __name__ == '__main__':`"
-        ) from error
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
-
-
 def _executor(job: Job, runs: Mapping[int, dict[str, Any]], executor: Executor) -> Outcomes:
     futures = {executor.submit(job.run, parameters): i for i, parameters in runs.items()}
     try:
         for future in as_completed(futures):
             yield futures[future], future.result()
+    except BrokenProcessPool as error:
+        raise FricmbError(
+            "a process of workers ended before its run did (out of memory?), and with it the Executor; processes that "
+            "the sweep starts itself (workers=4) cost the one run alone"
+        ) from error
     finally:
         for future in futures:
             future.cancel()
@@ -116,7 +97,14 @@ def _dask(job: Job, runs: Mapping[int, dict[str, Any]], client: Any) -> Outcomes
     shared = client.scatter(job, broadcast=True, hash=False)
     futures = {client.submit(Job.run, shared, parameters, pure=False): i for i, parameters in runs.items()}
     try:
-        for future, result in distributed.as_completed(list(futures), with_results=True):  # type: ignore[no-untyped-call]
-            yield futures[future], result
+        for future in distributed.as_completed(list(futures)):  # type: ignore[no-untyped-call]
+            i, error = futures[future], future.exception() if future.status == "error" else None
+            if error is None:
+                yield i, future.result()
+            elif isinstance(error, distributed.scheduler.KilledWorker):
+                say(f"a run of the sweep has no result: {error}; {runs[i]!r}")
+                yield i, lost(f"its worker was killed: {error}", runs[i])
+            else:
+                raise error
     finally:
         client.cancel([future for future in futures if not future.done()])

@@ -2,6 +2,7 @@ import functools
 import os
 import subprocess
 import sys
+import threading
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +10,12 @@ import pytest
 import scipy.sparse
 import sympy
 
-from fricmb._sweep._fingerprint import fingerprint
+from fricmb._sweep._fingerprint import Fingerprint, fingerprint
 from fricmb.values import parameter
 
 SCRIPT = """
 import numpy as np, sympy
-from fricmb._sweep._fingerprint import fingerprint
+from fricmb._sweep._fingerprint import Fingerprint, fingerprint
 def reduce(sol):
     return {name for name in ("a", "b", "c")}, sol.t in {"x", "y", "z"}
 print(fingerprint({"b": 1.0, "a": np.arange(3)}, sympy.Symbol("x") + 1, reduce, (None, True, "x")))
@@ -77,3 +78,78 @@ def test_a_class_counts_by_its_code():
 
     assert fingerprint(law("self.a")) == fingerprint(law("self.a"))
     assert fingerprint(law("self.a")) != fingerprint(law("-self.a"))
+
+
+MODULE = """
+import math
+import {helper} as aside
+from {helper} import doubled
+
+FACTOR = {factor}
+TABLE = {{"a": [1.0, {factor}]}}
+
+
+def inner(x):
+    return x + {shift}
+
+
+def reduce(sol):
+    return inner(FACTOR * doubled(sol)) + aside.tripled(sol) + math.pi
+
+
+def recursive(n):
+    return n and recursive(n - 1) + TABLE["a"][1]
+
+
+class Law:
+    LIMIT = {limit}
+
+    @property
+    def value(self):
+        return self.LIMIT + inner(0)
+"""
+
+
+def user_module(tmp_path, monkeypatch, *, factor=1.0, shift=2.0, limit=3.0, times=2.0, other=3.0):
+    """A script with a helper module beside it, as a user has them."""
+    name = f"helper_{abs(hash(tmp_path))}"
+    (tmp_path / f"{name}.py").write_text(
+        f"def doubled(x):\n    return {times} * x\ndef tripled(x):\n    return {other} * x\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    space = {"__name__": "script"}
+    exec(MODULE.format(helper=name, factor=factor, shift=shift, limit=limit), space)
+    return space
+
+
+@pytest.mark.parametrize(
+    ("change", "seen"),
+    [
+        ({}, set()),
+        ({"factor": 5.0}, {"reduce", "recursive"}),
+        ({"shift": 5.0}, {"reduce", "Law"}),
+        ({"limit": 5.0}, {"Law"}),
+        ({"times": 5.0}, {"reduce"}),
+        ({"other": 5.0}, {"reduce"}),
+    ],
+)
+def test_helpers_and_globals_are_followed(tmp_path, monkeypatch, change, seen):
+    names = ("reduce", "recursive", "Law")
+    before = user_module(tmp_path, monkeypatch)
+    kept = {name: fingerprint(before[name]) for name in names}
+    after = user_module(tmp_path, monkeypatch, **change)
+    assert {name for name in names if fingerprint(after[name]) != kept[name]} == seen
+
+
+def test_what_cannot_be_followed_is_told():
+    lock = threading.Lock()
+
+    def reduce(sol):
+        with lock:
+            return sol
+
+    found = Fingerprint()
+    found.of(reduce)
+    assert found.unseen == ["a _thread.lock"]

@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 
@@ -17,13 +19,40 @@ def test_a_result_is_kept_by_content(tmp_path):
     assert Store(tmp_path / "runs", ("scene", 2)).get({"k": 1.0}) == (False, None)
 
 
-def test_a_broken_file_counts_as_none(tmp_path):
+def test_a_broken_file_counts_as_none_and_is_told(tmp_path, capsys):
     store = Store(tmp_path, ())
     store.put({}, [1, 2, 3])
     whole = store.file({}).read_bytes()
-    for broken in (b"", whole[:-3], b"not a pickle"):
+    flipped = bytearray(whole)
+    flipped[-3] ^= 1
+    for broken in (b"", whole[:-3], b"not a pickle", pickle.dumps(Harm(tmp_path / "harm")), bytes(flipped)):
         store.file({}).write_bytes(broken)
+        capsys.readouterr()
         assert store.get({}) == (False, None)
+        assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "harm").exists()
+
+
+class Harm:
+    """Makes a file when it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return open, (str(self.path), "w")
+
+
+def test_a_full_disk_is_told_once(tmp_path, monkeypatch, capsys):
+    def full(*args):
+        raise OSError(28, "No space left on device")
+
+    store = Store(tmp_path, ())
+    monkeypatch.setattr("os.replace", full)
+    store.put({"a": 1.0}, 1)
+    store.put({"a": 2.0}, 1)
+    assert capsys.readouterr().err.count("No space left") == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_cannot_be_pickled_leaves_nothing_behind(tmp_path):
