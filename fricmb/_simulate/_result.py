@@ -10,6 +10,7 @@ from fricmb._simulate._arguments import Span
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
+from fricmb._simulate._misses import miss_notes
 from fricmb.errors import IntegrationError
 from fricmb.integrate import Samples, Trajectory
 from fricmb.integrate._problem import LAW_COEFFICIENT, Floats
@@ -46,7 +47,7 @@ def make_solution(
         except IntegrationError as error:
             raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
         check_friction(mechanics, trajectory, sol.record.samples, rtol or 0.0)
-        said = (*notes, *ledger_note(sol, rtol))
+        said = (*notes, *ledger_note(sol, rtol), *miss_notes(sol, trajectory, rtol))
         wall_s = time.perf_counter() - begin
         sol.stats = Stats(
             method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, notes=said, **counts
