@@ -13,7 +13,7 @@ from fricmb.integrate._room import block, room
 from fricmb.integrate.constrained._band import spread_of_pivots
 from fricmb.integrate.constrained._field import call_joint, friction_at, move
 from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
-from fricmb.integrate.constrained._slip import magnitude, slip_speed, stick_limit
+from fricmb.integrate.constrained._slip import lack, slip_speed, spare
 from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
 
 
@@ -226,7 +226,7 @@ def triggers(
 ) -> None:  # fmt: skip
     """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps).
 
-    Behind them one a port whose load has a kink in the present step.
+    Behind them one a port whose load has a kink in the present step.  Slip almost without load may turn as it likes.
     """
     port, joint = mech.port, mech.joint
     n_c = mode.shape[0]
@@ -238,9 +238,9 @@ def triggers(
         if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
             continue
         if mode[c] == STICK:
-            out.trigger[2 * c] = stick_limit(mech, k, c, N) - magnitude(port.row, c, F)
+            out.trigger[2 * c] = spare(mech, k, c, F, N, k.borne[0])
         else:
-            out.trigger[2 * c] = slip_speed(port.row, c, direction, F, g)
+            out.trigger[2 * c] = slip_speed(port.row, c, direction, F, g) + out.size[0] * lack(N[c], k.borne[0])
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:

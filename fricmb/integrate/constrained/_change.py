@@ -31,7 +31,7 @@ from fricmb.integrate.constrained._field import move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import EPS, project_velocities
 from fricmb.integrate.constrained._record import Record, copy_state, record_event
-from fricmb.integrate.constrained._slip import magnitude, plane
+from fricmb.integrate.constrained._slip import lack, magnitude, plane
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix, react
 from fricmb.integrate.constrained._step import Control
 
@@ -83,6 +83,26 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
     return DONE
 
 
+@kernel
+def bears(k: Moving, y: State, i: int) -> bool:
+    """Whether the load of port i is more than a trifle beside the largest force."""
+    return bool(lack(y.N[i], k.borne[0]) == 0.0)
+
+
+@kernel
+def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
+    """Take the round-off of slip away from what sticks, and from what has been at rest and sets out from there."""
+    for i in range(part.shape[0]):
+        if part[i] == 1 and y.mode[i] == SLIP and not plane(mech, i):
+            y.mode[i] = STICK
+            part[i] = 2
+    done = project_velocities(mech, k, w, y, False, True, mech.address)
+    for i in range(part.shape[0]):
+        if part[i] == 2:
+            y.mode[i] = SLIP
+    return bool(done)
+
+
 @block
 def change_modes(
     mech: Mech,
@@ -107,7 +127,8 @@ def change_modes(
     set_window(k, c, y.t[0])
     for i in range(n_c):
         part[i] = 1 if y.mode[i] == STICK else 0
-        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.size[0]:
+        # without load the direction of slip decides nothing: found anew it would be that of round-off
+        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.size[0] and bears(k, y, i):
             part[i] = 1
     forced = -1
     if 0 <= j < 2 * n_c:
@@ -121,8 +142,12 @@ def change_modes(
                 part[port] = 1 if speed <= 1e-11 * out.size[0] else 0
         elif y.mode[port] == STICK:
             forced = port
-        else:
+        elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.size[0]:
             part[port] = 1
+        else:
+            # one that had no load to speak of has gone on through rest
+            part[port] = 0
+            y.n[row[port]] = -y.n[row[port]]
     code = decide(mech, k, w, y, part, forced, mech.address)
     if code != FOUND:
         return FAIL_SEVERAL if code == SEVERAL else FAIL_NONE
@@ -141,7 +166,7 @@ def change_modes(
             kind = EVENT_REVERSAL
         if kind >= 0:
             record_event(rec, y.t[0], i, kind)
-    if not project_velocities(mech, k, w, y, False, True, mech.address):
+    if not bring_to_rest(mech, k, w, y, part):
         return FAIL_PROJECT
     if not react(mech, k, w, y, False, mech.address):
         return FAIL_NONE

@@ -6,15 +6,27 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._slip import SETTING_OUT, aim, lightness, magnitude, plane, slip_speed, stick_limit
+from fricmb.integrate.constrained._slip import (
+    SETTING_OUT,
+    aim,
+    lack,
+    lightness,
+    magnitude,
+    plane,
+    slip_speed,
+    spare,
+    stick_limit,
+)
 from fricmb.integrate.constrained._state import Instant, State, react
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
 #: Up to this many ports at rest every combination is tried where the search by release fails.
 ENUMERATED = 6
-#: Round-off of forces beside the limit of sticking, and of slip accelerations beside their size.
+#: Round-off of forces beside the limit of sticking.
 SLACK = 1e-10
+#: Round-off of slip accelerations beside the largest: in trees, and in loops, whose Jacobians are softened.
+CREEP, CREEP_IN_LOOPS = 1e-12, 1e-9
 #: Steps from the forces that hold to those of slip, where directions of slip are to be found.
 STEPS_OUT = 6
 
@@ -24,10 +36,10 @@ def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
     """By how much port c contradicts its mode (0: not at all); y is complete."""
     if y.mode[c] == STICK:
         limit, force = stick_limit(mech, k, c, y.N), magnitude(mech.port.row, c, y.F)
-        over = force - limit
+        over = -spare(mech, k, c, y.F, y.N, k.borne[0])
         return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
-    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga)
-    return against / a_scale if against > 1e-9 * a_scale else 0.0
+    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne[0])
+    return against if against > (CREEP_IN_LOOPS if mech.port.soft[c] > 0.0 else CREEP) else 0.0
 
 
 @kernel

@@ -22,7 +22,7 @@ from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_velocities
 from fricmb.integrate.constrained._record import Record, crowded
 from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import Instant, State
+from fricmb.integrate.constrained._state import Instant, State, react
 from fricmb.integrate.constrained._step import Control
 
 
@@ -48,6 +48,9 @@ def begin(
         if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
             return FAIL_MARGIN
         return FAIL_SEVERAL if code == SEVERAL else FAIL_NONE
+    # what sticks moves by nothing, not by the round-off of velocities that have been given or projected
+    if not (project_velocities(mech, k, w, y, False, True, mech.address) and react(mech, k, w, y, False, mech.address)):
+        return FAIL_NONE
     grow(c, out, y)
     if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
         return FAIL_MARGIN

@@ -15,6 +15,7 @@ from fricmb.integrate._places import MECHANISM, MECHANISM_STEPS, PLACES
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 from fricmb.integrate._room import block_address, room
 from fricmb.integrate.constrained._band import band_addresses, band_sizes
+from fricmb.integrate.constrained._loops import softness
 from fricmb.integrate.constrained._pattern import ordering
 
 
@@ -72,10 +73,12 @@ class Port(NamedTuple):
     """Friction: port c has the rows ``row[c]:row[c+1]``, one a direction of slip.
 
     ``joint`` (n_c,) the joint it belongs to or -1; ``slip`` of the others two forms a row, coordinate and velocity.
+    ``soft`` (n_c,) softness of a port that sticks, beside that of its bodies (see ``_loops``).
     """
 
     joint: Ints
     row: Ints
+    soft: Floats
     slip: Table
     w: Floats
     law: Codes
@@ -147,7 +150,8 @@ def _pack(problem: Problem) -> Mech:
         port_joint[m.joints.port[j]] = j
     solid = np.ascontiguousarray
     port = Port(
-        port_joint, solid(contacts.row, np.int64), _table(m.slip), solid(contacts.w), solid(contacts.law, np.int8),
+        port_joint, solid(contacts.row, np.int64), softness(problem, m, port_joint), _table(m.slip),
+        solid(contacts.w), solid(contacts.law, np.int8),
         solid(contacts.mu_s),
         solid(contacts.mu_0), solid(contacts.z_start, np.int64), solid(contacts.normal, np.int8),
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),

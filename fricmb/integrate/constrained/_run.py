@@ -71,12 +71,16 @@ def run_mechanism(
     control = control_of(problem, st, tolerance.rtol, v, z, floor, span, 1.0, mass)
     record = record_of(problem, stages, CHUNK)
     part = np.zeros(problem.n_c, np.int8)
-    small = 1e-12 * float(np.abs(v).max(initial=0.0))
+    reach = _reach(problem, start, t_end)
+    small = 1e-12 * max(float(np.abs(v).max(initial=0.0)), reach)
+    if np.abs(v).max(initial=0.0) <= small:
+        y.v[:] = 0.0  # round-off of a start at rest
     chunks: list[tuple[Any, ...]] = []
     rooms = (mech, k, w, y, end, before, st, control, out, record, part)
     go_on = _bdf_loop(problem, start, t_end, stages, rooms) if multistep else lambda: drive(*rooms)
     code = begin(mech, k, w, y, control, out, record, part, start.mode is not None, small)
     if code == DONE:
+        out.size[0] = max(float(out.size[0]), reach)
         load = _load(m, y)
         if not np.any(y.v) and (mass * np.abs(y.a)).max(initial=0.0) <= ROUND_OFF * load:
             to_come = _speed_to_come(problem, start, t_end, load, mass)
@@ -155,6 +159,16 @@ def _speed_to_come(problem: Problem, start: Start, t_end: float, load: float, ma
         if np.isfinite(a).all() and (mass * np.abs(a.ravel())).max() > ROUND_OFF * load:
             return float(1e-3 * part * span * np.abs(a).max())
     return float(1e-4 * span * load / mass.max())
+
+
+def _reach(problem: Problem, start: Start, t_end: float) -> float:
+    """Speed that the loads of the start would bring about in a first step from rest: round-off is seen beside it."""
+    m, nc = mechanism_of(problem), problem.n_c
+    q, v, z = np.array(start.q, float)[None], np.zeros((1, m.n)), np.array(start.z, float)[None]
+    force = np.zeros((1, int(m.joints.row[-1]) + 2 * problem.m))
+    a = complete_at(problem, np.array([start.t]), q, v, z, np.ones((1, nc), np.int8), force)[4]
+    push = float(np.abs(a).max(initial=0.0))
+    return _first_step(v, a, t_end - start.t) * push if push < np.inf else 0.0
 
 
 def _first_step(v: Floats, a: Floats, span: float) -> float:

@@ -16,9 +16,6 @@ from fricmb.integrate.constrained._pack import Mech, Moving
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
 SETTING_OUT = 3
-#: Softness of ports that stick, beside that of the bodies, in Jacobians alone: of contacts that hold more than there is
-#: to hold only what their forces do together is determined.
-SOFT = 1e-5
 
 
 @kernel
@@ -53,6 +50,23 @@ def stick_limit(mech: Mech, k: Moving, c: int, N: Floats) -> float:
     """Force up to which port c sticks."""
     load = max(N[c], 0.0)
     return float(break_away(mech.port, mech.port.laws, c, k.s, load) * load)  # type: ignore[arg-type]
+
+
+#: Loads below this part of the largest force: friction under them moves nothing, and is not known better than that.
+LIGHT = 1e-10
+
+
+@kernel
+def lack(load: float, largest: float) -> float:
+    """1 for a port without load, falling to 0 where its friction tells beside the largest force."""
+    return float(max(0.0, 1.0 - load / (LIGHT * largest))) if largest > 0.0 else 0.0
+
+
+@kernel
+def spare(mech: Mech, k: Moving, c: int, F: Floats, N: Floats, largest: float) -> float:
+    """Force that port c could still bear while it sticks; of one almost without load only what tells beside others."""
+    left = stick_limit(mech, k, c, N) - magnitude(mech.port.row, c, F)
+    return float(left + LIGHT * largest * lack(N[c], largest))
 
 
 @kernel
@@ -138,8 +152,9 @@ def add_stick(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, f
     """Rows of a port that sticks."""
     for a in range(mech.port.row[c + 1] - mech.port.row[c]):
         add_slip(mech, k, c, a, lam, L, row + a, 1.0, full, mech.address)
-        soft = SOFT * lightness(mech, k, c, a, lam, mech.address)
-        add(mech.order, L.A2 if full else L.A1, row + a, row + a, soft)
+        if mech.port.soft[c] > 0.0:
+            soft = mech.port.soft[c] * lightness(mech, k, c, a, lam, mech.address)
+            add(mech.order, L.A2 if full else L.A1, row + a, row + a, soft)
 
 
 @block

@@ -274,7 +274,8 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         last = error
     else:
         return False
-    k.borne[0] = max(k.borne[0], load)
+    # of what has been found: iterates on the way there may be anything
+    k.borne[0] = max(k.borne[0], largest(y.lam), largest(y.F), largest_load(mech, y))
     instant_residual(mech, k, w, y, mech.address)
     powers(mech, k, y.F, y.g, y.N, y.rate, mech.address)
     return True
