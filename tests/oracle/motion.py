@@ -1,0 +1,152 @@
+"""Forces and accelerations while no mode changes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .instant import loaded
+from .problem import OPEN, SLIP, STICK, OracleError, Problem
+
+
+class Field:
+    """The right-hand side for one set of modes; ``signs``: directions of slip in one dimension."""
+
+    def __init__(self, problem: Problem, modes: list[int], signs: list[float], window: tuple[float, float]) -> None:
+        self.problem, self.modes, self.signs = problem, list(modes), list(signs)
+        self.low, self.high = window[0], np.nextafter(window[1], window[0])
+        self.n = problem.q.size
+        self.contacts = problem.contacts
+        self.rows, self.z_rows = layout(problem)
+        self.W = np.hstack([c.W for c in self.contacts]) if self.contacts else np.zeros((self.n, 0))
+        self.held = np.array(
+            [j for c, s, m in zip(self.contacts, self.rows, modes, strict=True) if m == STICK and c.force is None
+             for j in range(s.start, s.stop)], dtype=int,
+        )  # fmt: skip
+        self.active: set[int] = set()
+        self.full: bool | None = None
+        self.fixed = None if problem.mass is not None else self.inverse(problem.M)
+
+    def inverse(self, M: np.ndarray) -> tuple[np.ndarray, ...]:
+        """M^-1, D, and what turns accelerations of held contacts into their forces."""
+        Mi = np.linalg.inv(M)
+        D = self.W.T @ Mi @ self.W
+        h = self.held
+        P = np.linalg.pinv(D[np.ix_(h, h)], rcond=1e-11, hermitian=True) if h.size else np.zeros((0, 0))
+        return Mi, D, P
+
+    def matrices(self, q: np.ndarray) -> tuple[np.ndarray, ...]:
+        """M^-1, D and P at q."""
+        return self.fixed if self.fixed is not None else self.inverse(self.problem.mass(q))  # type: ignore[misc]
+
+    def speeds(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Relative velocities of all contacts."""
+        slide = [np.broadcast_to(np.asarray(c.slide(t), dtype=float), (c.d,)) for c in self.contacts]
+        return self.W.T @ v - np.concatenate(slide) if slide else np.zeros(0)
+
+    def slide_rates(self, t: float) -> np.ndarray:
+        """Rates of the prescribed part."""
+        rates = [np.broadcast_to(np.asarray(c.slide_rate(t), dtype=float), (c.d,)) for c in self.contacts]
+        return np.concatenate(rates) if rates else np.zeros(0)
+
+    def given(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Generalised forces other than friction."""
+        p = self.problem
+        f = p.load(t) - p.K @ q - p.C @ v
+        return f if p.extra is None else f + p.extra(t, q, v)
+
+    def normal(self, i: int, t: float, q: np.ndarray, v: np.ndarray) -> float:
+        """Normal force; below 0: that far from contact."""
+        return float(self.contacts[i].N(t, q, v))
+
+    def evaluate(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Accelerations, forces, relative velocities and rates of states."""
+        t = min(max(t, self.low), self.high)
+        n = self.n
+        q, v = y[:n], y[n : 2 * n]
+        g = self.speeds(t, v)
+        F = np.zeros(g.size)
+        rates = np.zeros(y.size - 2 * n)
+        for i, (c, s) in enumerate(zip(self.contacts, self.rows, strict=True)):
+            if c.force is not None:
+                z, N = y[2 * n :][self.z_rows[i]], max(self.normal(i, t, q, v), 0.0)
+                F[s] = c.force(g[s], N, z)
+                if c.rate is not None:
+                    rates[self.z_rows[i]] = c.rate(g[s], N, z)
+            elif self.modes[i] == SLIP:
+                F[s] = self.slip(i, g[s], max(self.normal(i, t, q, v), 0.0))
+        Mi, D, P = self.matrices(q)
+        rest = self.given(t, q, v) + self.W @ F
+        a = Mi @ rest
+        if self.held.size:
+            h = self.held
+            F[h] = P @ (self.slide_rates(t)[h] - self.W[:, h].T @ a)
+            a = a + Mi @ (self.W[:, h] @ F[h])
+        return a, F, g, rates
+
+    def slip(self, i: int, g: np.ndarray, N: float) -> np.ndarray:
+        """Friction in slip."""
+        c = self.contacts[i]
+        assert c.mu is not None
+        if c.d == 1:
+            return np.array([-self.signs[i] * c.mu(max(self.signs[i] * g[0], 0.0), N) * N])
+        r = float(np.sqrt(g @ g))
+        if r == 0.0:
+            raise OracleError("no direction of slip")
+        return -c.mu(r, N) * N / r * g
+
+    def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
+        """For scipy."""
+        a, _, _, rates = self.evaluate(t, y)
+        return np.concatenate([y[self.n : 2 * self.n], a, rates])
+
+    def margins(self, t: float, y: np.ndarray) -> np.ndarray:
+        """What must stay above 0 for the modes to go on, contact by contact."""
+        _, F, g, _ = self.evaluate(t, y)
+        clipped = min(max(t, self.low), self.high)
+        q, v = y[: self.n], y[self.n : 2 * self.n]
+        out = np.full((2, len(self.contacts)), np.inf)
+        for i, (c, s) in enumerate(zip(self.contacts, self.rows, strict=True)):
+            if c.force is not None:
+                if not c.constant:
+                    out[1, i] = abs(self.normal(i, clipped, q, v))  # a kink; no mode hangs on it
+                continue
+            N = self.normal(i, clipped, q, v)
+            if not c.constant:
+                out[1, i] = -N if self.modes[i] == OPEN else N
+            if self.modes[i] == STICK:
+                assert c.mu_s is not None
+                out[0, i] = c.mu_s(max(N, 0.0)) * max(N, 0.0) - np.sqrt(F[s] @ F[s])
+            elif self.modes[i] == SLIP and c.d == 1:
+                out[0, i] = self.signs[i] * g[s.start]
+        if self.held.size:
+            self.share(out[0], F, y[: self.n])
+        return out
+
+    def share(self, margins: np.ndarray, F: np.ndarray, q: np.ndarray) -> None:
+        """Of contacts more than enough to hold what they hold: the margin of the best distribution of forces."""
+        Mi, D, _ = self.matrices(q)
+        held = D[np.ix_(self.held, self.held)]
+        stuck = [i for i, c in enumerate(self.contacts) if self.modes[i] == STICK and c.force is None]
+        if self.full is None or self.problem.mass is not None:
+            self.full = bool(np.linalg.matrix_rank(held, tol=1e-11 * np.abs(held).max()) == held.shape[0])
+        if self.full:
+            return
+        if any(self.contacts[i].d > 1 for i in stuck):
+            if min(margins[stuck]) < 0.0:
+                raise OracleError("redundant contacts in two directions")
+            return
+        rows = [self.rows[i].start for i in stuck]
+        limits = margins[stuck] + np.abs(F[rows])
+        most, forces = loaded(held, held @ F[rows], limits)
+        self.active = {i for i, f, limit in zip(stuck, forces, limits, strict=True) if abs(f) > (1 - 1e-6) * most * limit}
+        margins[stuck] = (1.0 - most) * limits
+
+
+def layout(problem: Problem) -> tuple[list[slice], list[slice]]:
+    """Where each contact's rows and states lie."""
+    rows, states, at, z = [], [], 0, 0
+    for c in problem.contacts:
+        rows.append(slice(at, at + c.d))
+        states.append(slice(z, z + c.n_z))
+        at, z = at + c.d, z + c.n_z
+    return rows, states

@@ -1,0 +1,318 @@
+"""From transition to transition."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.integrate import DOP853, Radau
+from scipy.optimize import brentq, minimize_scalar
+
+from .instant import decide
+from .motion import Field
+from .problem import OPEN, SLIP, STICK, Motion, OracleError, Problem, Transition
+from .slow import leap
+
+#: Slip speeds in two directions, over the scale, at which it is decided whether a contact sticks.
+NEAR = 1e-9
+LIMIT = 3000
+
+
+class Run:
+    """One run of the oracle."""
+
+    def __init__(self, problem: Problem, rtol: float = 1e-11) -> None:
+        self.p, self.rtol = problem, rtol
+        self.n = problem.q.size
+        self.motion = Motion(self.n)
+        n_z = sum(c.n_z for c in problem.contacts)
+        self.y = np.concatenate([problem.q, problem.v, np.zeros(n_z)]).astype(float)
+        self.t = 0.0
+        k = len(problem.contacts)
+        self.modes, self.signs = [SLIP] * k, [1.0] * k
+        self.tiny = 1e-12 * problem.scale
+        self.ends = [*sorted(b for b in problem.breaks if 0.0 < b < problem.t_end), problem.t_end]
+        self.end = self.ends[0]
+        self.smooth = not any(c.force is None for c in problem.contacts)
+        self.start: dict[int, np.ndarray] = {}
+        self.slow = False
+
+    def run(self) -> Motion:
+        """All of it."""
+        self.settle(first=True)
+        for end in self.ends:
+            self.end = end
+            if self.t > 0.0:
+                self.settle()
+            while self.t < end:
+                self.segment()
+                if len(self.motion.events) > LIMIT:
+                    raise OracleError("too many transitions")
+        self.motion.last = self.y
+        return self.motion
+
+    # -- decisions --------------------------------------------------------------------------------------------------
+    def field(self) -> Field:
+        """The right-hand side in the present modes."""
+        return Field(self.p, self.modes, self.signs, (self.t, self.end))
+
+    def settle(
+        self, first: bool = False, released: frozenset[int] = frozenset(), arrived: frozenset[int] = frozenset(),
+        flipped: frozenset[int] = frozenset(), one_of: frozenset[int] = frozenset(),
+    ) -> None:  # fmt: skip
+        """New modes at this instant for all that is at rest."""
+        p, field = self.p, self.field()
+        t = min(max(self.t, field.low), field.high)
+        q, v = self.y[: self.n], self.y[self.n : 2 * self.n]
+        g = field.speeds(t, v)
+        before, self.start = list(zip(self.modes, self.signs, strict=True)), {}
+        resting = []
+        for i, (c, s) in enumerate(zip(p.contacts, field.rows, strict=True)):
+            if c.force is not None:
+                continue
+            N = field.normal(i, t, q, v)
+            opened = N < 0.0 or (N == 0.0 and not c.constant)
+            if i in flipped:
+                opened = self.modes[i] != OPEN
+            if opened:
+                self.modes[i] = OPEN
+                continue
+            at_rest = np.abs(g[s]).max() <= (self.tiny if c.d == 1 else self.tiny * 1e-1)
+            if i in arrived or at_rest or i in released | one_of:
+                resting.append(i)
+                self.modes[i] = STICK
+            else:
+                self.modes[i] = SLIP
+                self.signs[i] = 1.0 if g[s.start] > 0.0 else -1.0
+        if resting:
+            self.choose(resting, released, one_of, t)
+        if not first:
+            self.record(before)
+        if self.start:
+            self.begin()
+
+    def choose(self, resting: list[int], released: frozenset[int], one_of: frozenset[int], t: float) -> None:
+        """Modes of contacts at rest, and the velocity made exactly consistent."""
+        p = self.p
+        moving = Field(p, [OPEN if i in resting else m for i, m in enumerate(self.modes)], self.signs, (self.t, self.end))
+        q, v = self.y[: self.n], self.y[self.n : 2 * self.n]
+        a = moving.evaluate(t, self.y)[0]
+        Mi, D, _ = moving.matrices(q)
+        columns = np.concatenate([np.arange(moving.rows[i].start, moving.rows[i].stop) for i in resting])
+        b = moving.W[:, columns].T @ a - moving.slide_rates(t)[columns]
+        rows, at = [], 0
+        for i in resting:
+            rows.append(slice(at, at + p.contacts[i].d))
+            at += p.contacts[i].d
+        loads = [max(moving.normal(i, t, q, v), 0.0) for i in resting]
+        static = np.array([p.contacts[i].mu_s(N) * N for i, N in zip(resting, loads, strict=True)])  # type: ignore[misc]
+        slip = np.array([p.contacts[i].mu(0.0, N) * N for i, N in zip(resting, loads, strict=True)])  # type: ignore[misc]
+        D = D[np.ix_(columns, columns)]
+        local = frozenset(resting.index(i) for i in released if i in resting)
+        some = frozenset(resting.index(i) for i in one_of if i in resting)
+        found = decide(D, b, static, slip, rows, local, some)
+        if not found and local:  # another one that moves may hold it
+            found = [f for f in decide(D, b, static, slip, rows) if f[0]]
+        if not found:
+            raise OracleError(f"no consistent set of modes at t = {self.t}")
+        if len({tuple(np.round(D @ f[1] + b, 9)) for f in found}) > 1:
+            self.motion.ambiguous = True
+        slips, F = found[0]
+        # to exactly zero slip
+        g = moving.speeds(t, v)[columns]
+        W = moving.W[:, columns]
+        self.y[self.n : 2 * self.n] -= Mi @ (W @ (np.linalg.pinv(D, rcond=1e-11, hermitian=True) @ g))
+        push = moving.evaluate(t, self.y)[1]
+        push[columns] = F
+        for j, i in enumerate(resting):
+            if j in slips:
+                self.modes[i] = SLIP
+                self.signs[i] = -1.0 if F[rows[j].start] > 0.0 else 1.0
+                if p.contacts[i].d == 2:
+                    self.start[i] = push
+
+    def begin(self) -> None:
+        """Leap over the singular first moment of slip in two directions."""
+        if len(self.start) > 1:
+            raise OracleError("two contacts begin to slip in two directions at once")
+        ((i, push),) = self.start.items()
+        field, t0 = self.field(), self.t
+        tau = min(1e-4, 0.1 * (self.end - self.t))
+        after = leap(field, t0, self.y, i, push, tau)
+        y0 = self.y.copy()
+
+        def line(t: np.ndarray) -> np.ndarray:
+            x = (np.atleast_1d(t) - t0) / tau
+            return y0[:, None] + (after - y0)[:, None] * x
+
+        self.motion.pieces.append((t0, t0 + tau, line))
+        self.t, self.y, self.start = t0 + tau, after, {}
+        self.slow = True
+
+    def record(self, before: list[tuple[int, float]]) -> None:
+        """Transitions between the modes before and those now."""
+        for c, (m0, s0), m1, s1 in zip(self.p.contacts, before, self.modes, self.signs, strict=True):
+            if c.force is not None:
+                continue
+            kind = None
+            if m0 == OPEN != m1:
+                kind = "close"
+            elif m1 == OPEN != m0:
+                kind = "open"
+            elif m0 == SLIP and m1 == STICK:
+                kind = "stick"
+            elif m0 == STICK and m1 == SLIP:
+                kind = "slip"
+            elif m0 == m1 == SLIP and c.d == 1 and s0 != s1:
+                kind = "reversal"
+            if kind:
+                self.motion.events.append(Transition(self.t, c.name, kind))
+
+    # -- between decisions ------------------------------------------------------------------------------------------
+    def segment(self) -> None:
+        """To the next transition or break."""
+        field = self.field()
+        kind = Radau if self.p.stiff or self.slow else DOP853
+        longest = self.p.max_step or (self.p.t_end / 100.0)
+        atol = np.full(self.y.size, (1e-16 if self.slow else 1e-13) * self.p.scale)
+        if self.smooth and self.y.size > 2 * self.n:
+            atol[2 * self.n :] = 1e-16
+        options: dict[str, Any] = {"rtol": self.rtol, "atol": atol, "max_step": longest}
+        solver: Any = kind(field, self.t, self.y, self.end, **options)
+        last = field.margins(self.t, self.y)
+        start = self.t
+        while True:
+            solver.step()
+            if solver.status == "failed":
+                raise OracleError(f"step fails at t = {solver.t}")
+            dense = solver.dense_output()
+            hit = self.first_crossing(field, dense, solver.t_old, solver.t, last)
+            if hit is not None:
+                t, which, i = hit
+                self.keep(solver.t_old, t, dense)
+                self.t, self.y = t, dense(t)
+                self.slow = False
+                self.cross(field, which, i)
+                return
+            self.keep(solver.t_old, solver.t, dense)
+            self.t, self.y = solver.t, solver.y.copy()
+            if self.catch(field):
+                return
+            last = field.margins(self.t, self.y)
+            if solver.status == "finished":
+                self.slow = False
+                return
+            if self.slow and self.t - start > 0.02 * min(1.0, self.p.t_end):
+                self.slow = False  # explicit steps from here
+                return
+
+    def keep(self, a: float, b: float, dense: Any) -> None:
+        """Remember this piece of dense output."""
+        if b > a:
+            self.motion.pieces.append((a, b, dense))
+
+    def cross(self, field: Field, which: int, i: int) -> None:
+        """What crossed: a margin of the mode (0) or the normal force (1)."""
+        if which == 1:
+            if self.p.contacts[i].force is None:
+                self.settle(flipped=frozenset([i]))
+        elif self.modes[i] == STICK:
+            if field.active:
+                self.settle(one_of=frozenset(field.active))
+            else:
+                self.settle(released=frozenset([i]))
+        else:
+            self.settle(arrived=frozenset([i]))
+
+    def catch(self, field: Field) -> bool:
+        """In two directions: whether a contact comes to rest here; if it does, to first order exactly."""
+        for i, (c, s) in enumerate(zip(self.p.contacts, field.rows, strict=True)):
+            if c.force is not None or c.d == 1 or self.modes[i] != SLIP or self.slow:
+                continue
+            a, _, g, _ = field.evaluate(self.t, self.y)
+            r = float(np.linalg.norm(g[s]))
+            if r > NEAR * self.p.scale:
+                continue
+            rate = field.W[:, s].T @ a - field.slide_rates(min(max(self.t, field.low), field.high))[s]
+            closing = -float(rate @ g[s]) / r
+            if closing <= 0.0:
+                self.motion.closest = min(self.motion.closest, r / self.p.scale)
+                continue
+            if not self.would_hold(i):
+                self.motion.closest = min(self.motion.closest, r / self.p.scale)
+                continue
+            tau = r / closing
+            self.keep_line(tau, a)
+            self.settle(arrived=frozenset([i]))
+            return True
+        return False
+
+    def keep_line(self, tau: float, a: np.ndarray) -> None:
+        """On by tau with constant accelerations."""
+        tau = min(tau, self.end - self.t)
+        y0, t0 = self.y.copy(), self.t
+        self.y[: self.n] += tau * y0[self.n : 2 * self.n]
+        self.y[self.n : 2 * self.n] += tau * a
+        after = self.y.copy()
+        self.motion.pieces.append((t0, t0 + tau, lambda t: y0[:, None] + (after - y0)[:, None] * (np.atleast_1d(t) - t0) / tau))
+        self.t = t0 + tau
+
+    def would_hold(self, i: int) -> bool:
+        """Whether contact ``i`` would stick if it were at rest now."""
+        modes = list(self.modes)
+        modes[i] = STICK
+        trial = Field(self.p, modes, self.signs, (self.t, self.end))
+        t = min(max(self.t, trial.low), trial.high)
+        return bool(trial.margins(t, self.y)[0, i] >= 0.0)
+
+    def first_crossing(
+        self, field: Field, dense: Any, a: float, b: float, last: np.ndarray
+    ) -> tuple[float, int, int] | None:
+        """The first time in (a, b] at which a margin passes 0: time, kind and contact."""
+        times = np.linspace(a, b, 6)
+        values = [last, *(field.margins(t, dense(t)) for t in times[1:])]
+        table = np.array(values)  # (6, 2, contacts)
+        size = (self.tiny * 1e-1, 1e-14)  # what counts as nothing of a margin and of a load
+        found: list[tuple[float, int, int]] = []
+        for which in (0, 1):
+            for i in range(table.shape[2]):
+                column = table[:, which, i]
+                if not np.isfinite(column).all():
+                    continue
+                if self.p.contacts[i].force is not None:
+                    continue
+                t = self.root(field, dense, times, column, which, i, size[which])
+                if t is not None:
+                    found.append((t, which, i))
+        return min(found) if found else None
+
+    def root(
+        self, field: Field, dense: Any, times: np.ndarray, column: np.ndarray, which: int, i: int, tiny: float
+    ) -> float | None:
+        """Where this margin passes 0 downwards, or None."""
+
+        def value(t: float) -> float:
+            return float(field.margins(t, dense(t))[which, i])
+
+        for k in range(len(times) - 1):
+            left, right = column[k], column[k + 1]
+            if right < -tiny:
+                if left > 0.0:
+                    return float(brentq(value, times[k], times[k + 1], xtol=1e-15, rtol=8.9e-16))
+                # just begun: it rose and fell within, or it never rose
+                top = minimize_scalar(lambda t: -value(t), bounds=(times[k], times[k + 1]), method="bounded")
+                if -top.fun > tiny:
+                    return float(brentq(value, top.x, times[k + 1], xtol=1e-15, rtol=8.9e-16))
+                return float(times[k])
+            if k > 0 and column[k] < column[k - 1] and column[k] < right and column[k] < 0.3 * max(column[k - 1], right):
+                low = minimize_scalar(
+                    value, bounds=(times[k - 1], times[k + 1]), method="bounded", options={"xatol": 1e-12}
+                )
+                if low.fun < -tiny:
+                    return float(brentq(value, times[k - 1], low.x, xtol=1e-15, rtol=8.9e-16))
+        return None
+
+
+def solve(problem: Problem, rtol: float = 1e-11) -> Motion:
+    """The motion of the problem."""
+    return Run(problem, rtol).run()

@@ -1,0 +1,110 @@
+"""The oracle itself, against certified references and closed forms."""
+
+import numpy as np
+import pytest
+
+from tests.oracle.laws import disc
+from tests.oracle.problem import Contact, OracleError, Problem
+from tests.oracle.references import constant, problem
+from tests.oracle.run import solve
+from tests.reference import errors, load
+
+#: Reference, how far it is run, and the largest error over a signal's largest value (growth of errors included).
+CASES = [
+    ("p1_1", 20.0, 2e-8), ("p2_a", 60.0, 1e-9), ("p2_sb", 40.0, 1e-9), ("p3_free_1.03", 20.0, 1e-10),
+    ("p3_free_1", 20.0, 1e-10), ("p3_forced_w0.5_f0.2", 40.0, 1e-9), ("p3_forced_w1.5_f0.2", 40.0, 1e-9),
+    ("p4_vdr0.1", 50.0, 3e-8), ("p5_a", 20.0, 1e-9), ("p5_d", 40.0, 1e-9), ("p5_e", 40.0, 1e-9), ("p6", 14.0, 1e-8),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "t_end", "most"), CASES)
+def test_certified_reference(name, t_end, most):
+    reference = load(name)
+    kept = reference["t"] <= t_end
+    reference = {**reference, **{key: reference[key][kept] for key in ("t", "q", "v")}}
+    found = solve(problem(name, reference, float(reference["t"][-1])))
+    d = reference["q"].shape[1]
+    y = found(reference["t"])
+    assert np.concatenate(errors(reference, y[:d], y[d:])).max() < most
+    if "t_event" in reference:
+        true = reference["t_event"][reference["t_event"] < reference["t"][-1]]
+        np.testing.assert_allclose([event.t for event in found.events if event.t < reference["t"][-1]], true, atol=1e-6)
+
+
+def loop(load=0.5, shares=(1.0, 1.0), mu=(0.6, 0.5)):
+    """Two blocks on the ground that also rub on each other: three contacts, two degrees of freedom."""
+    W = (np.array([[1.0], [0.0]]), np.array([[0.0], [1.0]]), np.array([[1.0], [-1.0]]))
+    contacts = tuple(
+        Contact(name=f"c{i}", W=w, N=constant(1.0), mu=constant(mu[1]), mu_s=constant(mu[0])) for i, w in enumerate(W)
+    )
+    return Problem(
+        M=np.eye(2), K=np.zeros((2, 2)), C=np.zeros((2, 2)), q=np.zeros(2), v=np.zeros(2), contacts=contacts,
+        load=lambda t: np.array(shares) * load * t, t_end=4.0,
+    )  # fmt: skip
+
+
+def test_a_loop_of_contacts_holds_what_any_share_of_forces_holds():
+    """A load on one block alone: its own ground and the neighbour hold it, as far as that one's ground holds."""
+    found = solve(loop(load=1.0, shares=(1.0, 0.0)))
+    first = found.events[0]
+    # ground 0.6, and through the other block at most 0.6: together 1.2
+    assert (first.t, first.kind) == (pytest.approx(1.2, abs=1e-9), "slip")
+
+
+def test_both_blocks_of_a_loop_go_at_once():
+    """Equal loads: both grounds let go at 0.6 together, then both slide without rubbing: v = int (0.5 t - 0.5)."""
+    found = solve(loop(load=0.5))
+    assert {event.contact for event in found.events} == {"c0", "c1"}
+    assert all(event.t == pytest.approx(1.2, abs=1e-9) for event in found.events)
+    end = found(np.array([4.0]))[:, 0]
+    expected = 0.25 * (16.0 - 1.44) - 0.5 * 2.8
+    np.testing.assert_allclose(end[2:], expected, atol=1e-9)
+
+
+def test_breaks_of_a_load_are_met():
+    """0.7 holds below 0.8; at 0.9 it slides with 0.3; without load it is braked with 0.6."""
+    one = np.ones((1, 1))
+    scene = Problem(
+        M=one, K=0.0 * one, C=0.0 * one, q=np.zeros(1), v=np.zeros(1), t_end=5.0, breaks=(1.0, 2.0, 3.0),
+        load=lambda t: 0.7 if t < 1.0 else 0.71 if t < 2.0 else 0.9 if t < 3.0 else 0.0,
+        contacts=(Contact(name="c", W=one, N=constant(1.0), mu=constant(0.6), mu_s=constant(0.8)),),
+    )  # fmt: skip
+    found = solve(scene)
+    assert [(e.kind, pytest.approx(e.t, abs=1e-10)) for e in found.events] == [("slip", 2.0), ("stick", 3.5)]
+    assert found(np.array([5.0]))[0, 0] == pytest.approx(0.15 + 0.075, abs=1e-10)
+
+
+def test_a_varying_load_opens_and_closes():
+    """N = cos t: friction is gone while it is negative; the speed is that of the sum of impulses."""
+    one = np.ones((1, 1))
+    contact = Contact(
+        name="c", W=one, N=lambda t, q, v: np.cos(t), mu=constant(0.5), mu_s=constant(0.5), constant=False
+    )
+    scene = Problem(M=one, K=0.0 * one, C=0.0 * one, q=np.zeros(1), v=np.array([5.0]), t_end=6.0, contacts=(contact,))
+    found = solve(scene)
+    np.testing.assert_allclose([e.t for e in found.events], [np.pi / 2, 3 * np.pi / 2], atol=1e-9)
+    assert [e.kind for e in found.events] == ["open", "close"]
+    assert found(np.array([6.0]))[1, 0] == pytest.approx(5.0 - 0.5 - 0.5 * (np.sin(6.0) + 1.0), abs=1e-10)
+
+
+def test_what_cannot_be_decided_is_refused():
+    one = np.ones((1, 1))
+    contact = Contact(name="c", W=one, N=constant(1.0), mu=constant(0.9), mu_s=constant(0.5))  # holds less than it rubs
+    scene = Problem(
+        M=one, K=0.0 * one, C=0.0 * one, q=np.zeros(1), v=np.zeros(1), load=lambda t: 0.7, t_end=1.0, contacts=(contact,)
+    )
+    with pytest.raises(OracleError):
+        solve(scene)
+
+
+def test_a_disc_that_slides_and_spins_is_braked_by_its_points():
+    """Sum over 400 x 400 points of the disc."""
+    rho = np.sqrt((np.arange(400) + 0.5) / 400)[:, None]
+    angle = 2.0 * np.pi * (np.arange(400) + 0.5)[None, :] / 400
+    v = np.array([0.3, -0.4])
+    for spin in (0.2, 0.9):
+        x = v[0] - spin * rho * np.sin(angle)
+        y = v[1] + spin * rho * np.cos(angle)
+        r = np.hypot(x, y)
+        expected = -np.array([(x / r).mean(), (y / r).mean(), ((-x * np.sin(angle) + y * np.cos(angle)) * rho / r).mean()])
+        np.testing.assert_allclose(disc(1.0, 1e-12)(np.array([*v, spin]), 1.0, None), expected, atol=2e-4)
