@@ -22,6 +22,9 @@ class Field:
             [j for c, s, m in zip(self.contacts, self.rows, modes, strict=True) if m == STICK and c.force is None
              for j in range(s.start, s.stop)], dtype=int,
         )  # fmt: skip
+        self.reactive = any(c.reaction is not None for c in self.contacts)
+        self.guess = np.zeros(self.n)
+        self.load: list[float] = []
         self.active: set[int] = set()
         self.full: bool | None = None
         self.fixed = None if problem.mass is not None else self.inverse(problem.M)
@@ -54,13 +57,33 @@ class Field:
         f = p.load(t) - p.K @ q - p.C @ v
         return f if p.extra is None else f + p.extra(t, q, v)
 
-    def normal(self, i: int, t: float, q: np.ndarray, v: np.ndarray) -> float:
-        """Normal force; below 0: that far from contact."""
-        return float(self.contacts[i].N(t, q, v))
+    def loads(self, t: float, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> list[float]:
+        """Normal forces; below 0: that far from contact."""
+        return [
+            float(c.N(t, q, v)) if c.reaction is None else float(c.reaction(t, q, v, a)) for c in self.contacts
+        ]
 
     def evaluate(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Accelerations, forces, relative velocities and rates of states."""
         t = min(max(t, self.low), self.high)
+        q, v = y[: self.n], y[self.n : 2 * self.n]
+        self.load = self.loads(t, q, v, self.guess)
+        found = self.under(t, y, self.load)
+        if self.reactive:
+            for _ in range(200):
+                self.load = self.loads(t, q, v, found[0])
+                before, found = found, self.under(t, y, self.load)
+                if np.abs(found[0] - before[0]).max() <= 1e-14 * max(1.0, np.abs(found[0]).max()):
+                    break
+            else:
+                raise OracleError("loads from reactions are not found")
+            self.guess = found[0]
+        return found
+
+    def under(
+        self, t: float, y: np.ndarray, load: list[float]
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """The same under given loads."""
         n = self.n
         q, v = y[:n], y[n : 2 * n]
         g = self.speeds(t, v)
@@ -68,13 +91,13 @@ class Field:
         rates = np.zeros(y.size - 2 * n)
         for i, (c, s) in enumerate(zip(self.contacts, self.rows, strict=True)):
             if c.force is not None:
-                z, N = y[2 * n :][self.z_rows[i]], max(self.normal(i, t, q, v), 0.0)
+                z, N = y[2 * n :][self.z_rows[i]], max(load[i], 0.0)
                 F[s] = c.force(g[s], N, z)
                 if c.rate is not None:
                     rates[self.z_rows[i]] = c.rate(g[s], N, z)
             elif self.modes[i] == SLIP:
-                F[s] = self.slip(i, g[s], max(self.normal(i, t, q, v), 0.0))
-        Mi, D, P = self.matrices(q)
+                F[s] = self.slip(i, g[s], max(load[i], 0.0))
+        Mi, _D, P = self.matrices(q)
         rest = self.given(t, q, v) + self.W @ F
         a = Mi @ rest
         if self.held.size:
@@ -102,15 +125,11 @@ class Field:
     def margins(self, t: float, y: np.ndarray) -> np.ndarray:
         """What must stay above 0 for the modes to go on, contact by contact."""
         _, F, g, _ = self.evaluate(t, y)
-        clipped = min(max(t, self.low), self.high)
-        q, v = y[: self.n], y[self.n : 2 * self.n]
         out = np.full((2, len(self.contacts)), np.inf)
         for i, (c, s) in enumerate(zip(self.contacts, self.rows, strict=True)):
             if c.force is not None:
-                if not c.constant:
-                    out[1, i] = abs(self.normal(i, clipped, q, v))  # a kink; no mode hangs on it
                 continue
-            N = self.normal(i, clipped, q, v)
+            N = self.load[i]
             if not c.constant:
                 out[1, i] = -N if self.modes[i] == OPEN else N
             if self.modes[i] == STICK:
@@ -124,7 +143,7 @@ class Field:
 
     def share(self, margins: np.ndarray, F: np.ndarray, q: np.ndarray) -> None:
         """Of contacts more than enough to hold what they hold: the margin of the best distribution of forces."""
-        Mi, D, _ = self.matrices(q)
+        _Mi, D, _P = self.matrices(q)
         held = D[np.ix_(self.held, self.held)]
         stuck = [i for i, c in enumerate(self.contacts) if self.modes[i] == STICK and c.force is None]
         if self.full is None or self.problem.mass is not None:

@@ -36,6 +36,8 @@ class Contact:
     force: Callable[..., np.ndarray] | None = None
     rate: Callable[..., np.ndarray] | None = None
     n_z: int = 0
+    reaction: Callable[[float, np.ndarray, np.ndarray, np.ndarray], float] | None = None
+    """The load from the accelerations, in place of N (a dry pin)."""
     slide: Callable[[float], Any] = nothing
     slide_rate: Callable[[float], Any] = nothing
     constant: bool = True
@@ -65,7 +67,6 @@ class Problem:
     extra: Callable[[float, np.ndarray, np.ndarray], np.ndarray] | None = None
     mass: Callable[[np.ndarray], np.ndarray] | None = None
     breaks: tuple[float, ...] = ()
-    stiff: bool = False
     scale: float = 1.0
     """A typical speed; times 1e-12 it is nothing."""
     max_step: float | None = None

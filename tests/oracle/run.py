@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.integrate import DOP853, Radau
+from scipy.integrate import DOP853, LSODA, Radau
 from scipy.optimize import brentq, minimize_scalar
 
 from .instant import decide
@@ -63,15 +63,14 @@ class Run:
         """New modes at this instant for all that is at rest."""
         p, field = self.p, self.field()
         t = min(max(self.t, field.low), field.high)
-        q, v = self.y[: self.n], self.y[self.n : 2 * self.n]
-        g = field.speeds(t, v)
+        g = field.speeds(t, self.y[self.n : 2 * self.n])
+        loads = field.loads(t, self.y[: self.n], self.y[self.n : 2 * self.n], np.zeros(self.n))
         before, self.start = list(zip(self.modes, self.signs, strict=True)), {}
         resting = []
         for i, (c, s) in enumerate(zip(p.contacts, field.rows, strict=True)):
             if c.force is not None:
                 continue
-            N = field.normal(i, t, q, v)
-            opened = N < 0.0 or (N == 0.0 and not c.constant)
+            opened = c.reaction is None and (loads[i] < 0.0 or (loads[i] == 0.0 and not c.constant))
             if i in flipped:
                 opened = self.modes[i] != OPEN
             if opened:
@@ -96,25 +95,27 @@ class Run:
         p = self.p
         moving = Field(p, [OPEN if i in resting else m for i, m in enumerate(self.modes)], self.signs, (self.t, self.end))
         q, v = self.y[: self.n], self.y[self.n : 2 * self.n]
-        a = moving.evaluate(t, self.y)[0]
         Mi, D, _ = moving.matrices(q)
         columns = np.concatenate([np.arange(moving.rows[i].start, moving.rows[i].stop) for i in resting])
-        b = moving.W[:, columns].T @ a - moving.slide_rates(t)[columns]
         rows, at = [], 0
         for i in resting:
             rows.append(slice(at, at + p.contacts[i].d))
             at += p.contacts[i].d
-        loads = [max(moving.normal(i, t, q, v), 0.0) for i in resting]
-        static = np.array([p.contacts[i].mu_s(N) * N for i, N in zip(resting, loads, strict=True)])  # type: ignore[misc]
-        slip = np.array([p.contacts[i].mu(0.0, N) * N for i, N in zip(resting, loads, strict=True)])  # type: ignore[misc]
         D = D[np.ix_(columns, columns)]
         local = frozenset(resting.index(i) for i in released if i in resting)
         some = frozenset(resting.index(i) for i in one_of if i in resting)
-        found = decide(D, b, static, slip, rows, local, some)
-        if not found and local:  # another one that moves may hold it
-            found = [f for f in decide(D, b, static, slip, rows) if f[0]]
-        if not found:
-            raise OracleError(f"no consistent set of modes at t = {self.t}")
+        total, push = np.zeros(self.n), np.zeros(moving.W.shape[1])
+        for _ in range(200):  # once, unless loads depend on accelerations
+            loads = moving.loads(t, q, v, total)
+            a, push, _, _ = moving.under(t, self.y, loads)
+            b = moving.W[:, columns].T @ a - moving.slide_rates(t)[columns]
+            found = self.consistent(D, b, resting, loads, rows, local, some)
+            push[columns] = found[0][1]
+            before, total = total, a + Mi @ (moving.W[:, columns] @ found[0][1])
+            if not moving.reactive or np.abs(total - before).max() <= 1e-13 * max(1.0, np.abs(total).max()):
+                break
+        else:
+            raise OracleError(f"loads from reactions are not found at t = {self.t}")
         if len({tuple(np.round(D @ f[1] + b, 9)) for f in found}) > 1:
             self.motion.ambiguous = True
         slips, F = found[0]
@@ -122,14 +123,32 @@ class Run:
         g = moving.speeds(t, v)[columns]
         W = moving.W[:, columns]
         self.y[self.n : 2 * self.n] -= Mi @ (W @ (np.linalg.pinv(D, rcond=1e-11, hermitian=True) @ g))
-        push = moving.evaluate(t, self.y)[1]
-        push[columns] = F
         for j, i in enumerate(resting):
             if j in slips:
                 self.modes[i] = SLIP
                 self.signs[i] = -1.0 if F[rows[j].start] > 0.0 else 1.0
                 if p.contacts[i].d == 2:
                     self.start[i] = push
+
+    def consistent(
+        self, D: np.ndarray, b: np.ndarray, resting: list[int], loads: list[float], rows: list[slice],
+        released: frozenset[int], one_of: frozenset[int],
+    ) -> list[Any]:  # fmt: skip
+        """Consistent sets under these loads; an error where there are none."""
+        static, slip = [], []
+        for i in resting:
+            contact, N = self.p.contacts[i], max(loads[i], 0.0)
+            assert contact.mu is not None
+            assert contact.mu_s is not None
+            static.append(contact.mu_s(N) * N)
+            slip.append(contact.mu(0.0, N) * N)
+        cones = np.array(static), np.array(slip)
+        found = decide(D, b, *cones, rows, released, one_of)
+        if not found and released:  # another one that moves may hold it
+            found = [f for f in decide(D, b, *cones, rows) if f[0]]
+        if not found:
+            raise OracleError(f"no consistent set of modes at t = {self.t}")
+        return found
 
     def begin(self) -> None:
         """Leap over the singular first moment of slip in two directions."""
@@ -172,21 +191,21 @@ class Run:
     def segment(self) -> None:
         """To the next transition or break."""
         field = self.field()
-        kind = Radau if self.p.stiff or self.slow else DOP853
+        kind = LSODA if self.smooth else Radau if self.slow else DOP853
         longest = self.p.max_step or (self.p.t_end / 100.0)
         atol = np.full(self.y.size, (1e-16 if self.slow else 1e-13) * self.p.scale)
         if self.smooth and self.y.size > 2 * self.n:
             atol[2 * self.n :] = 1e-16
         options: dict[str, Any] = {"rtol": self.rtol, "atol": atol, "max_step": longest}
         solver: Any = kind(field, self.t, self.y, self.end, **options)
-        last = field.margins(self.t, self.y)
+        last = None if self.smooth else field.margins(self.t, self.y)
         start = self.t
         while True:
             solver.step()
             if solver.status == "failed":
                 raise OracleError(f"step fails at t = {solver.t}")
             dense = solver.dense_output()
-            hit = self.first_crossing(field, dense, solver.t_old, solver.t, last)
+            hit = None if last is None else self.first_crossing(field, dense, solver.t_old, solver.t, last)
             if hit is not None:
                 t, which, i = hit
                 self.keep(solver.t_old, t, dense)
@@ -196,9 +215,10 @@ class Run:
                 return
             self.keep(solver.t_old, solver.t, dense)
             self.t, self.y = solver.t, solver.y.copy()
-            if self.catch(field):
-                return
-            last = field.margins(self.t, self.y)
+            if last is not None:
+                if self.catch(field):
+                    return
+                last = field.margins(self.t, self.y)
             if solver.status == "finished":
                 self.slow = False
                 return

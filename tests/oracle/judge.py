@@ -1,0 +1,235 @@
+"""The error of a run of fricmb, over its tolerance and over how much the scene magnifies any error."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+import warnings
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import fricmb as fm
+
+from .problem import Motion, Problem
+from .run import solve
+
+#: Perturbation of starts and loads that tells the growth of errors.
+DELTA = 1e-6
+#: Error over rtol and growth above which a run is wrong.
+BAR = 100.0
+#: Tolerance of the oracle's own steps.
+RTOL = 1e-10
+#: Growth beyond which a scene says nothing at these tolerances.
+UNRULY = 1e4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One scene, twice: as fricmb has it and as numbers; ``signals`` are the names of the oracle's coordinates."""
+
+    name: str
+    scene: Any
+    problem: Problem
+    signals: tuple[str, ...]
+
+
+@dataclass
+class Truth:
+    """What the oracle says of a case."""
+
+    case: Case
+    t: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    growth: float
+    events: list[Any]
+    marginal: str = ""
+    scales: tuple[np.ndarray, np.ndarray] = field(default_factory=lambda: (np.ones(1), np.ones(1)))
+
+
+@dataclass
+class Verdict:
+    """``kind``: right, wrong, noted (wrong, and the run says so), refused, stopped, late, crashed."""
+
+    kind: str
+    ratio: float = 0.0
+    wrong_transitions: int = 0
+    why: str = ""
+
+
+@dataclass
+class Outcome:
+    """A run as plain numbers: done, refused, stopped or late, with notes or the reason."""
+
+    kind: str
+    why: str = ""
+    method: str = ""
+    q: np.ndarray | None = None
+    v: np.ndarray | None = None
+    events: list[tuple[str, str]] = field(default_factory=list)
+
+
+class Worker:
+    """A process of its own for runs that might not end.
+
+    It is ended after ``limit`` seconds of its processor (where that is known, else of the clock), and begun again; the
+    first seconds of a process go into loading compiled code.
+    """
+
+    def __init__(self, limit: float = 20.0) -> None:
+        self.limit = limit
+        self.process: Any = None
+
+    def ask(self, *arguments: Any) -> Outcome:
+        """As :func:`attempt`; "late" where it took too long."""
+        if self.process is None:
+            context = multiprocessing.get_context("spawn")
+            self.pipe, other = context.Pipe()
+            self.process = context.Process(target=serve, args=(other,), daemon=True)
+            self.process.start()
+        self.pipe.send(arguments)
+        before = self.spent()
+        while not self.pipe.poll(0.2) and self.spent() - before < self.limit:
+            pass
+        if self.pipe.poll(0.0):
+            try:
+                outcome = self.pipe.recv()
+            except EOFError:
+                self.stop()
+                return Outcome("crashed", "the process died")
+            if isinstance(outcome, str):
+                return Outcome("crashed", outcome)
+            return outcome
+        self.stop()
+        return Outcome("late", f"not done within {self.limit:g} s")
+
+    def spent(self) -> float:
+        """Seconds of the processor that the process has used."""
+        stat = Path(f"/proc/{self.process.pid}/stat")
+        if not stat.exists():
+            return time.monotonic()
+        user, system = stat.read_text().rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+    def stop(self) -> None:
+        """End the process."""
+        if self.process is not None:
+            self.process.kill()
+            self.process.join()
+            self.process = None
+
+
+def serve(pipe: Any) -> None:
+    """What the process does."""
+    while True:
+        try:
+            arguments = pipe.recv()
+        except EOFError:
+            return
+        try:
+            pipe.send(attempt(*arguments))
+        except Exception as error:  # whatever it is, the one who asked hears of it
+            pipe.send(f"{type(error).__name__}: {error}")
+
+
+def truth(case: Case, n: int = 97) -> Truth:
+    """The oracle's motion, and the growth of errors from a second one that starts and is loaded a little otherwise."""
+    p = case.problem
+    t = p.t_end * (np.arange(n) + 0.618) / n
+    found = solve(p, RTOL)
+    y, d = found(t), p.q.size
+    q, v = y[:d], y[d : 2 * d]
+    scales = (scale_of(q, p.scale), scale_of(v, p.scale))
+    other = solve(perturbed(p, scales[0]), 10.0 * RTOL)
+    z = other(t)
+    off = max(np.abs((z[:d] - q) / scales[0]).max(), np.abs((z[d : 2 * d] - v) / scales[1]).max())
+    growth = max(1.0, off / DELTA)
+    marginal = ""
+    if found.ambiguous:
+        marginal = "more than one consistent set of modes"
+    elif kinds(found) != kinds(other):
+        marginal = "transitions hang on the sixth digit"
+    elif growth > UNRULY:
+        marginal = f"errors grow {growth:.0e} times"
+    return Truth(case, t, q, v, growth, found.events, marginal, scales)
+
+
+def scale_of(signal: np.ndarray, speed: float) -> np.ndarray:
+    """Largest values, a column; what never moves is measured by the scene's scale."""
+    largest = np.abs(signal).max(axis=1, keepdims=True)
+    return np.where(largest > 1e-6 * speed, largest, speed)
+
+
+def perturbed(p: Problem, scale: np.ndarray) -> Problem:
+    """The same from a start and under loads changed in the sixth digit."""
+    signs = np.where(np.arange(p.q.size) % 3 == 1, -1.0, 1.0)
+
+    def more(N: Any) -> Any:
+        return lambda t, q, v: N(t, q, v) * (1.0 + DELTA)
+
+    contacts = tuple(replace(c, N=more(c.N)) for c in p.contacts)
+    return replace(p, q=p.q + DELTA * signs * np.minimum(scale[:, 0], p.scale), contacts=contacts)
+
+
+def kinds(motion: Motion) -> dict[str, list[str]]:
+    """Transitions of each contact in order."""
+    return sequence(motion.events)
+
+
+def sequence(events: Any) -> dict[str, list[str]]:
+    """Kinds by contact."""
+    out: dict[str, list[str]] = {}
+    for event in events:
+        out.setdefault(event.contact, []).append(event.kind)
+    return out
+
+
+def attempt(scene: Any, method: str, rtol: float, t: np.ndarray, t_end: float, signals: tuple[str, ...]) -> Outcome:
+    """One run of fricmb, as plain numbers."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            sol = fm.simulate(scene, t_end=t_end, rtol=rtol, method=method, t_eval=t)
+    except fm.SceneError as error:
+        if not str(error).startswith("method:"):
+            raise
+        return Outcome("refused", str(error))
+    except fm.IntegrationError as error:
+        return Outcome("stopped", str(error))
+    return Outcome(
+        "done", "; ".join(sol.stats.notes), sol.stats.method, np.array([sol[name] for name in signals]),
+        np.array([sol.velocity(name) for name in signals]), [(e.contact, e.kind) for e in sol.events],
+    )  # fmt: skip
+
+
+def judge(true: Truth, method: str, rtol: float = 1e-6, worker: Worker | None = None) -> Verdict:
+    """What one method makes of it; with a worker, within its limit of time."""
+    case = true.case
+    asked = (case.scene, method, rtol, true.t, case.problem.t_end, case.signals)
+    outcome = attempt(*asked) if worker is None else worker.ask(*asked)
+    if outcome.kind != "done":
+        return Verdict(outcome.kind, why=outcome.why)
+    return compare(true, outcome, rtol)
+
+
+def compare(true: Truth, found: Outcome, rtol: float) -> Verdict:
+    """Errors of positions and velocities and the number of wrong transitions of a run."""
+    assert found.q is not None and found.v is not None
+    off = max(np.abs((found.q - true.q) / true.scales[0]).max(), np.abs((found.v - true.v) / true.scales[1]).max())
+    ratio = float(off / (rtol * true.growth))
+    wrong = wrong_transitions([(e.contact, e.kind) for e in true.events], found.events)
+    if ratio <= BAR and wrong == 0:
+        return Verdict("right", ratio)
+    why = f"{found.method}: error {off:.1e}, growth {true.growth:.1e}; {found.why}"
+    return Verdict("noted" if found.why else "wrong", ratio, wrong, why)
+
+
+def wrong_transitions(true: Any, found: Any) -> int:
+    """How many transitions are too many or missing, kind by kind and contact by contact."""
+    a, b = Counter(true), Counter(found)
+    return sum(((a - b) + (b - a)).values())

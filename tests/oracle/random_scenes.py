@@ -1,0 +1,183 @@
+"""Scenes from seeds: lines, planes, stacks, loops, bodies of modes, chains of links."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .mechanisms import Chain
+from .spec import Pull, Spec, Touch
+
+Generator = np.random.Generator
+
+
+def some(rng: Generator, low: float, high: float) -> float:
+    """A number of four digits between, evenly over its logarithm."""
+    return float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3e}")
+
+
+def even(rng: Generator, low: float, high: float) -> float:
+    """A number of four digits between."""
+    return round(float(rng.uniform(low, high)), 4)
+
+
+def law(rng: Generator) -> tuple[str, dict[str, float]]:
+    """A set-valued law: most with more friction at rest, some with as much in slip."""
+    mu_k = even(rng, 0.3, 0.8)
+    mu_s = round(mu_k * (1.0 if rng.random() < 0.3 else rng.uniform(1.05, 1.8)), 4)
+    choice = rng.integers(6)
+    if choice < 3:
+        return "Coulomb", {"mu_s": mu_s, "mu_k": mu_k}
+    if choice == 3:
+        return "Stribeck", {"mu_s": round(1.3 * mu_k, 4), "mu_k": mu_k, "v_s": some(rng, 0.03, 0.5)}
+    if choice == 4:
+        return "HyperbolicStribeck", {"mu_s": mu_s, "mu_k": round(0.3 * mu_k, 4), "delta": some(rng, 0.5, 5.0)}
+    return "CoulombViscous", {"mu_s": mu_s, "mu_k": mu_k, "viscous": even(rng, 0.01, 0.2)}
+
+
+def touch(rng: Generator, a: int, b: int, vary: bool = True) -> Touch:
+    """A contact."""
+    name, fields = law(rng)
+    found = Touch(a, b, name, fields, some(rng, 0.3, 3.0))
+    if vary and rng.random() < 0.2:
+        found.swing, found.omega = even(rng, 0.1, 0.6), some(rng, 0.3, 3.0)
+    elif vary and rng.random() < 0.1:
+        found.slope = even(rng, -0.2, 0.2)
+    return found
+
+
+def pull(rng: Generator, body: int, axis: int, t_end: float) -> Pull:
+    """A load; one in four begins later, with a jump."""
+    since = even(rng, 0.2, 0.8 * t_end) if rng.random() < 0.25 else 0.0
+    return Pull(
+        body, axis, even(rng, -1.0, 1.0), even(rng, 0.0, 2.0), some(rng, 0.3, 6.0), even(rng, 0.0, 6.28), since
+    )
+
+
+def belt(rng: Generator, spec: Spec) -> None:
+    """A speed, and one in five times another later."""
+    spec.belt = some(rng, 0.05, 1.0)
+    if rng.random() < 0.2:
+        spec.belt_change, spec.belt_later = even(rng, 0.2, 0.8 * spec.t_end), even(rng, -0.5, 1.0)
+
+
+def starts(rng: Generator, spec: Spec) -> None:
+    """At rest, with the belt, or moving; at a place of its own."""
+    for _ in spec.masses:
+        spec.q.append([even(rng, -1.0, 1.0) for _ in range(spec.d)])
+        way = rng.integers(3)
+        along = [spec.belt, 0.0][: spec.d]
+        moving = [even(rng, -1.0, 1.0) for _ in range(spec.d)]
+        spec.v.append(([0.0] * spec.d, along, moving)[way])
+
+
+def line(rng: Generator) -> Spec:
+    """Blocks in a row, springs between and to the ground, each on the ground or on the belt or free."""
+    n = int(rng.integers(1, 6))
+    spec = Spec("line", 1, [some(rng, 0.5, 2.0) for _ in range(n)], even(rng, 4.0, 10.0))
+    belt(rng, spec)
+    for i in range(n):
+        if i:
+            spec.springs.append((i - 1, i, 0, some(rng, 0.3, 30.0)))
+        if rng.random() < 0.6:
+            spec.springs.append((i, -1, 0, some(rng, 0.3, 10.0)))
+        if rng.random() < 0.5:
+            spec.dampers.append((i, -1, 0, some(rng, 0.01, 0.5)))
+        if rng.random() < 0.5:
+            spec.pulls.append(pull(rng, i, 0, spec.t_end))
+        if i == 0 or rng.random() < 0.8:
+            spec.touches.append(touch(rng, i, -2 if rng.random() < 0.5 else -1))
+    starts(rng, spec)
+    return spec
+
+
+def plane(rng: Generator) -> Spec:
+    """One or two blocks on a plane."""
+    n = int(rng.integers(1, 3))
+    spec = Spec("plane", 2, [some(rng, 0.5, 2.0) for _ in range(n)], even(rng, 3.0, 8.0))
+    belt(rng, spec)
+    for i in range(n):
+        for axis in (0, 1):
+            spec.springs.append((i, -1 if i == 0 else i - 1, axis, some(rng, 0.3, 10.0)))
+            if rng.random() < 0.5:
+                spec.pulls.append(pull(rng, i, axis, spec.t_end))
+        if i == 0 or rng.random() < 0.5:
+            spec.touches.append(touch(rng, i, -2 if rng.random() < 0.5 else -1))
+    starts(rng, spec)
+    return spec
+
+
+def stack(rng: Generator) -> Spec:
+    """Plates on each other, the lowest on the ground or the belt."""
+    n = int(rng.integers(2, 5))
+    spec = Spec("stack", 1, [some(rng, 0.5, 2.0) for _ in range(n)], even(rng, 4.0, 8.0))
+    belt(rng, spec)
+    for i in range(n):
+        spec.touches.append(touch(rng, i, i - 1 if i else (-2 if rng.random() < 0.5 else -1)))
+        if rng.random() < 0.6:
+            spec.springs.append((i, -1, 0, some(rng, 0.3, 10.0)))
+        if rng.random() < 0.6:
+            spec.pulls.append(pull(rng, i, 0, spec.t_end))
+    starts(rng, spec)
+    return spec
+
+
+def loop(rng: Generator) -> Spec:
+    """Blocks on the ground or the belt that rub on each other as well: forces in stick are not determined."""
+    n = int(rng.integers(2, 4))
+    spec = Spec("loop", 1, [some(rng, 0.5, 2.0) for _ in range(n)], even(rng, 4.0, 8.0))
+    belt(rng, spec)
+    for i in range(n):
+        spec.touches.append(touch(rng, i, -2 if i and rng.random() < 0.3 else -1, vary=False))
+        if i:
+            spec.touches.append(touch(rng, i, i - 1, vary=False))
+        if rng.random() < 0.6:
+            spec.springs.append((i, -1, 0, some(rng, 0.3, 10.0)))
+        if rng.random() < 0.7:
+            spec.pulls.append(pull(rng, i, 0, spec.t_end))
+    starts(rng, spec)
+    return spec
+
+
+def modes(rng: Generator) -> Spec:
+    """A body of modes with one or two points on the ground or the belt."""
+    n, points = int(rng.integers(2, 6)), int(rng.integers(1, 3))
+    d = 1 if rng.random() < 0.7 else 2
+    points = 1 if d == 2 else points
+    spec = Spec("modes", d, [], even(rng, 3.0, 8.0))
+    belt(rng, spec)
+    spec.frequencies = [0.0 if i == 0 and rng.random() < 0.3 else some(rng, 0.5, 8.0) for i in range(n)]
+    spec.ratios = [some(rng, 1e-3, 0.1) for _ in range(n)]
+    spec.shapes = [[even(rng, -1.0, 1.0) for _ in range(n * d)] for _ in range(points + 1)]
+    spec.q, spec.v = [[even(rng, -0.5, 0.5) for _ in range(n)]], [[even(rng, -0.5, 0.5) for _ in range(n)]]
+    for i in range(points):
+        spec.touches.append(touch(rng, i, -2 if rng.random() < 0.7 else -1))
+        spec.touches[-1].slope = 0.0
+    spec.pulls.append(pull(rng, points, 0, spec.t_end))
+    return spec
+
+
+def chain(rng: Generator) -> Chain:
+    """One to three links that hang on dry pins, swinging or at rest, some driven."""
+    n = int(rng.integers(1, 4))
+    mu_k = [even(rng, 0.1, 0.6) for _ in range(n)]
+    still = rng.random() < 0.3
+    return Chain(
+        "chain", [some(rng, 0.5, 2.0) for _ in range(n)], [some(rng, 0.02, 0.2) for _ in range(n)],
+        [some(rng, 0.4, 1.0) for _ in range(n)], [even(rng, -1.5, 1.5) for _ in range(n)],
+        [0.0 if still else even(rng, -2.0, 2.0) for _ in range(n)], [even(rng, 0.01, 0.06) for _ in range(n)],
+        [round(mu * (1.0 if rng.random() < 0.5 else 1.3), 4) for mu in mu_k], mu_k, even(rng, 1.5, 4.0),
+        even(rng, 0.2, 1.0) if rng.random() < 0.4 else 0.0, some(rng, 1.0, 6.0),
+    )  # fmt: skip
+
+
+KINDS: dict[str, Callable[[Generator], Any]] = {
+    "line": line, "plane": plane, "stack": stack, "loop": loop, "modes": modes, "chain": chain,
+}  # fmt: skip
+
+
+def generate(kind: str, seed: int) -> Any:
+    """The scene of that seed."""
+    return KINDS[kind](np.random.default_rng([seed, *kind.encode()]))
