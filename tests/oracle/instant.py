@@ -87,10 +87,12 @@ def decide(
     """Consistent sets among contacts at rest, those with the most contacts stuck.
 
     ``b``: relative accelerations without their friction; ``static``, ``slipping``: radii of the cones for break-away
-    and for r -> 0; ``released``: contacts that may not stick; ``one_of``: at least one of these slips.  Each answer is the set that slips and all forces.
+    and for r -> 0; ``released``: contacts that may not stick; ``one_of``: at least one of these slips.  Each answer is
+    the set that slips and all forces.
     """
     k = len(rows)
-    size = tiny * max(np.abs(b).max(initial=0.0), (np.abs(D).max(initial=0.0) * np.abs(static).max(initial=0.0)), 1e-300)
+    held = np.abs(D).max(initial=0.0) * np.abs(static).max(initial=0.0)
+    size = tiny * max(np.abs(b).max(initial=0.0), held, 1e-300)
     for n_slip in range(k + 1):
         found = []
         for slips in itertools.combinations(range(k), n_slip):

@@ -14,7 +14,7 @@ import fricmb as fm
 
 
 def parts_of(law: Any, d: int) -> dict[str, Any]:
-    """Arguments of :class:`Contact` that say the law; ``stretch`` (d,) scales velocities and forces (elliptic cones)."""
+    """Arguments of :class:`Contact` for a law; ``stretch`` (d,) scales velocities and forces."""
     if isinstance(law, fm.laws.Elliptic):
         inner = parts_of(law.law, d)
         return {**inner, "stretch": np.array([1.0, float(law.ratio)])[:d]}

@@ -157,7 +157,8 @@ class Field:
         rows = [self.rows[i].start for i in stuck]
         limits = margins[stuck] + np.abs(F[rows])
         most, forces = loaded(held, held @ F[rows], limits)
-        self.active = {i for i, f, limit in zip(stuck, forces, limits, strict=True) if abs(f) > (1 - 1e-6) * most * limit}
+        full = np.abs(forces) > (1.0 - 1e-6) * most * limits
+        self.active = {i for i, at_limit in zip(stuck, full, strict=True) if at_limit}
         margins[stuck] = (1.0 - most) * limits
 
 

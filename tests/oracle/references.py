@@ -23,7 +23,8 @@ def problem(name: str, reference: dict[str, Any], t_end: float | None = None) ->
     """The problem of that reference."""
     info = reference["info"]
     end = float(reference["t"][-1]) if t_end is None else t_end
-    return {"p1": brake, "p2": belt, "p3": oscillator, "p4": blocks, "p5": plane, "p6": blocks}[name[:2]](name, info, end)
+    makers = {"p1": brake, "p2": belt, "p3": oscillator, "p4": blocks, "p5": plane, "p6": blocks}
+    return makers[name[:2]](name, info, end)
 
 
 def brake(name: str, info: dict[str, Any], end: float) -> Problem:

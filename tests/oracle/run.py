@@ -93,7 +93,8 @@ class Run:
     def choose(self, resting: list[int], released: frozenset[int], one_of: frozenset[int], t: float) -> None:
         """Modes of contacts at rest, and the velocity made exactly consistent."""
         p = self.p
-        moving = Field(p, [OPEN if i in resting else m for i, m in enumerate(self.modes)], self.signs, (self.t, self.end))
+        modes = [OPEN if i in resting else m for i, m in enumerate(self.modes)]
+        moving = Field(p, modes, self.signs, (self.t, self.end))
         q, v = self.y[: self.n], self.y[self.n : 2 * self.n]
         Mi, D, _ = moving.matrices(q)
         columns = np.concatenate([np.arange(moving.rows[i].start, moving.rows[i].stop) for i in resting])
@@ -274,7 +275,12 @@ class Run:
         self.y[: self.n] += tau * y0[self.n : 2 * self.n]
         self.y[self.n : 2 * self.n] += tau * a
         after = self.y.copy()
-        self.motion.pieces.append((t0, t0 + tau, lambda t: y0[:, None] + (after - y0)[:, None] * (np.atleast_1d(t) - t0) / tau))
+
+
+        def line(t: np.ndarray) -> np.ndarray:
+            return y0[:, None] + (after - y0)[:, None] * (np.atleast_1d(t) - t0) / tau
+
+        self.motion.pieces.append((t0, t0 + tau, line))
         self.t = t0 + tau
 
     def would_hold(self, i: int) -> bool:
@@ -324,7 +330,8 @@ class Run:
                 if -top.fun > tiny:
                     return float(brentq(value, top.x, times[k + 1], xtol=1e-15, rtol=8.9e-16))
                 return float(times[k])
-            if k > 0 and column[k] < column[k - 1] and column[k] < right and column[k] < 0.3 * max(column[k - 1], right):
+            around = (column[k - 1], right)
+            if k > 0 and column[k] < min(around) and column[k] < 0.3 * max(around):
                 low = minimize_scalar(
                     value, bounds=(times[k - 1], times[k + 1]), method="bounded", options={"xatol": 1e-12}
                 )

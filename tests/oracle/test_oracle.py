@@ -6,6 +6,7 @@ from scipy.integrate import quad
 from scipy.special import ellipe
 
 from tests.oracle.laws import disc
+from tests.oracle.mechanisms import Chain, numbers
 from tests.oracle.problem import Contact, OracleError, Problem
 from tests.oracle.references import constant, problem
 from tests.oracle.run import solve
@@ -93,13 +94,17 @@ def test_what_cannot_be_decided_is_refused():
     one = np.ones((1, 1))
     contact = Contact(name="c", W=one, N=constant(1.0), mu=constant(0.9), mu_s=constant(0.5))  # holds less than it rubs
     scene = Problem(
-        M=one, K=0.0 * one, C=0.0 * one, q=np.zeros(1), v=np.zeros(1), load=lambda t: 0.7, t_end=1.0, contacts=(contact,)
-    )
+        M=one, K=0.0 * one, C=0.0 * one, q=np.zeros(1), v=np.zeros(1), load=lambda t: 0.7, t_end=1.0,
+        contacts=(contact,),
+    )  # fmt: skip
     with pytest.raises(OracleError):
         solve(scene)
 
 
-@pytest.mark.parametrize(("v", "u"), [(1.0, 0.0), (1.0, 5e-3), (1.0, 0.3), (1.0, 0.99), (0.7, 1.0), (0.02, 1.0), (5e-3, 1.0)])
+SPEEDS = [(1.0, 0.0), (1.0, 5e-3), (1.0, 0.3), (1.0, 0.99), (0.7, 1.0), (0.02, 1.0), (5e-3, 1.0)]
+
+
+@pytest.mark.parametrize(("v", "u"), SPEEDS)
 def test_a_disc_that_slides_and_spins_is_braked_by_its_rings(v, u):
     """The gradient of the power, which is a sum over rings, each in closed form."""
 
@@ -115,3 +120,18 @@ def test_a_disc_that_slides_and_spins_is_braked_by_its_rings(v, u):
     assert -(0.6 * force[0] - 0.8 * force[1]) * v - force[2] * u == pytest.approx(power(v, u), rel=1e-11)
     slope = (power(v * (1.0 + 1e-4), u) - power(v * (1.0 - 1e-4), u)) / (2e-4 * v)
     assert -(0.6 * force[0] - 0.8 * force[1]) == pytest.approx(slope, rel=1e-5)
+
+
+def test_a_dry_pin_is_loaded_by_its_own_reaction():
+    """One link: inertia and weight against mu radius |reaction|, accelerations by differences of velocities."""
+    link = Chain("chain", [1.3], [0.1], [1.2], [1.2], [0.0], [0.05], [0.6], [0.6], 3.0)
+    found = solve(numbers(link))
+    t, h = np.array([0.3, 0.9, 1.3, 2.1]), 1e-5
+    (angle, rate), (_, after), (_, before) = found(t), found(t + h), found(t - h)
+    a = (after - before) / (2.0 * h)
+    half = 0.6
+    x = 1.3 * half * (np.cos(angle) * a - np.sin(angle) * rate**2)
+    y = 1.3 * half * (np.sin(angle) * a + np.cos(angle) * rate**2) + 1.3 * 9.81
+    expected = -1.3 * 9.81 * half * np.sin(angle) - 0.6 * 0.05 * np.hypot(x, y) * np.sign(rate)
+    np.testing.assert_allclose((0.1 + 1.3 * half**2) * a, expected, atol=1e-7)
+    assert {event.kind for event in found.events} == {"reversal"}

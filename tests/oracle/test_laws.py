@@ -1,0 +1,49 @@
+"""Every law in motion against the oracle, by every method that takes it."""
+
+import pytest
+
+from fricmb import laws
+from tests.oracle.judge import judge, truth
+from tests.oracle.known import CELLS
+from tests.oracle.shrink import BAD
+from tests.oracle.table import LAWS, METHODS, SITUATIONS, case
+
+#: One situation to each law, in turn; "long rest" costs the oracle most and is left to the full table.
+_IN_TURN = [name for name in SITUATIONS if name != "long rest"]
+QUICK = [(name, _IN_TURN[i % len(_IN_TURN)]) for i, name in enumerate(sorted(LAWS))]
+FULL = [(name, situation) for name in sorted(LAWS) for situation in SITUATIONS]
+
+
+def test_every_law_of_the_catalogue_has_its_row():
+    assert set(LAWS) == set(laws.names)
+    assert all(type(law).__name__ == name for name, law in LAWS.items())
+    assert {name for name, _ in QUICK} == set(laws.names)
+
+
+def failures(name, situation):
+    """Methods that get it wrong, with what they got."""
+    true = truth(case(name, situation))
+    assert not true.marginal
+    verdicts = {method: judge(true, method) for method in METHODS if (name, situation, method) not in CELLS}
+    assert verdicts.get("auto") is None or verdicts["auto"].kind != "refused"
+    return {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD}
+
+
+@pytest.mark.parametrize(("name", "situation"), QUICK)
+def test_law_moves_as_the_oracle_says(name, situation):
+    assert failures(name, situation) == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "situation"), [cell for cell in FULL if cell not in QUICK])
+def test_law_moves_as_the_oracle_says_in_all_situations(name, situation):
+    assert failures(name, situation) == {}
+
+
+KNOWN = [pytest.param(*cell, marks=() if cell[:2] in QUICK else pytest.mark.slow) for cell in CELLS]
+
+
+@pytest.mark.parametrize(("name", "situation", "method"), KNOWN)
+def test_what_is_known_to_fail_still_fails(name, situation, method):
+    """An entry of ``known.CELLS`` that passes has to go."""
+    assert judge(truth(case(name, situation)), method).kind in BAD
