@@ -19,7 +19,7 @@ FLOORS = (
     {"equations"},
     {"system"},
     {"simulate", "sweep"},
-    {"analysis"},
+    {"analysis", "audit"},
     {"plot"},
     {"models", "testing", "bench"},
     {"cli"},

@@ -76,6 +76,15 @@ def check_tolerance(rtol: Any, atol: Any, n: int) -> Tolerance:
     return Tolerance(rtol=found, atol_q=both[:n].copy(), atol_v=both[n:].copy())
 
 
+def floors(tolerance: Tolerance) -> tuple[float, ...] | None:
+    """The absolute tolerances of positions, then of velocities; one of each where all are alike; None: none given."""
+    q, v = tolerance.atol_q, tolerance.atol_v
+    if q is None or v is None:
+        return None
+    alike = q.size > 0 and bool((q == q[0]).all() and (v == v[0]).all())
+    return (float(q[0]), float(v[0])) if alike else (*q.tolist(), *v.tolist())
+
+
 def check_step(step: Any, adaptive: bool, method: str, length: float) -> float | None:
     """The step of a method of fixed step, and of no other."""
     if adaptive:

@@ -122,6 +122,10 @@ class SceneMechanics:
             raise unknown_name("joint", joint, ())
         return self.whole.system.reaction(joint, samples)
 
+    def reactions(self, samples: Samples) -> dict[str, Floats]:
+        """Reactions of all joints by name."""
+        return {} if self.whole is None or not self.placed.joints else self.whole.system.reactions(samples)
+
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_driven, n_t), in the order of ``names.signals``."""
         return self.driven.evaluate(t)

@@ -23,9 +23,11 @@ POWER, SPEED = 1e-9, 1e-12
 
 def make_solution(
     mechanics: SceneMechanics, trajectory: Trajectory, span: Span, method: str, why: str, begin: float,
-    compile_s: float, rtol: float | None,
+    compile_s: float, rtol: float | None, atol: tuple[float, ...] | None = None,
 ) -> Solution:  # fmt: skip
     """The solution of a run; ``begin`` is when the call began (perf_counter); ``rtol`` None: fixed steps.
+
+    ``atol``: as in :class:`Stats`.
 
     Raises
     ------
@@ -43,14 +45,23 @@ def make_solution(
     def solution(t_end: float | None, times: Floats | None) -> Solution:
         run = Run((Piece(trajectory, mechanics.origin, mechanics, t_end),))
         try:
-            sol = Solution(names=mechanics.names, run=run, stats=Stats(method=method), times=times)
+            made = Stats(method=method, n_steps=counters.n_steps)
+            sol = Solution(names=mechanics.names, run=run, stats=made, times=times)
         except IntegrationError as error:
             raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
         check_friction(mechanics, trajectory, sol.record.samples, rtol or 0.0)
         said = (*notes, *ledger_note(sol, rtol), *miss_notes(sol, trajectory, rtol))
         wall_s = time.perf_counter() - begin
         sol.stats = Stats(
-            method=method, why=why, compile_s=compile_s, wall_s=wall_s, islands=islands, notes=said, **counts
+            method=method,
+            why=why,
+            compile_s=compile_s,
+            wall_s=wall_s,
+            islands=islands,
+            notes=said,
+            rtol=rtol,
+            atol=atol,
+            **counts,
         )
         return sol
 

@@ -87,7 +87,7 @@ def simulate(
     from fricmb._simulate._watch import CompileWatch
 
     with CompileWatch() as watch:
-        from fricmb._simulate._arguments import check_span, check_step, check_tolerance, number
+        from fricmb._simulate._arguments import check_span, check_step, check_tolerance, floors, number
         from fricmb._simulate._islands import find_runs
         from fricmb._simulate._keep import check_keep, run
         from fricmb._simulate._mechanics import prepare
@@ -106,7 +106,7 @@ def simulate(
         accuracy = rtol if chosen.adaptive else None
 
         def finish(trajectory: Trajectory, part: Span) -> Solution:
-            how = (chosen.name, chosen.why, begin, watch.seconds, accuracy)
+            how = (chosen.name, chosen.why, begin, watch.seconds, accuracy, floors(tolerance))
             return make_solution(chosen.mechanics, trajectory, part, *how)
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:

@@ -124,6 +124,7 @@ def _add_run(commands: _Commands) -> None:
     )
     sub.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: fricmb-out/MODEL)")
     sub.add_argument("--no-plots", action="store_true", help="no pictures")
+    sub.add_argument("--audit", action="store_true", help="check the run against the scene's equations: sol.audit()")
     sub.add_argument("--json", action="store_true", help="print the summary as JSON and nothing else")
 
 

@@ -6,7 +6,9 @@ import argparse
 import json
 import math
 import sys
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -39,17 +41,28 @@ def run(options: argparse.Namespace) -> int:
             raise
         sol, failure = error.partial, error
     summary = as_json(sol, failure)
+    audit = sol.audit() if options.audit else None
+    if audit is not None:
+        summary["audit"] = {"ok": audit.ok, "rtol": audit.rtol, "checks": [_row(check) for check in audit.checks]}
     (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     written = write_all(sol, folder, loaded.units, plots=not options.no_plots)
     if options.json:
         print(json.dumps(summary, indent=2))
     else:
         print(as_text(sol))
+        if audit is not None:
+            print(audit)
         print(f"written      {folder}{'/' if folder.name else ''}: {', '.join(['summary.json', *written])}")
     if failure is not None:
         print(f"fricmb: {' '.join(str(failure).split())}; what was computed until then is in {folder}", file=sys.stderr)
         return 3
     return 0
+
+
+def _row(check: Any) -> dict[str, Any]:
+    """A check as data: sizes that are no numbers, and times that are none, as null."""
+    found = {**asdict(check), "ok": check.ok}
+    return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in found.items()}
 
 
 def _t_end(options: argparse.Namespace, loaded: Loaded) -> float:

@@ -45,6 +45,8 @@ def check_stats(stats: Stats) -> None:
                 (wanted == "str" and isinstance(value, str))
                 or (wanted == "int" and type(value) is int)
                 or (wanted == "float" and type(value) in (int, float))
+                or (wanted == "float | None" and type(value) in (int, float, type(None)))
+                or (wanted.startswith("tuple[float") and (value is None or all(type(x) is float for x in value)))
                 or (wanted.startswith("tuple[str") and all(isinstance(word, str) for word in value))
                 or wanted.startswith("tuple[IslandStats")
             )

@@ -274,7 +274,8 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
 
 def _stats(held: dict[str, Any]) -> Stats:
     islands = tuple(IslandStats(**{**one, "dofs": tuple(one["dofs"])}) for one in held.get("islands", ()))
-    stats = Stats(**{**held, "notes": tuple(held["notes"]), "islands": islands})
+    atol = None if held.get("atol") is None else tuple(held["atol"])
+    stats = Stats(**{**held, "notes": tuple(held["notes"]), "islands": islands, "atol": atol})
     check_stats(stats)
     return stats
 

@@ -23,6 +23,7 @@ from fricmb.solution._summary import describe, summarise
 if TYPE_CHECKING:
     import pandas
 
+    from fricmb.audit import Audit
     from fricmb.plot import SolutionPlots
 
 
@@ -250,6 +251,31 @@ class Solution:
         from fricmb.plot import SolutionPlots
 
         return SolutionPlots(self)
+
+    def audit(self, *, rtol: float | None = None, atol: Any = None, seed: int = 0) -> Audit:
+        """Check the run against the equations of its scene, on a path that shares nothing with the compiled kernels.
+
+        What every part states in SymPy is evaluated by numpy at random times of the dense output: equations of motion
+        and of law states in integrated form, laws and cones of friction, creep in stick, constraints, transitions,
+        energy.  Each residual is told in units of what the tolerance allows there.
+
+        Parameters
+        ----------
+        rtol : float, optional
+            What residuals are measured by; default: the tolerance of the run, 1e-3 for fixed steps.
+        atol : float or (n_dof,) or (2 n_dof,), optional
+            Errors that never matter; default: as in the run.
+        seed : int
+            Of the random times.
+
+        Returns
+        -------
+        fricmb.audit.Audit
+            ``.ok``, ``.checks``, ``.table()``; printed, three lines.
+        """
+        from fricmb.audit import audit
+
+        return audit(self, rtol=rtol, atol=atol, seed=seed)
 
     def columns(self) -> dict[str, Floats | Codes]:
         """Every signal (n_t,) by name, as in :meth:`to_pandas`."""

@@ -59,6 +59,10 @@ class MechanismSystem(System):
         """Multipliers of a joint (m, n_t) at states with their friction modes."""
         if joint not in self.mechanism.joints.names:
             raise unknown_name("joint", joint, self.mechanism.joints.names)
+        return self.reactions(samples)[joint]
+
+    def reactions(self, samples: Samples) -> dict[str, Floats]:
+        """The same of every joint by name."""
         from fricmb.integrate.constrained._assemble import away
         from fricmb.integrate.constrained._trajectory import complete_open
 
@@ -73,8 +77,7 @@ class MechanismSystem(System):
             opened[k] = away(self.problem, Start(t=float(samples.t[k]), q=q[k], v=np.zeros_like(q[k]), z=z[k]))
         found = complete_open(self.problem, opened, samples.t, q, v, z, samples.mode.T, force)
         lam = self._least_norm(samples, found[3])
-        i = joints.names.index(joint)
-        return lam[joints.row[i] : joints.row[i + 1]]
+        return {name: lam[a:b] for name, (a, b) in zip(joints.names, pairwise(joints.row), strict=True)}
 
     def _directions(self, samples: Samples) -> Floats:
         """Unit vectors of slip (m_p, n_t): against friction, or along the slip velocity where there is none."""

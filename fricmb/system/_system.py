@@ -76,6 +76,10 @@ class System:
         """Reactions of a joint (rows, n_t); there is none without joints."""
         raise unknown_name("joint", joint, ())
 
+    def reactions(self, samples: Samples) -> dict[str, Floats]:
+        """Reactions of all joints by name."""
+        return {}
+
     # -- energies -----------------------------------------------------------------------------------------------
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""

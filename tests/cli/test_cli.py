@@ -293,3 +293,12 @@ def test_plot_of_a_damaged_file_is_bad_input(capsys, tmp_path):
     assert status == 2
     assert complaint.count("\n") == 1
     assert str(path) in complaint
+
+
+def test_run_audits(tmp_path, capsys):
+    code = main(["run", "belt_oscillator", "--t-end", "20", "--audit", "--no-plots", "--out", str(tmp_path)])
+    assert code == 0
+    assert "audit passes" in capsys.readouterr().out
+    held = json.loads((tmp_path / "summary.json").read_text())["audit"]
+    assert held["ok"]
+    assert {"equations of motion", "energy"} <= {check["name"] for check in held["checks"]}

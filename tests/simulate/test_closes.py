@@ -47,3 +47,17 @@ def test_slip_that_has_only_begun_is_no_negative_friction():
     case = next(case for case in SCENES if case.name == "two_blocks")
     sol = fm.simulate(case.build(), t_end=case.t_end, t_eval=case.reference().t, rtol=1e-3, method="bdf")
     assert len(sol.events) == 41
+
+
+@pytest.mark.parametrize("load", [0.1, 1e-3])
+def test_what_rests_under_a_load_closes(load):
+    """Nothing is exchanged: what the solver's round-off moves is no loss."""
+    block = fm.Body("block", mass=1.0)
+    law = fm.laws.Coulomb(mu_s=0.8, mu_k=0.6)
+    scene = fm.Scene("rest", [
+        block,
+        fm.Force("push", block, axis="x", value=load),
+        fm.Contact("sole", block, law=law, normal_force=1.0),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=10.0, method="timestepping")
+    assert not [note for note in sol.stats.notes if "ledger" in note]

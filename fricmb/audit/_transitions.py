@@ -1,0 +1,149 @@
+"""What happens where a contact changes its mode: it had to, and nothing jumps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.audit._contacts import Rubs
+from fricmb.audit._gather import Gathered
+from fricmb.audit._motions import Moment
+from fricmb.audit._points import row_unit
+from fricmb.audit._release import holding
+from fricmb.audit._statements import Statements
+from fricmb.audit._units import Units
+from fricmb.integrate._long import take
+from fricmb.integrate._problem import OPEN, SLIP, STICK, Floats, Ints
+from fricmb.integrate._trajectory import Samples
+
+#: Changes of mode that are looked at in all contacts, and places within a step at which a release is tried.
+_CHANGES, _PLACES = 80, 5
+
+
+class Changes:
+    """Changes of mode from row to row; a transition that was located has two rows at its instant."""
+
+    def __init__(self, statements: Statements, units: Units, gathered: Gathered, rows: Samples, sample: Any) -> None:
+        self.statements, self.units, self.gathered = statements, units, gathered
+        self.rows, self.sample = rows, sample
+
+    def look(self, events: Any, rng: np.random.Generator) -> None:
+        """All contacts; ``events`` are those of the run."""
+        self._jumps()
+        room = max(2, _CHANGES // max(1, len(self.statements.contacts)))
+        for k, law in self.statements.contacts.items():
+            mode = self.rows.mode[k]
+            at = np.flatnonzero(mode[1:] != mode[:-1])
+            self._named(law, at, events.of(contact=law.name))
+            if law.smooth:
+                continue
+            chosen = np.sort(rng.choice(at, room, replace=False)) if at.size > room else at
+            caught = chosen[(mode[chosen] == SLIP) & (mode[chosen + 1] == STICK)]
+            self._caught(k, law, caught[self.rows.t[caught] == self.rows.t[caught + 1]])
+            let_go = chosen[(mode[chosen] == STICK) & (mode[chosen + 1] == SLIP)].tolist()
+            for i in let_go:
+                self._released(k, law, i, i + 1, rng)
+            if mode[0] == SLIP and self.rows.t.size > 1:
+                self._released(k, law, 0, 0, rng)
+
+    def _jumps(self) -> None:
+        """Positions and velocities where rows stand at one instant."""
+        rows = self.rows
+        twice = np.flatnonzero(np.diff(rows.t) == 0.0)
+        for name, values, unit in (("q", rows.q, self.units.q), ("v", rows.v, self.units.v)):
+            jump = np.abs(values[:, twice + 1] - values[:, twice])
+            ratio = np.where(jump > 0.0, jump / (2.0 * unit[:, None] + 1e-300), 0.0)
+            if twice.size:
+                i = int(np.argmax(ratio.max(axis=1)))
+                self.gathered.add(f"continuity of {name}", ratio[i], rows.t[twice], self.statements.names.dofs[i])
+
+    def _named(self, law: Rubs, at: Ints, events: Any) -> None:
+        """Every change of mode is among the events."""
+        t = self.rows.t
+        known = np.asarray(events.t, dtype=float)
+        margin = 1e-10 * (np.abs(t[[0, -1]]).max() + t[-1] - t[0])
+        low = np.searchsorted(known, t[at] - margin, side="left")
+        high = np.searchsorted(known, t[at + 1] + margin, side="right")
+        self.gathered.add("changes of mode are events", np.where(high > low, 0.0, np.inf), t[at], law.name)
+
+    def _caught(self, k: int, law: Rubs, at: Ints) -> None:
+        """A contact that sticks from now on has come to rest."""
+        if not at.size:
+            return
+        s = self.statements
+        found = s.found(s.moment(take(self.rows, at)))
+        unit = np.array([row_unit(row, self.units.v, (at.size,)) for row in found.rows[k]])
+        ratio = (np.abs(found.g[k]) / (2.0 * unit + 1e-300)).max(axis=0)
+        self.gathered.add("rest where slip ends", ratio, self.rows.t[at], law.name)
+
+    def _released(self, k: int, law: Rubs, i: int, j: int, rng: np.random.Generator) -> None:
+        """A contact that slips from now on could not have been held."""
+        s, rows = self.statements, self.rows
+        before, after = take(rows, [i]), take(rows, [j])
+        own = slice(int(s.names.row[k]), int(s.names.row[k + 1]))
+        if i != j and self._at_limit(law, k, before, own):
+            return
+        last = int(np.searchsorted(rows.t, rows.t[j], side="right"))
+        h = float(rows.t[min(last, rows.t.size - 1)] - rows.t[j])
+        if h <= 0.0:
+            return
+        located = rows.t[i] == rows.t[j]
+        begin = after if located else before
+        stuck = [c for c in s.contacts if rows.mode[c, j] == STICK and not s.contacts[c].smooth]
+        span = rows.t[j] - rows.t[i]
+        times = [rows.t[j] + 1e-9 * h] if located else (rows.t[i] + span * np.linspace(1.0, 1e-9, _PLACES)).tolist()
+        least = np.inf
+        for t in times:
+            moment = self._moved_to(s.moment(begin), s.moment(after), float(t))
+            found = s.found(moment)
+            unit = np.array([row_unit(row, self.units.v, (1,)) for row in found.rows[k]])
+            if (np.abs(found.g[k]) > 2.0 * unit + 1e-300).any() or rows.mode[k, j] == OPEN:
+                return  # slips because what it rubs on moves
+            short = self._short(k, law, moment, stuck, h, rng)
+            if short is None:
+                return
+            least = min(least, short)
+            if least <= 0.0:
+                break
+        self.gathered.add("release from stick", [max(least, 0.0)], float(rows.t[j]), law.name)
+
+    def _at_limit(self, law: Rubs, k: int, before: Samples, own: slice) -> bool:
+        size = law.size(before.F[own] * self.statements.names.row_scale[own])
+        limit = law.limit(before.N[k])
+        return bool(size[0] >= limit[0] * (1.0 - self.units.rtol) - self._force_unit(own))
+
+    def _force_unit(self, own: slice) -> float:
+        return float(self.units.F[own].max(initial=0.0))
+
+    @staticmethod
+    def _moved_to(begin: Moment, after: Moment, t: float) -> Moment:
+        """The state before, at a time after it, with the friction that other contacts have there."""
+        values = {name: value for name, value in vars(begin).items() if name != "_places"}
+        step = np.array([t]) - begin.t
+        return Moment(**{**values, "t": np.array([t]), "q": begin.q + step * begin.v, "F": after.F})
+
+    def _short(
+        self, k: int, law: Rubs, moment: Moment, stuck: list[int], h: float, rng: np.random.Generator
+    ) -> float | None:
+        """Units by which the friction that would hold falls short of its limit; None where it is not determined."""
+        held = holding(self.statements, moment, k, stuck, h)
+        if held is None:
+            return None
+        force, N = held
+        limit = float(law.limit(np.array([N]))[0])
+        unit = self.units.rtol * limit + 1e-7 * float(np.linalg.norm(force)) + 1e-300
+        over = (limit - float(law.size(force[:, None])[0])) / unit
+        for _ in range(2 if over > 1.0 else 0):
+            moved = holding(self.statements, self.units.moved(moment, rng), k, stuck, h)
+            if moved is not None:
+                shift = float(np.linalg.norm(moved[0] - force)) + abs(float(law.limit(np.array([moved[1]]))[0]) - limit)
+                unit = max(unit, self.units.rtol * limit + shift)
+        return (limit - float(law.size(force[:, None])[0])) / unit
+
+
+def opening(rows: Samples, k: int) -> Floats:
+    """Times (n,) at which contact k begins to slip, two rows at an instant."""
+    mode = rows.mode[k]
+    found: Floats = rows.t[1:][(mode[:-1] == STICK) & (mode[1:] == SLIP) & (np.diff(rows.t) == 0.0)]
+    return found
