@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from types import TracebackType
 from typing import Any, Self
 
 from numba.core import event
+
+from fricmb.integrate._cache_files import say
 
 
 class CompileWatch:
@@ -72,10 +73,7 @@ class _FirstPass(event.Listener):
         self._watch.compiled = True
         if not _FirstPass._told:
             _FirstPass._told = True
-            sys.stderr.write(
-                "fricmb: compiling for the first time on this machine; later runs take it from the cache\n"
-            )
-            sys.stderr.flush()
+            say("compiling for the first time on this machine; later runs take it from the cache")
 
     def on_end(self, event: Any) -> None:
         """Nothing to do: the time is taken under the lock."""

@@ -19,18 +19,13 @@ from multiprocessing import connection
 from typing import Any
 
 from fricmb.errors import FricmbError, IntegrationError
+from fricmb.integrate._cache_files import say
 
 #: A run: from its parameters to its result.
 Run = Callable[[Mapping[str, Any]], Any]
 #: Seconds between looks at the clock.
 _LOOK = 0.5
 _READY = -1
-
-
-def say(text: str) -> None:
-    """One line on stderr."""
-    with contextlib.suppress(OSError, ValueError):
-        print(f"fricmb: {text}", file=sys.stderr, flush=True)
 
 
 def lost(why: str, parameters: Mapping[str, Any]) -> IntegrationError:
@@ -156,6 +151,8 @@ def _work(pipe: Any, run: Run, parent: int) -> None:
     """Run what comes in until the pipe ends."""
     _end_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(os, "setpgrp"):
+        os.setpgrp()  # the terminal's Ctrl-C goes to the parent alone
     pipe.send((_READY, True, None))
     while True:
         try:

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from fricmb._sweep._fingerprint import Fingerprint
-from fricmb._sweep._processes import say
 from fricmb.errors import SceneError
+from fricmb.integrate._cache_files import say
 
 _DIGEST = 32
 

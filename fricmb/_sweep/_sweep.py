@@ -7,10 +7,10 @@ from os import PathLike
 from typing import Any
 
 import fricmb
-from fricmb._sweep._processes import say
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
 from fricmb.errors import IntegrationError, SceneError
+from fricmb.integrate._cache_files import say
 from fricmb.solution import Solution
 
 

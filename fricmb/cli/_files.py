@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import fricmb as fm
+from fricmb.cli._output import replace_together
 from fricmb.plot import Units
 
 if TYPE_CHECKING:
@@ -21,18 +22,21 @@ if TYPE_CHECKING:
 PICTURES = ("velocities", "phase", "energy", "transitions", "force")
 
 
-def write_all(sol: fm.Solution, folder: Path, units: Units, *, plots: bool) -> list[str]:
-    """Write the data and, unless told otherwise, the pictures; returns the names of the files.
+def write_all(sol: fm.Solution, folder: Path, units: Units, summary: str, *, plots: bool) -> list[str]:
+    """Write summary, data and, unless told otherwise, the pictures; returns the names of the files.
 
-    Pictures of an earlier run go.
+    Those of an earlier run are replaced together, once all have been written, and its other pictures go.
     """
-    for stale in PICTURES:
-        (folder / f"{stale}.png").unlink(missing_ok=True)
-    sol.save(folder / "solution.npz")
-    write_csv(sol, folder / "solution.csv")
-    write_events(sol, folder / "events.csv")
-    names = ["solution.npz", "solution.csv", "events.csv"]
-    return names + (write_pictures(sol, folder, units) if plots else [])
+
+    def write(new: Path) -> list[str]:
+        (new / "summary.json").write_text(summary)
+        sol.save(new / "solution.npz")
+        write_csv(sol, new / "solution.csv")
+        write_events(sol, new / "events.csv")
+        names = ["summary.json", "solution.npz", "solution.csv", "events.csv"]
+        return names + (write_pictures(sol, new, units) if plots else [])
+
+    return replace_together(folder, write, tuple(f"{name}.png" for name in PICTURES))
 
 
 def columns(sol: fm.Solution) -> dict[str, NDArray[Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -19,27 +20,68 @@ _EPILOG = """exit status: 0 done, 2 bad input (one line on stderr says what and 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status (argparse itself exits with 0 or 2)."""
+    closed = sys.stdout is None
+    if closed:
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115  # for the rest of the process
     options = parser().parse_args(arguments)
+    _set_up(options)
     from fricmb.errors import FricmbError, IntegrationError
 
     try:
         command: Callable[[argparse.Namespace], int] = options.command
         status = command(options)
-        sys.stdout.flush()
-        return status
+        _flush()
     except IntegrationError as error:
         return _complain(str(error), FAILED)
     except BrokenPipeError:  # whoever reads the output has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _let_go()
         return DONE
     except (FricmbError, OSError) as error:
         return _complain(str(error), BAD_INPUT)
     except KeyboardInterrupt:
         return _complain("interrupted", 130)
+    return _complain("standard output is closed: what was to be said there is lost", BAD_INPUT) if closed else status
+
+
+def _set_up(options: argparse.Namespace) -> None:
+    """Threads and notices, before numpy and numba are imported, which read their environment once."""
+    threads = getattr(options, "threads", None)
+    if threads is not None:
+        for library in ("OMP", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMBA"):
+            os.environ[f"{library}_NUM_THREADS" if "_" not in library else f"{library}_THREADS"] = str(threads)
+        os.environ["FRICMB_COMPILE_PROCESSES"] = str(threads)
+    if getattr(options, "quiet", False):
+        os.environ["FRICMB_QUIET"] = "1"
+
+
+def _threads(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"expected a number of threads, at least 1; got {text!r}")
+    return int(text)
+
+
+def _flush() -> None:
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise OSError(f"standard output: {error.strerror}: the last of what was to be said there is lost") from error
+
+
+def _let_go() -> None:
+    """Drop what standard output could not take, so that the interpreter does not try again at its end."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(message: str, status: int) -> int:
-    print("fricmb: " + " ".join(message.split()), file=sys.stderr)
+    try:
+        sys.stdout.flush()
+    except (OSError, ValueError):
+        _let_go()
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        print("fricmb: " + " ".join(message.split()), file=sys.stderr)
     return status
 
 
@@ -126,6 +168,8 @@ def _add_run(commands: _Commands) -> None:
     sub.add_argument("--no-plots", action="store_true", help="no pictures")
     sub.add_argument("--audit", action="store_true", help="check the run against the scene's equations: sol.audit()")
     sub.add_argument("--json", action="store_true", help="print the summary as JSON and nothing else")
+    sub.add_argument("--quiet", action="store_true", help="no progress bar and no notices")
+    sub.add_argument("--threads", type=_threads, metavar="N", help="threads of linear algebra and compilation")
 
 
 def _add_list(commands: _Commands) -> None:

@@ -15,12 +15,21 @@ import numpy as np
 import fricmb as fm
 from fricmb.cli._files import write_all
 from fricmb.cli._load import Loaded, load
+from fricmb.cli._output import finite, print_aside, stdout_to_stderr
 from fricmb.cli._summary import as_json, as_text
 from fricmb.errors import IntegrationError, SceneError
 
 
 def run(options: argparse.Namespace) -> int:
-    """Simulate, write, tell; 3 with a partial result if the integration fails."""
+    """Simulate, write, tell; 3 with a partial result if the integration fails.
+
+    With ``--json`` whatever else is printed, by a model say, goes to stderr.
+    """
+    with stdout_to_stderr(options.json):
+        return _run(options)
+
+
+def _run(options: argparse.Namespace) -> int:
     loaded = load(options.model, case=options.case, values=options.values)
     t_end = _t_end(options, loaded)
     folder = options.out or Path("fricmb-out") / loaded.label
@@ -34,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
             method=options.method,
             step=options.step,
             t_eval=_grid(options.points, t_end),
-            progress=sys.stderr.isatty() and not options.json,
+            progress=sys.stderr.isatty() and not (options.json or options.quiet),
         )
     except IntegrationError as error:
         if error.partial is None:
@@ -44,15 +53,15 @@ def run(options: argparse.Namespace) -> int:
     audit = sol.audit() if options.audit else None
     if audit is not None:
         summary["audit"] = {"ok": audit.ok, "rtol": audit.rtol, "checks": [_row(check) for check in audit.checks]}
-    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
-    written = write_all(sol, folder, loaded.units, plots=not options.no_plots)
+    text = json.dumps(finite(summary), indent=2, allow_nan=False) + "\n"
+    written = write_all(sol, folder, loaded.units, text, plots=not options.no_plots)
     if options.json:
-        print(json.dumps(summary, indent=2))
+        print_aside(text)
     else:
         print(as_text(sol))
         if audit is not None:
             print(audit)
-        print(f"written      {folder}{'/' if folder.name else ''}: {', '.join(['summary.json', *written])}")
+        print(f"written      {folder}{'/' if folder.name else ''}: {', '.join(written)}")
     if failure is not None:
         print(f"fricmb: {' '.join(str(failure).split())}; what was computed until then is in {folder}", file=sys.stderr)
         return 3

@@ -52,9 +52,11 @@ def _temporary(room: str, why: str) -> Path:
 
 
 def say(text: str) -> None:
-    """One line on stderr."""
-    with contextlib.suppress(OSError, ValueError):
-        print(f"fricmb: {text}", file=sys.stderr)
+    """A notice: one line on stderr; none with ``FRICMB_QUIET`` in the environment (``--quiet``)."""
+    if os.environ.get("FRICMB_QUIET"):
+        return
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        print(f"fricmb: {text}", file=sys.stderr, flush=True)
 
 
 class CacheFiles:

@@ -40,18 +40,22 @@ def check_stats(stats: Stats) -> None:
     """FricmbError for counters that are none."""
     for one in (stats, *stats.islands):
         for f in fields(one):
-            value, wanted = getattr(one, f.name), str(f.type)
-            good = (
-                (wanted == "str" and isinstance(value, str))
-                or (wanted == "int" and type(value) is int)
-                or (wanted == "float" and type(value) in (int, float))
-                or (wanted == "float | None" and type(value) in (int, float, type(None)))
-                or (wanted.startswith("tuple[float") and (value is None or all(type(x) is float for x in value)))
-                or (wanted.startswith("tuple[str") and all(isinstance(word, str) for word in value))
-                or wanted.startswith("tuple[IslandStats")
-            )
+            value = getattr(one, f.name)
+            good = any(_is(value, wanted.strip()) for wanted in str(f.type).split("|"))
             if not good:
                 raise FricmbError(f"entry 'about': {f.name} of the stats is {value!r}")
+
+
+def _is(value: Any, wanted: str) -> bool:
+    """Whether a value is of a type that is given by its name."""
+    if wanted.startswith("tuple["):
+        inner = wanted[6:].partition(",")[0].rstrip("]")
+        return isinstance(value, tuple) and all(_is(held, inner) for held in value)
+    if wanted == "None":
+        return value is None
+    if wanted == "float":
+        return type(value) in (int, float)
+    return type(value).__name__ == wanted
 
 
 def _check_numbers(about: Mapping[str, Any]) -> None:
