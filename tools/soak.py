@@ -3,10 +3,10 @@
     python tools/soak.py --runs 20000 --minutes 60
 
 Each run is a model with values of its own, a method and a tolerance drawn at random; some are saved and read again,
-some go on from the run before, some are made to fail.  At regular times the resident memory (of all that is in use after a
-collection of garbage), the open files, threads and child processes are noted.  The last quarter of the runs may use no
-more memory than the second, but for 2 %; files, threads and processes must be as many as before.  The figures are
-printed as JSON.
+some go on from the run before, some are made to fail. At regular times the resident memory (of all that is in use
+after a collection of garbage), the open files, threads and child processes are noted. The last quarter of the runs may
+use no more memory than the second, but for 2 %; files, threads and processes must be as many as before. The figures
+are printed as JSON.
 """
 
 from __future__ import annotations

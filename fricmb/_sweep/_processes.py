@@ -41,7 +41,7 @@ class _Worker:
     def __init__(self, run: Run) -> None:
         context = multiprocessing.get_context()
         self.pipe, theirs = context.Pipe()
-        self.process = context.Process(target=_work, args=(theirs, run, os.getpid()), daemon=True)  # type: ignore[attr-defined]
+        self.process = context.Process(target=_work, args=(theirs, run, os.getpid()), daemon=True)
         self.process.start()
         theirs.close()
         self.ready = False

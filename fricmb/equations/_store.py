@@ -7,6 +7,7 @@ that are damaged and of folders that cannot be written).
 
 from __future__ import annotations
 
+import ast
 import ctypes
 import hashlib
 import json
@@ -88,11 +89,17 @@ def _module(name: str) -> Any:
     source = _sources.get(name) or (_held(name) or {})["source"]
     path = f"<template {name}>"
     linecache.cache[path] = len(source), None, source.splitlines(keepends=True), path
-    module = ModuleType(f"fricmb_template_{name}")
+    # machine code is kept by content and knows its module by name: the same content has the same one
+    module = ModuleType(f"fricmb_template_{hashlib.sha256(_without_title(source).encode()).hexdigest()[:24]}")
     module.__file__ = path
     sys.modules[module.__name__] = module
     exec(compile(source, path, "exec"), vars(module))
     return module
+
+
+def _without_title(source: str) -> str:
+    first = ast.parse(source).body[0]
+    return "\n".join(source.splitlines()[first.end_lineno if isinstance(first, ast.Expr) else 0 :])
 
 
 def address(name: str) -> int:

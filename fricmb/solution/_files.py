@@ -274,8 +274,8 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
 
 def _stats(held: dict[str, Any]) -> Stats:
     islands = tuple(IslandStats(**{**one, "dofs": tuple(one["dofs"])}) for one in held.get("islands", ()))
-    atol = None if held.get("atol") is None else tuple(held["atol"])
-    stats = Stats(**{**held, "notes": tuple(held["notes"]), "islands": islands, "atol": atol})
+    rows = {name: tuple(value) if isinstance(value, list) else value for name, value in held.items()}
+    stats = Stats(**{**rows, "islands": islands})
     check_stats(stats)
     return stats
 

@@ -178,3 +178,33 @@ def test_without_a_home_files_are_kept_for_the_process(monkeypatch, capsys):
     finally:
         for one in (_cache_files._folder, _cache_files._temporary):
             one.cache_clear()
+
+
+SAME = """
+import sys
+from fricmb.equations import _store
+source = "'Title %s.'" % sys.argv[1] + '''
+from fricmb.integrate._call import template
+from fricmb.integrate._straight import straight
+statements = straight("out[0] = 2.0*x[0]")
+@template
+def kernel(x, p, out):
+    statements(x, p, out)
+'''
+key = _store.key("test", sys.argv[1])
+_store.write(key, {}, source)
+import numpy as np
+x, out = np.array([3.0]), np.zeros(1)
+_store.function(_store.address(key))(x, x, out)
+from fricmb.integrate._kernel_cache import _files
+print(out[0], len(list(_files.folder.glob("*.nbc"))))
+"""
+
+
+def test_two_templates_of_the_same_content_share_their_machine_code(tmp_path):
+    """As after an upgrade that derives templates again and finds the same."""
+    folders = {"FRICMB_CACHE_DIR": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path)}
+    for title in ("one", "other", "one"):
+        command = [sys.executable, "-c", SAME, title]
+        done = subprocess.run(command, env={**os.environ, **folders}, capture_output=True, text=True, check=True)
+        assert (done.stdout.split(), done.stderr) == (["6.0", "1"], "")
