@@ -46,7 +46,9 @@ def content_digest(function: Any, options: str, signature: Any, machine: Any) ->
 
 def describe_signature(signature: Any) -> str:
     """Numba's signature as text; named tuples with the names of their fields, kernels with their content."""
-    from numba.core import types
+    from numba.core import types as numba_types
+
+    types: Any = numba_types
 
     def describe(kind: Any) -> str:
         if isinstance(kind, types.BaseNamedTuple):

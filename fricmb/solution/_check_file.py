@@ -12,7 +12,7 @@ from fricmb.errors import FricmbError
 from fricmb.integrate import EVENT_KINDS
 from fricmb.solution._names import Names
 from fricmb.solution._run import ROUND_OFF
-from fricmb.solution._stats import Stats
+from fricmb.solution._stats import IslandStats, Stats
 
 
 def check_arrays(held: Mapping[str, Any], values: Mapping[str, Any], names: Names, about: Mapping[str, Any]) -> None:
@@ -38,7 +38,8 @@ def check_arrays(held: Mapping[str, Any], values: Mapping[str, Any], names: Name
 
 def check_stats(stats: Stats) -> None:
     """FricmbError for counters that are none."""
-    for one in (stats, *stats.islands):
+    every: tuple[Stats | IslandStats, ...] = (stats, *stats.islands)
+    for one in every:
         for f in fields(one):
             value = getattr(one, f.name)
             good = any(_is(value, wanted.strip()) for wanted in str(f.type).split("|"))

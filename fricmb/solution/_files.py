@@ -222,7 +222,7 @@ def _about(source: Path, held: dict[str, Any]) -> dict[str, Any]:
         raise FricmbError(f"{source}, entry 'about': there is no format {number}")
     if number == FORMAT:
         _check_digests(source, held, about)
-    return about  # type: ignore[no-any-return]
+    return about
 
 
 def _check_digests(source: Path, held: dict[str, Any], about: dict[str, Any]) -> None:
@@ -274,7 +274,7 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
 
 def _stats(held: dict[str, Any]) -> Stats:
     islands = tuple(IslandStats(**{**one, "dofs": tuple(one["dofs"])}) for one in held.get("islands", ()))
-    rows = {name: tuple(value) if isinstance(value, list) else value for name, value in held.items()}
+    rows: dict[str, Any] = {name: tuple(value) if isinstance(value, list) else value for name, value in held.items()}
     stats = Stats(**{**rows, "islands": islands})
     check_stats(stats)
     return stats

@@ -79,8 +79,8 @@ class Stored:
             if not isinstance(scene, kind) or not isinstance(options, dict):
                 raise ValueError(f"a piece was run with {type(scene).__name__} and {type(options).__name__}")
             origin = Origin(scene=scene, build=build, options=options)
-            ends = float(one["t_start"]), float(one["t_end"])
-            pieces.append(Piece.again(trajectory, origin, *ends, self.source))
+            t_start, t_end = float(one["t_start"]), float(one["t_end"])
+            pieces.append(Piece.again(trajectory, origin, t_start, t_end, self.source))
         ends = [t for piece in pieces for t in (piece.t_start, piece.t_end)]
         margin = ROUND_OFF * float(np.abs(self.span).max())
         if not pieces or (ends[0], ends[-1]) != self.span or not np.all(np.diff(ends) >= -margin):
