@@ -38,9 +38,7 @@ def content_digest(function: Any, options: str, signature: Any, machine: Any) ->
     """Digest of a kernel for one signature on one processor; equal exactly where the machine code may be shared."""
     reader = _Reader()
     reader.read(function)
-    # what numba keeps of a kernel refers to its module, which a process that reads it has to have
-    module = "" if _own(function.__module__) else function.__module__
-    text = "\n".join([_toolchain(), options, describe_signature(signature), repr(machine), module, *reader.lines])
+    text = "\n".join([_toolchain(), options, describe_signature(signature), repr(machine), *reader.lines])
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
