@@ -1,4 +1,4 @@
-"""Every message that fricmb raises on purpose stands on the page of errors, and the page holds no other."""
+"""Every message that fricmb raises on purpose stands on a page of errors, and these hold no other."""
 
 import ast
 import functools
@@ -15,7 +15,8 @@ from fricmb.integrate.collocation import _collocation
 from fricmb.integrate.taylor import _taylor
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "reference" / "errors.md").read_text(encoding="utf-8")
+PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md")]
+PAGE = "\n".join(path.read_text(encoding="utf-8") for path in PAGES)
 #: What is raised with a message of its own.
 RAISED = {"SceneError", "LawError", "AnalysisError", "FricmbError", "IntegrationError", "no_start"}
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike
 from typing import Any
 
@@ -115,7 +116,19 @@ def _checked(run: Any, i: int) -> Mapping[str, Any]:
     return run
 
 
-def _bar(total: int, done: int, progress: bool) -> Any:
+class _NoBar:
+    """No bar: tqdm would start a thread even for one that is not shown."""
+
+    def update(self) -> None:
+        """Nothing."""
+
+
+@contextmanager
+def _bar(total: int, done: int, progress: bool) -> Iterator[Any]:
+    if not progress:
+        yield _NoBar()
+        return
     from tqdm import tqdm
 
-    return tqdm(total=total, initial=done, disable=not progress, unit="run", desc="sweep")
+    with tqdm(total=total, initial=done, unit="run", desc="sweep") as bar:
+        yield bar
