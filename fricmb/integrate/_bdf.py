@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from fricmb.integrate._advance import ACCEPTED, CHANGED, FULL, Clock, advance
-from fricmb.integrate._bdf_step import HANDOVER, bdf_step
+from fricmb.integrate._bdf_step import HANDOVER, bdf_step, note_loads
 from fricmb.integrate._collect import Collector, accuracy, cost, one_step, run_loop, stages_for
 from fricmb.integrate._drive import arrive, crowded, reached, set_window
 from fricmb.integrate._factor import Factor, forget, jacobians
@@ -96,6 +96,7 @@ def drive_bdf(
             elif code == ACCEPTED and calm(packed, y, h):
                 usual = hist.good[0] if hist.good[0] > 0.0 else h
                 start_history(packed, s, end, y, one, hist, min(usual, 0.25 * h), address)
+                note_loads(packed, s, end, y, hist)
                 if packed.elements.address.shape[0] > 0:
                     forget(multi.fac)
         if code > CHANGED:

@@ -109,6 +109,25 @@ def scaled(packed: Packed, y: State, one: OneStep, acc: Accuracy, hist: History,
 
 
 @kernel
+def excess(packed: Packed, s: Scratch, y: State, k: int) -> float:
+    """How far the force of a stuck contact is above its limit."""
+    row0 = packed.ports.row[k]
+    limit = break_away(packed.ports, packed.laws, k, s, y.N[k]) * y.N[k]
+    return float(slip_speed(y.F, row0, packed.ports.row[k + 1] - row0) - limit)
+
+
+@kernel
+def note_loads(packed: Packed, s: Scratch, start: State, y: State, hist: History) -> None:
+    """Keep how fast stuck forces near their limits in the one-step step from ``start`` to y, after which BDF begins."""
+    h = y.t[0] - start.t[0]
+    for k in range(y.mode.shape[0]):
+        hist.over[k] = 0.0
+        if y.mode[k] == STICK and start.mode[k] == STICK and packed.ports.law[k] != LAW_SMOOTH:
+            hist.over[k] = (excess(packed, s, y, k) - excess(packed, s, start, k)) / h
+    hist.over[y.mode.shape[0]] = h
+
+
+@kernel
 def meets_transition(packed: Packed, s: Scratch, y: State, end: State, hist: History) -> bool:
     """Whether some contact changes its mode between y and ``end``, at its end or between (by cubic interpolation)."""
     h = end.t[0] - y.t[0]
@@ -132,18 +151,21 @@ def meets_transition(packed: Packed, s: Scratch, y: State, end: State, hist: His
                 meets = True
         elif y.mode[k] == STICK:
             limit = break_away(packed.ports, packed.laws, k, s, end.N[k]) * end.N[k]
-            over = slip_speed(end.F, row0, d) - limit
-            held = break_away(packed.ports, packed.laws, k, s, y.N[k]) * y.N[k]
-            rise = over - slip_speed(y.F, row0, d) + held
-            curve = abs(rise - hist.over[k]) if hist.status[6] > 0 else abs(rise)
-            hist.over[k] = rise
+            before, over = excess(packed, s, y, k), excess(packed, s, end, k)
+            slope = (over - before) / h
+            bend = abs(slope - hist.over[k])
+            hist.over[k] = slope
             # the one-step method takes over in time: an extremum might pass the limit between two steps
-            if over > 0.0 or over + 1.5 * max(0.0, rise) + curve > 0.0:
+            if over > 0.0 or over + h * (1.5 * max(0.0, slope) + bend) > 0.0:
+                meets = True
+            # or has just done so within this one: twice what the parabola through three points rises above its ends
+            if max(before, over) + 0.5 * h * h * bend / (h + hist.over[y.mode.shape[0]]) > 0.0:
                 meets = True
             for a in range(row0, row0 + d):
                 # a load that changes so fast where nothing moves is seen by no error test
                 if abs(end.F[a] - y.F[a]) > LEAP * limit:
                     meets = True
+    hist.over[y.mode.shape[0]] = h
     return meets
 
 

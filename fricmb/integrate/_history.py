@@ -28,8 +28,8 @@ class History(NamedTuple):
     ``adams`` (7,) weights of an integral over the last step by backward differences (Adams-Moulton).  ``unit`` (1,)
     allowed local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
     ``growth`` table of :mod:`_orders`, ``omega`` and ``decay`` spectrum of the scene.
-    ``over`` (n_c,) how far stuck forces came nearer to their limits in the last step; ``U``, ``E``, ``column`` room for
-    rescaling.
+    ``over`` (n_c+1,) how fast stuck forces came nearer to their limits in the last step, and its length; ``U``, ``E``,
+    ``column`` room for rescaling.
     """
 
     D: Floats2
@@ -80,7 +80,7 @@ def history(problem: Problem, span: float, spectrum: tuple[Floats, Floats], cost
             growth=growth_table(),
             omega=np.ascontiguousarray(spectrum[0], dtype=float),
             decay=np.ascontiguousarray(spectrum[1], dtype=float),
-            over=np.zeros(problem.n_c),
+            over=np.zeros(problem.n_c + 1),
             U=np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
             E=np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
             column=np.zeros(8),

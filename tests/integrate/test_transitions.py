@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -214,3 +215,25 @@ def test_4_event_times_follow_the_tolerance(method, ratio):
     assert errors[1] < 1e-6
     assert errors[2] < 1e-10
     assert errors[2] < max(errors[0], 1e-9) * 1e-2
+
+
+@pytest.mark.parametrize("phase", [0.55, 0.75, 0.8])
+@pytest.mark.parametrize("method", ["bdf", "radau"])
+def test_a_short_excess_of_the_load_between_two_steps_is_seen(method, phase):
+    """Some 5 ms above mu_s N of a load that was just below it at the peaks before; mu_s is 20 mu_k."""
+
+    def load(t):
+        return 2.0 * (1.0 + 2e-5) * np.sin(1.7 * t - 2.0 - phase) * (1.0 - 0.5 * np.exp(-t))
+
+    body = fm.Body("m", mass=1.0)
+    pull = 2.0 * (1.0 + 2e-5) * sympy.sin(1.7 * fm.t - 2.0 - phase) * (1 - sympy.exp(-fm.t) / 2)
+    law = fm.laws.Coulomb(mu_s=2.0, mu_k=0.1)
+    scene = fm.Scene(
+        "load", [body, fm.Force("pull", body, axis="x", value=pull), fm.Contact("c", body, law=law, normal_force=1.0)]
+    )
+    t = np.linspace(0.0, 12.0, 240001)
+    above = int(np.argmax(np.abs(load(t)) > 2.0))
+    first = brentq(lambda at: abs(load(at)) - 2.0, t[above - 1], t[above], xtol=1e-14)
+    sol = fm.simulate(scene, t_end=12.0, rtol=1e-6, method=method)
+    assert sol.events[0].kind == "slip"
+    assert sol.events[0].t == pytest.approx(first, abs=1e-5)
