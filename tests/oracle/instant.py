@@ -118,6 +118,8 @@ def consistent(
     """Forces with exactly these contacts slipping, or None."""
     if not slips:
         return stuck(D, b, static, rows, tiny)
+    if not can_move(D, rows, slips):
+        return None
     radii = static.copy()
     radii[list(slips)] = slipping[list(slips)]
     F = convex(D, b, radii, rows)
@@ -133,6 +135,16 @@ def consistent(
         elif rate > tiny * 100 or length > radii[i] * (1.0 + 1e-10):
             return None
     return F
+
+
+def can_move(D: np.ndarray, rows: list[slice], slips: tuple[int, ...]) -> bool:
+    """Whether each of these contacts can slip at all while the others stick (round a loop one alone cannot)."""
+    held = [j for i, s in enumerate(rows) if i not in slips for j in range(s.start, s.stop)]
+    if not held:
+        return True
+    P = np.linalg.pinv(D[np.ix_(held, held)], rcond=1e-11, hermitian=True)
+    free = D - D[:, held] @ P @ D[held]
+    return all(free[j, j] > 1e-9 * D[j, j] for i in slips for j in range(rows[i].start, rows[i].stop))
 
 
 def polished(D: np.ndarray, b: np.ndarray, F: np.ndarray, rows: list[slice], slips: tuple[int, ...]) -> np.ndarray:

@@ -43,13 +43,17 @@ class Field:
 
     def speeds(self, t: float, v: np.ndarray) -> np.ndarray:
         """Relative velocities of all contacts."""
-        slide = [np.broadcast_to(np.asarray(c.slide(t), dtype=float), (c.d,)) for c in self.contacts]
-        return self.W.T @ v - np.concatenate(slide) if slide else np.zeros(0)
+        g = self.W.T @ v
+        for c, s in zip(self.contacts, self.rows, strict=True):
+            g[s] -= c.slide(t)
+        return g
 
     def slide_rates(self, t: float) -> np.ndarray:
         """Rates of the prescribed part."""
-        rates = [np.broadcast_to(np.asarray(c.slide_rate(t), dtype=float), (c.d,)) for c in self.contacts]
-        return np.concatenate(rates) if rates else np.zeros(0)
+        rates = np.zeros(self.W.shape[1])
+        for c, s in zip(self.contacts, self.rows, strict=True):
+            rates[s] = c.slide_rate(t)
+        return rates
 
     def given(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Generalised forces other than friction."""

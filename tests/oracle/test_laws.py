@@ -33,7 +33,7 @@ def failures(name, situation):
     true = said(name, situation)
     assert not true.marginal
     verdicts = {method: judge(true, method) for method in METHODS if (name, situation, method) not in CELLS}
-    assert verdicts.get("auto") is None or verdicts["auto"].kind != "refused"
+    assert "auto" not in verdicts or verdicts["auto"].kind != "refused"
     return {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD}
 
 

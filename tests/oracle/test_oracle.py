@@ -135,3 +135,26 @@ def test_a_dry_pin_is_loaded_by_its_own_reaction():
     expected = -1.3 * 9.81 * half * np.sin(angle) - 0.6 * 0.05 * np.hypot(x, y) * np.sign(rate)
     np.testing.assert_allclose((0.1 + 1.3 * half**2) * a, expected, atol=1e-7)
     assert {event.kind for event in found.events} == {"reversal"}
+
+
+def test_round_a_loop_none_slips_alone():
+    """The first block on the ground (0.6, 0.4) and on the second (0.3 throughout), that one on the ground (0.5, 0.5).
+
+    Load on the first: 0.9 holds (ground and neighbour at their limits), then it slides against 0.7, the second stays.
+    """
+    mu = ((0.6, 0.4), (0.5, 0.5), (0.3, 0.3))
+    W = (np.array([[1.0], [0.0]]), np.array([[0.0], [1.0]]), np.array([[1.0], [-1.0]]))
+    contacts = tuple(
+        Contact(name=f"c{i}", W=w, N=constant(1.0), mu=constant(k), mu_s=constant(s))
+        for i, (w, (s, k)) in enumerate(zip(W, mu, strict=True))
+    )
+    scene = Problem(
+        M=np.eye(2), K=np.zeros((2, 2)), C=np.zeros((2, 2)), q=np.zeros(2), v=np.zeros(2), contacts=contacts,
+        load=lambda t: np.array([t, 0.0]), t_end=2.0,
+    )  # fmt: skip
+    found = solve(scene)
+    assert [(e.contact, e.kind, pytest.approx(e.t, abs=1e-9)) for e in found.events] == [
+        ("c0", "slip", 0.9), ("c2", "slip", 0.9)
+    ]  # fmt: skip
+    end = found(np.array([2.0]))[:, 0]
+    np.testing.assert_allclose(end[2:], [0.5 * (4.0 - 0.81) - 0.7 * 1.1, 0.0], atol=1e-9)
