@@ -97,7 +97,9 @@ def complex_eigenvalues(
 
     Notes
     -----
-    A window of instability that lies wholly between two neighbouring values is not seen.
+    Critical values do not hang on that following: growing eigenvalues are counted, at the given values and so often
+    between them that they are counted at 48 places at least, and spans are halved until their ends differ by one
+    eigenvalue or one pair.  A window of instability narrower than that is not seen.
     """
     grid = checked_values("complex_eigenvalues", values)
     dofs: list[str] = []
@@ -126,8 +128,13 @@ def complex_eigenvalues(
         eigenvalues=eigenvalues[:, kept],
         shapes=_scaled(vectors[:, kept]),
         dofs=tuple(dofs),
-        critical=tuple(replace(c, mode=stands[c.mode]) for c in critical),
+        critical=tuple(replace(c, mode=stands[c.mode], kind=_kind(c, len(dofs))) for c in critical),
     )
+
+
+def _kind(crossing: Crossing, n: int) -> str:
+    """One degree of freedom does not flutter: its oscillation grows where friction falls with speed."""
+    return "self-excitation" if crossing.kind == "flutter" and n == 1 else crossing.kind
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -231,7 +231,7 @@ def _with_ends(scene: Any, owners: set[str], part: Any) -> Any:
     small = Scene("alone", [*bodies, part])
     for body in bodies:
         if isinstance(body, ModalBody):
-            small = small.replace(body.name, damping_ratios=0.0)
+            small = small.replace(body.name, damping_ratios=0.0, damping=None)
     return small
 
 

@@ -1,9 +1,9 @@
-"""Eigenvalues followed by continuity, and where they cross into instability."""
+"""Eigenvalues followed by continuity; where they cross into instability is found by counting."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -15,12 +15,16 @@ Complexes = NDArray[np.complex128]
 #: Eigenvalues (m,) and their vectors (m, m) by rows, at a value of the parameter.
 Pairs = tuple[Complexes, Complexes]
 Solve = Callable[[float], Pairs]
+#: A span of the parameter and the eigenpairs at its ends.
+Isolated = tuple[tuple[float, float], list[Pairs]]
 
 #: Growth below this share of the largest eigenvalue is round-off: undamped motion.
 NEUTRAL = 1e-7
 #: Least similarity (modal assurance criterion) by which two shapes count as the same, before a step is halved.
 SIMILAR = 0.6
 _HALVINGS = 6
+#: Eigenvalues are counted at this many values at least, between those that are given.
+PLACES = 48
 
 
 def eigenpairs(A: Floats) -> Pairs:
@@ -77,8 +81,9 @@ class Crossing:
     ----------
     value : float
         Critical value of the parameter.
-    kind : {"flutter", "divergence"}
-        Growing oscillation, or growth without one.
+    kind : {"flutter", "self-excitation", "divergence"}
+        Growing oscillation; that of a single degree of freedom, which takes friction that falls with speed (flutter
+        takes two); growth without one.
     frequency : float
         Angular frequency there; 0 for divergence.
     mode : int
@@ -95,23 +100,88 @@ class Crossing:
 
 
 def crossings(solve: Solve, values: Floats, found: list[Pairs]) -> list[Crossing]:
-    """Critical values between those given, to round-off, in rising order."""
+    """Critical values between those given, to round-off, in rising order.
+
+    Growing eigenvalues are counted, at the values and between them, and a span is halved until its ends differ by one
+    eigenvalue or one pair.  Nothing is followed: modes that meet, turn overdamped or change places do not matter.
+    """
     scale = max((float(np.abs(pairs[0]).max(initial=0.0)) for pairs in found), default=0.0)
     limit = NEUTRAL * scale
-    growth = np.array([pairs[0].real for pairs in found])
+    parts = max(1, -(-PLACES // max(1, len(values) - 1)))
     result = []
     for i in range(len(values) - 1):
-        for j in np.flatnonzero((growth[i] > limit) != (growth[i + 1] > limit)):
-            low, high = found[i][0][j], found[i + 1][0][j]
-            real = abs(low.imag) <= limit or abs(high.imag) <= limit
-            if not real and low.imag < 0.0:
-                continue  # the conjugate says the same
-            result.append(_crossing(solve, (float(values[i]), float(values[i + 1])), found[i : i + 2], int(j), limit))
+        at = np.linspace(values[i], values[i + 1], parts + 1).tolist()
+        inner = [_sorted(solve(value)) for value in at[1:-1]]
+        for low, high, *ends in zip(at[:-1], at[1:], [found[i], *inner], [*inner, found[i + 1]], strict=True):
+            for span, pairs in _isolated(solve, (low, high), list(ends), limit):
+                crossing = _crossing(solve, span, pairs, _changing(pairs, limit), limit)
+                result.append(replace(crossing, mode=_stands(crossing, found[i + crossing.unstable_above][0])))
     return sorted(_distinct(result), key=lambda c: c.value)
 
 
-def _crossing(solve: Solve, span: tuple[float, float], ends: list[Pairs], j: int, limit: float) -> Crossing:
-    below, above = (complex(pairs[0][j]) for pairs in ends)
+def _growing(pairs: Pairs, limit: float) -> int:
+    """Number of eigenvalues that grow."""
+    return int((pairs[0].real > limit).sum())
+
+
+def _isolated(solve: Solve, span: tuple[float, float], ends: list[Pairs], limit: float) -> list[Isolated]:
+    """Spans in which one eigenvalue or one conjugate pair begins or ceases to grow, and the eigenpairs at their ends.
+
+    A span is halved further until the eigenvalues at its ends are close enough for the pair to be told.
+    """
+    low, high = span
+    counts = [_growing(pairs, limit) for pairs in ends]
+    if counts[0] == counts[1]:
+        return []
+    change = abs(counts[1] - counts[0])
+    middle = 0.5 * (low + high)
+    narrow = middle in (low, high) or abs(high - low) <= 1e-13 * max(abs(low), abs(high))
+    if narrow or (change <= 2 and _one(ends, counts, limit)):
+        return [(span, ends)]
+    half = _sorted(solve(middle))
+    return [
+        *_isolated(solve, (low, middle), [ends[0], half], limit),
+        *_isolated(solve, (middle, high), [half, ends[1]], limit),
+    ]
+
+
+def _one(ends: list[Pairs], counts: list[int], limit: float) -> bool:
+    """Whether the change between two ends is that of one real eigenvalue, or of one pair whose frequency is told."""
+    single = abs(counts[1] - counts[0]) == 1
+    here = [_changed(pairs, counts) for pairs in ends]
+    real = [abs(value.imag) <= limit for value in here]
+    if single:
+        return all(real)
+    steady = abs(abs(here[0].imag) - abs(here[1].imag)) <= 0.02 * max(abs(value) for value in here)
+    return not any(real) and steady
+
+
+def _changed(pairs: Pairs, counts: list[int]) -> complex:
+    """The eigenvalue whose growth changes sign: the one after those that grow at both ends, upper one of a pair."""
+    order = np.argsort(-pairs[0].real, kind="stable")
+    kept = min(counts)
+    value = complex(pairs[0][order[kept]])
+    # of a pair in the upper half plane
+    return complex(value.real, abs(value.imag))
+
+
+def _changing(pairs: list[Pairs], limit: float) -> tuple[complex, complex]:
+    """The eigenvalue that changes, at both ends of an isolated span."""
+    counts = [_growing(end, limit) for end in pairs]
+    return _changed(pairs[0], counts), _changed(pairs[1], counts)
+
+
+def _stands(crossing: Crossing, eigenvalues: Complexes) -> int:
+    """Which mode of a list is nearest to what crosses, among those that grow if there are any."""
+    grows = eigenvalues.real > 0.0
+    off = np.abs(eigenvalues - 1j * crossing.frequency) + np.where(grows | ~grows.any(), 0.0, np.abs(eigenvalues).max())
+    return int(np.argmin(off))
+
+
+def _crossing(
+    solve: Solve, span: tuple[float, float], ends: list[Pairs], pair: tuple[complex, complex], limit: float
+) -> Crossing:
+    below, above = pair
     rises = above.real > limit
     quiet, loud = (below, above) if rises else (above, below)
     states = ends if rises else ends[::-1]
@@ -125,13 +195,14 @@ def _crossing(solve: Solve, span: tuple[float, float], ends: list[Pairs], j: int
     elif not meets:
         value, there = _root(solve, span, ((below, below), (above, above)), _growth)
     else:
-        calm = (complex(states[0][0][j]), complex(states[0][0][other]))
+        order = np.argsort(np.abs(states[0][0] - complex(0.0, loud.imag)))
+        calm = (complex(states[0][0][order[0]]), complex(states[0][0][order[1]]))
         pairs = (calm, (loud, partner)) if rises else ((loud, partner), calm)
         value, there = _root(solve, span, pairs, _split)
     frequency = abs(there.imag)
     kind = "divergence" if frequency <= np.sqrt(limit * max(abs(there), limit)) else "flutter"
     return Crossing(
-        value=value, kind=kind, frequency=0.0 if kind == "divergence" else frequency, mode=j, unstable_above=rises
+        value=value, kind=kind, frequency=0.0 if kind == "divergence" else frequency, mode=0, unstable_above=rises
     )
 
 

@@ -124,3 +124,20 @@ def test_islands_and_what_was_left_out():
     with pytest.raises(fm.FricmbError, match=r"left two\.x out"):
         modal_energy(part)
     assert set(energy_ledger(part).damping) == {"cone"}
+
+
+def test_a_spring_on_a_body_with_a_damping_matrix_loses_nothing():
+    """The matrix is the body's own; what is tied to the body does not pay for it."""
+    plate = fm.ModalBody(
+        "plate", frequencies=[3.0, 5.0], damping_ratios=0.0, damping=[[0.1, 0.03], [0.03, 0.2]],
+        shapes={"tip": [[1.0, 0.5]]}, velocity={"mode1": 1.0},
+    )  # fmt: skip
+    scene = fm.Scene("plate", [plate, fm.Spring("k", plate.point("tip"), axis="x", stiffness=2.0)])
+    sol = fm.simulate(scene, t_end=10.0, rtol=1e-9)
+    ledger = energy_ledger(sol)
+    assert set(ledger.damping) == {"plate"}
+    # by hand: the integral of the rates over the matrix
+    t = np.linspace(0.0, 10.0, 20001)
+    v = sol(t)[2:]
+    power = np.einsum("it,ij,jt->t", v, np.array([[0.1, 0.03], [0.03, 0.2]]), v)
+    assert ledger.damping["plate"][-1] == pytest.approx(np.trapezoid(power, t), rel=1e-6)

@@ -268,3 +268,67 @@ def test_printed_is_a_table_of_motion_and_contacts():
     assert float(lines[1].split()[1]) == pytest.approx(steady.position("block.x"), rel=1e-5)
     assert lines[-1].split()[0] == "sole"
     assert len(repr(steady)) < 100
+
+
+def _two_masses():
+    """Two masses on a disc, each with its own contact, and the damping matrix of steady sliding at a speed."""
+    law = fm.laws.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.05)
+    disc = fm.Driven("disc", velocity={"x": 1.0})
+    a, b = (fm.Body(name, mass=1.0) for name in "ab")
+    return fm.Scene("two masses", [
+        disc, a, b,
+        fm.Spring("ka", a, axis="x", stiffness=100.0),
+        fm.Spring("kb", b, axis="x", stiffness=400.0),
+        fm.Spring("k", a, b, axis="x", stiffness=50.0),
+        fm.Damper("ca", a, axis="x", damping=0.2),
+        fm.Damper("cb", b, axis="x", damping=0.3),
+        fm.Contact("fa", a, disc, law=law, normal_force=20.0),
+        fm.Contact("fb", b, disc, law=law, normal_force=20.0),
+    ])  # fmt: skip
+
+
+def _two_masses_by_hand(speed):
+    slope = -20.0 * 0.2 * 2.0 * speed / 0.05**2 * np.exp(-((speed / 0.05) ** 2))
+    C = np.diag([0.2 + slope, 0.3 + slope])
+    K = np.array([[150.0, -50.0], [-50.0, 450.0]])
+    return np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [-K, -C]]))
+
+
+def _critical_by_hand():
+    """Speeds at which the number of growing eigenvalues changes, by bisection, and the frequency there."""
+    speeds = np.linspace(0.02, 3.0, 20001)
+    counts = [int((_two_masses_by_hand(v).real > 0.0).sum()) for v in speeds]
+    found = []
+    for i in np.flatnonzero(np.diff(counts)):
+        low, high = speeds[i], speeds[i + 1]
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if (_two_masses_by_hand(middle).real > 0.0).sum() == counts[i]:
+                low = middle
+            else:
+                high = middle
+        there = _two_masses_by_hand(low)
+        found.append((low, abs(there[np.argmin(np.abs(there.real))].imag)))
+    return found
+
+
+@pytest.mark.parametrize("count", [3, 7])
+def test_no_crossing_is_missed_over_a_coarse_grid(count):
+    """At low speed both pairs are overdamped and grow: no mode can be followed from there."""
+    found = fm.analysis.complex_eigenvalues(
+        _two_masses(), over="disc.velocity.x", values=np.linspace(0.02, 3.0, count)
+    )
+    wanted = _critical_by_hand()
+    assert len(wanted) == 2
+    assert [(c.value, c.frequency) for c in found.critical] == [pytest.approx(pair, rel=1e-9) for pair in wanted]
+    assert {c.kind for c in found.critical} == {"flutter"}
+    assert not any(c.unstable_above for c in found.critical)
+
+
+def test_one_degree_of_freedom_does_not_flutter():
+    scene = _two_masses()
+    kept = ("disc", "a", "ka", "ca", "fa")
+    alone = fm.Scene("one mass", [part for part in scene.parts if part.name in kept])
+    (critical,) = fm.analysis.complex_eigenvalues(alone, over="disc.velocity.x", values=[0.05, 1.0]).critical
+    assert critical.kind == "self-excitation"
+    assert critical.frequency == pytest.approx(10.0, rel=1e-9)
