@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -74,5 +75,5 @@ def holding(
     return force[:d], float(found.N[k][0])
 
 
-def _fields(moment: Moment) -> dict[str, object]:
+def _fields(moment: Moment) -> dict[str, Any]:
     return {name: value for name, value in vars(moment).items() if name != "_places"}

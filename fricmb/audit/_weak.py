@@ -144,7 +144,7 @@ class Weak:
         for last in [False] * _ROUNDS + [True]:
             whole, unsure, _ = self._integrals(low, high, None)
             share = 0.02 * allowed[:, owner]
-            cut = np.zeros(low.size, dtype=bool) if last else (unsure > share).any(axis=0)
+            cut: Any = np.zeros(low.size, dtype=bool) if last else (unsure > share).any(axis=0)
             if cut.sum() > _MOST:
                 cut[np.flatnonzero(cut)[_MOST:]] = False
             keep = ~cut
