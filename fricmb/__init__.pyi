@@ -9,6 +9,7 @@ from ._simulate import simulate as simulate
 from ._sweep import sweep as sweep
 from .errors import FricmbError as FricmbError
 from .errors import IntegrationError as IntegrationError
+from .errors import Interrupted as Interrupted
 from .errors import LawError as LawError
 from .errors import SceneError as SceneError
 from .integrate import integrators as integrators

@@ -49,6 +49,33 @@ class IntegrationError(FricmbError):
         return _integration_error, (str(self), self.t, self.reason, self.partial)
 
 
+class Interrupted(KeyboardInterrupt):
+    """A run that Ctrl-C has ended.
+
+    Attributes
+    ----------
+    t : float
+        Time that was reached.
+    reason : str
+        "interrupted".
+    partial : Solution or None
+        The run up to there.
+    """
+
+    def __init__(self, message: str, *, t: float, reason: str = "interrupted", partial: Any = None) -> None:
+        super().__init__(message)
+        self.t = t
+        self.reason = reason
+        self.partial = partial
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _interrupted, (str(self), self.t, self.reason, self.partial)
+
+
+def _interrupted(message: str, t: float, reason: str, partial: Any) -> Interrupted:
+    return Interrupted(message, t=t, reason=reason, partial=partial)
+
+
 def _integration_error(message: str, t: float, reason: str, partial: Any) -> IntegrationError:
     return IntegrationError(message, t=t, reason=reason, partial=partial)
 

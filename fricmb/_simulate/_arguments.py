@@ -11,6 +11,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate import Tolerance
+from fricmb.integrate._memory import available
 from fricmb.integrate._problem import Floats
 from fricmb.solution import times_inside
 
@@ -83,6 +84,25 @@ def floors(tolerance: Tolerance) -> tuple[float, ...] | None:
         return None
     alike = q.size > 0 and bool((q == q[0]).all() and (v == v[0]).all())
     return (float(q[0]), float(v[0])) if alike else (*q.tolist(), *v.tolist())
+
+
+def check_limit(seconds: Any) -> float | None:
+    """A limit on the time of a run."""
+    if seconds is None:
+        return None
+    return number("time_limit", seconds, "a positive number of seconds, or None", lambda x: x > 0.0)
+
+
+def check_room(numbers: int, span: Span) -> None:
+    """Whether the values at the times asked for find room in memory; ``numbers``: of each time."""
+    if span.t_eval is None:
+        return
+    wanted, there = 8.0 * numbers * span.t_eval.size, available()
+    if there is not None and wanted > there:
+        raise SceneError(
+            f"t_eval: {span.t_eval.size} times of {numbers} numbers take {wanted / 1e9:.3g} GB, and {there / 1e9:.3g} "
+            "GB of memory are left; expected fewer times, or on_chunk="
+        )
 
 
 def check_step(step: Any, adaptive: bool, method: str, length: float) -> float | None:

@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 from fricmb._simulate._arguments import Span
+from fricmb._simulate._blame import blame
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
@@ -65,14 +66,16 @@ def make_solution(
         )
         return sol
 
-    if trajectory.failure is None:
+    failure = trajectory.failure or not_there(trajectory, span, rtol is None)
+    if failure is None:
         try:
             return solution(None, span.t_eval)
         except _Unsound as unsound:
             t, reason, end = unsound.t, unsound.reason, unsound.end
     else:
         t = float(trajectory.t[-1])
-        reason, end = trajectory.failure, t
+        reason, end = failure, t
+    reason = f"{reason}{blame(mechanics, trajectory, t)}"
     partial = None
     while partial is None and end is not None:
         times = None if span.t_eval is None else span.t_eval[span.t_eval <= end]
@@ -81,6 +84,14 @@ def make_solution(
         except _Unsound as unsound:
             end = unsound.end if unsound.end is not None and unsound.end < end else None
     raise IntegrationError(f"{method} stopped at t = {t:.10g}: {reason}", t=t, reason=reason, partial=partial)
+
+
+def not_there(trajectory: Trajectory, span: Span, fixed: bool) -> str | None:
+    """That a run which reports no failure has not reached its end, or None; a fixed step may miss it by a little."""
+    missing = span.t_end - float(trajectory.t[-1])
+    if missing <= (1e-2 if fixed else 1e-9) * (span.t_end - span.t_start):
+        return None
+    return "the run ended before its time, without a reason"
 
 
 class _Unsound(Exception):

@@ -32,6 +32,7 @@ def simulate(
     dense: bool | None = None,
     chunk: float | None = None,
     on_chunk: Callable[[Solution], object] | None = None,
+    time_limit: float | None = None,
 ) -> Solution:
     """Simulate a scene.
 
@@ -70,6 +71,9 @@ def simulate(
     on_chunk : callable, optional
         Called with a Solution of each part of the run, to be written to disk, say; its energies count from that part's
         start.  Nothing of it is kept: memory does not grow with the length of the run.
+    time_limit : float, optional
+        Seconds of wall time, from the call on, after which the run ends with an IntegrationError that holds what was
+        computed.  Compiling, which happens once on a machine, counts but is not cut short.
 
     Returns
     -------
@@ -81,19 +85,33 @@ def simulate(
     SceneError
         For an argument that cannot be; names the argument, the value and what is accepted.
     IntegrationError
-        For a run that could not go on; ``partial`` is the solution up to there.
+        For a run that could not go on, or took longer than ``time_limit`` or more memory than there is; ``partial`` is
+        the solution up to there.
+    Interrupted
+        After Ctrl-C (a KeyboardInterrupt); ``partial`` is the solution up to there.
     """
     begin = time.perf_counter()
     from fricmb._simulate._watch import CompileWatch
 
-    with CompileWatch() as watch:
-        from fricmb._simulate._arguments import check_span, check_step, check_tolerance, floors, number
+    with CompileWatch() as compiling:
+        from fricmb._simulate._arguments import (
+            check_limit,
+            check_room,
+            check_span,
+            check_step,
+            check_tolerance,
+            floors,
+            number,
+        )
+        from fricmb._simulate._ended import run_watched
         from fricmb._simulate._islands import find_runs
         from fricmb._simulate._keep import check_keep, run
         from fricmb._simulate._mechanics import prepare
         from fricmb._simulate._progress import progress_bar
         from fricmb._simulate._result import make_solution
         from fricmb._simulate._start import find_start
+        from fricmb.integrate._memory import Footprint
+        from fricmb.integrate._stop import Watch, watching
 
         mechanics = prepare(scene, parameters, observe)
         start, mechanics = find_start(mechanics, initial, number("t_start", t_start, "a finite time"))
@@ -102,13 +120,19 @@ def simulate(
         chosen = find_runs(mechanics, method, start, span, tolerance.rtol)
         fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
         keep = check_keep(dense, chunk, on_chunk, span)
+        if on_chunk is None:
+            check_room(2 * start.q.size + len(mechanics.names.contacts) + 3, span)
+        watch = Watch(check_limit(time_limit), Footprint(), since=begin)
 
         accuracy = rtol if chosen.adaptive else None
 
         def finish(trajectory: Trajectory, part: Span) -> Solution:
-            how = (chosen.name, chosen.why, begin, watch.seconds, accuracy, floors(tolerance))
-            return make_solution(chosen.mechanics, trajectory, part, *how)
+            how = (chosen.name, chosen.why, begin, compiling.seconds, accuracy, floors(tolerance))
+            with watching(None):
+                return make_solution(chosen.mechanics, trajectory, part, *how)
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}
-            return run(keep, chosen.integrator, chosen.problem, start, span, finish, **options)
+            return run_watched(
+                watch, lambda: run(keep, chosen.integrator, chosen.problem, start, span, finish, **options)
+            )

@@ -158,6 +158,7 @@ def _add_run(commands: _Commands) -> None:
     sub.add_argument("--rtol", type=float, default=1e-6, metavar="R", help="relative tolerance (default: %(default)g)")
     sub.add_argument("--method", default="auto", metavar="NAME", help="integrator (default: %(default)s)")
     sub.add_argument("--step", type=float, metavar="H", help="step of a fixed-step method")
+    sub.add_argument("--time-limit", type=float, metavar="S", help="seconds after which the run ends, with status 3")
     sub.add_argument(
         "--points",
         type=int,

@@ -17,11 +17,11 @@ from fricmb.cli._files import write_all
 from fricmb.cli._load import Loaded, load
 from fricmb.cli._output import finite, print_aside, stdout_to_stderr
 from fricmb.cli._summary import as_json, as_text
-from fricmb.errors import IntegrationError, SceneError
+from fricmb.errors import IntegrationError, Interrupted, SceneError
 
 
 def run(options: argparse.Namespace) -> int:
-    """Simulate, write, tell; 3 with a partial result if the integration fails.
+    """Simulate, write, tell; 3 with a partial result if the integration fails, 130 after Ctrl-C.
 
     With ``--json`` whatever else is printed, by a model say, goes to stderr.
     """
@@ -34,7 +34,7 @@ def _run(options: argparse.Namespace) -> int:
     t_end = _t_end(options, loaded)
     folder = options.out or Path("fricmb-out") / loaded.label
     folder.mkdir(parents=True, exist_ok=True)
-    failure = None
+    failure: IntegrationError | Interrupted | None = None
     try:
         sol = fm.simulate(
             loaded.scene,
@@ -42,10 +42,11 @@ def _run(options: argparse.Namespace) -> int:
             rtol=options.rtol,
             method=options.method,
             step=options.step,
+            time_limit=options.time_limit,
             t_eval=_grid(options.points, t_end),
             progress=sys.stderr.isatty() and not (options.json or options.quiet),
         )
-    except IntegrationError as error:
+    except (IntegrationError, Interrupted) as error:
         if error.partial is None:
             raise
         sol, failure = error.partial, error
@@ -64,7 +65,7 @@ def _run(options: argparse.Namespace) -> int:
         print(f"written      {folder}{'/' if folder.name else ''}: {', '.join(written)}")
     if failure is not None:
         print(f"fricmb: {' '.join(str(failure).split())}; what was computed until then is in {folder}", file=sys.stderr)
-        return 3
+        return 130 if isinstance(failure, Interrupted) else 3
     return 0
 
 

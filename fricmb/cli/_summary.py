@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import fricmb as fm
-from fricmb.errors import IntegrationError
+from fricmb.errors import IntegrationError, Interrupted
 
 
 def as_text(sol: fm.Solution) -> str:
@@ -19,7 +19,7 @@ def as_text(sol: fm.Solution) -> str:
     return "\n".join(lines)
 
 
-def as_json(sol: fm.Solution, failure: IntegrationError | None = None) -> dict[str, Any]:
+def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = None) -> dict[str, Any]:
     """Everything the text says, as data; ``failure`` has the time and the reason where a run stopped early."""
     energy = sol.energy
     return {

@@ -23,6 +23,7 @@ from fricmb.integrate._onestep import Accuracy, OneStep
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import LAW_SMOOTH, SLIP, Floats, Ints, Problem, Start
 from fricmb.integrate._rows import Rows
+from fricmb.integrate._stop import stopped
 from fricmb.integrate._tableau import one_stage, radau
 from fricmb.integrate._trajectory import Trajectory
 from fricmb.integrate._transitions import Before, slip_rate
@@ -64,7 +65,7 @@ def drive_bdf(
     """Step from y until the end of the span, or until the room for rows is used up."""
     stop = set_window(clock, s, y.t[0])
     while True:
-        if crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
+        if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
         left = stop - y.t[0]
         if reached(y.t[0], stop):

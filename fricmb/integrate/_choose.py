@@ -13,6 +13,7 @@ from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._pack import packed_of
 from fricmb.integrate._problem import Floats, Problem, Start
 from fricmb.integrate._radau import Radau
+from fricmb.integrate._stop import ended
 from fricmb.integrate._trajectory import Trajectory
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.collocation._prepare import is_single
@@ -48,7 +49,7 @@ class Guard(Integrator):
         """See :class:`Integrator`."""
         options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
         run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # that of the class behind
-        if run.failure is None:
+        if run.failure is None or ended() is not None:
             return run
         other = self.reserve()
         why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"

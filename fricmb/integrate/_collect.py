@@ -23,6 +23,7 @@ from fricmb.integrate._room import room
 from fricmb.integrate._rows import rows, widths
 from fricmb.integrate._stages import stages
 from fricmb.integrate._start import begin, natural_scales
+from fricmb.integrate._stop import ended, watched
 from fricmb.integrate._tableau import Tableau
 from fricmb.integrate._trajectory import Counters, Transitions
 from fricmb.integrate._transitions import Before
@@ -86,7 +87,8 @@ class Collector:
         given = self.start.mode is not None
         # a function of time that switches right at the start has switched
         self.scratch.window[0] = self.start.t + 4e-16 * abs(self.start.t) + 1e-300
-        code = begin(self.packed, self.scratch, self.y, self.rest, self.old, given, self.rows, self.address)
+        rooms = (self.packed, self.scratch, self.y, self.rest, self.old)
+        code = watched(begin, *rooms, given, self.rows, self.address)
         return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]
 
     def is_full(self, memory: float | None) -> bool:
@@ -116,7 +118,10 @@ class Collector:
             self.collect()
         values, kind, mode, event = (np.concatenate(x) for x in zip(*self._chunks, strict=True))
         finite = np.isfinite(values).all(axis=1)
-        keep = len(finite) if finite.all() else int(np.argmin(finite))
+        keep = len(finite)
+        if not finite.all():
+            keep = int(np.argmin(finite))
+            failure = failure or FAILURES[FAIL_INFINITE]
         steps, rejected, rhs, jac, lu = (int(x) for x in self.counts[:5])
         counters = Counters(n_steps=steps, n_rejected=rejected, n_rhs=rhs, n_jac=jac, n_lu=lu)
         y = self.y
@@ -151,12 +156,14 @@ def run_loop(
     if code == DONE:
         clock = clock_of(run)
         code = FULL
-        while code == FULL and not run.is_full(memory):
-            code = step(clock)
+        while code == FULL and not run.is_full(memory) and ended() is None:
+            code = watched(step, clock)
             run.collect()
             if progress is not None:
                 progress(float(run.y.t[0]))
-    return run.trajectory(None if code in (DONE, FULL) else FAILURES[code])
+    if code == DONE:
+        return run.trajectory(None)
+    return run.trajectory(ended() or (None if code == FULL else FAILURES[code]))
 
 
 def first_step(run: Collector) -> float:

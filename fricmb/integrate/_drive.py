@@ -20,6 +20,7 @@ from fricmb.integrate._onestep import Accuracy, OneStep
 from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import Ints
 from fricmb.integrate._rows import Rows
+from fricmb.integrate._stop import stopped
 from fricmb.integrate._transitions import EPS, Before, transition
 
 
@@ -86,7 +87,7 @@ def drive(
     """Step from y until the end of the span, or until the room for rows is used up."""
     stop = set_window(clock, s, y.t[0])
     while True:
-        if crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
+        if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
         if reached(y.t[0], stop):
             code = arrive(packed, s, y, r, old, out, clock, stop, address)

@@ -96,7 +96,8 @@ def kinematics(packed: Packed, s: Scratch, y: State) -> None:
             rate += ports.Wu[a, j] * s.ddu[j]
         y.wd[a] = rate
     for k in range(y.mode.shape[0]):
-        y.N[k] = 0.0 if y.mode[k] == OPEN else max(0.0, normal_force(ports, packed.normals, k, s))
+        load = 0.0 if y.mode[k] == OPEN else normal_force(ports, packed.normals, k, s)
+        y.N[k] = 0.0 if load < 0.0 else load  # what is no number stays none
 
 
 @kernel

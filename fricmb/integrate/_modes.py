@@ -33,6 +33,7 @@ from fricmb.integrate._ports import solve_ports
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
 from fricmb.integrate._release import release
 from fricmb.integrate._room import block, room
+from fricmb.integrate._stop import stopped
 
 #: Relative excess over the cone that still counts as on it: round-off of D^-1 a.
 MARGIN = 1e-11
@@ -103,7 +104,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         elif r.part[k] == 2:
             r.mode[k] = SLIP
     for trial in range(6 * nc + 10):
-        if not try_modes(y, r, s, address):
+        if stopped() or not try_modes(y, r, s, address):
             break
         worst, back, excess = -1, -1, 1.0 + MARGIN
         for k in range(nc):

@@ -120,6 +120,7 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
             from_stage(packed, s, st, j)
             for k in range(y.mode.shape[0]):
                 one.N[j, k] = normal_force(packed.ports, packed.normals, k, s)
+                found = found and abs(one.N[j, k]) < np.inf
     return found
 
 

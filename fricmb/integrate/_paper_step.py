@@ -33,6 +33,7 @@ from fricmb.integrate._problem import (
 from fricmb.integrate._room import block
 from fricmb.integrate._rows import AFTER, BEFORE, STEP, Rows, record, record_event
 from fricmb.integrate._stages import solve_stages
+from fricmb.integrate._stop import stopped
 from fricmb.integrate._transitions import copy_state, turned
 
 
@@ -156,7 +157,7 @@ def drive_paper(
     """Step from y to ``t_end``, or until the room for rows is used up."""
     n = y.q.shape[0]
     while True:
-        if crowded(out, 2, y.mode.shape[0]):
+        if stopped() or crowded(out, 2, y.mode.shape[0]):
             return FULL
         left = t_end - y.t[0]
         if left <= 1e-12 * max(abs(t_end), abs(y.t[0])):
@@ -166,7 +167,7 @@ def drive_paper(
             last.trial[k] = SLIP if packed.ports.law[k] == LAW_SMOOTH else (OPEN if y.mode[k] == OPEN else STICK)
         settled = False
         for _ in range(3 * y.mode.shape[0] + 3):
-            if not solve_with(packed, s, y, one, acc, last, last.trial, step, address):
+            if stopped() or not solve_with(packed, s, y, one, acc, last, last.trial, step, address):
                 return FAIL_STEP
             if not revise(packed, s, y, one, last.trial):
                 settled = True

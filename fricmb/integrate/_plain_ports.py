@@ -16,6 +16,7 @@ from fricmb.integrate._port_state import PortState
 from fricmb.integrate._ports import some_stick
 from fricmb.integrate._problem import OPEN, SLIP, STICK, Codes, Floats, Floats2, Ints
 from fricmb.integrate._room import block
+from fricmb.integrate._stop import stopped
 
 
 @kernel
@@ -163,6 +164,8 @@ def plain_ports(
     done = -1
     close = False
     for iteration in range(25):
+        if stopped():
+            return -1
         plain_outputs(ports, w, mode)
         if size == 0:
             done = 1

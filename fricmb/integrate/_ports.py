@@ -26,6 +26,7 @@ from fricmb.integrate._problem import (
     Ints,
 )
 from fricmb.integrate._room import block
+from fricmb.integrate._stop import stopped
 
 #: Angle to which directions of slip are found: close to landing they decide, and no velocity shows their error.
 DIRECTION = 1e-9
@@ -290,6 +291,8 @@ def solve_ports(
     close = not some_stick(mode)
     last, last_turn = np.inf, np.inf
     for iteration in range(25):
+        if stopped():
+            return -1
         port_residual(ports, w, hA, mode)
         if renew:
             port_jacobian(ports, w, hA, mode)

@@ -19,6 +19,7 @@ from fricmb.integrate._instant import State, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._pack import Ports
 from fricmb.integrate._problem import OPEN, SLIP, STICK, Codes, Floats
+from fricmb.integrate._stop import stopped
 
 #: Gradients taken at most, residual at which they end and at which they will do, in parts of the largest force.
 MOST, FINE, COARSE = 20000, 1e-13, 1e-7
@@ -114,6 +115,8 @@ def least_energy(ports: Ports, y: State, part: Codes, limit: Floats, scale: Floa
     ahead, last, step = F.copy(), F.copy(), np.zeros(m)
     speed = 1.0
     for _ in range(MOST):
+        if stopped():
+            return False
         for a in range(m):
             step[a] = scale[a] / steep * relative_acceleration(ports, y, ahead, a)
         for a in range(m):

@@ -214,10 +214,13 @@ def solve_stages(
         last = change
         if iteration == 11:
             return -1
+    sound = 0.0
     for i in range(n_s):
         for a in range(n):
             value = st.psi_q[a]
             for j in range(n_s):
                 value += st.hA[i, j] * st.V[j, a]
             st.Q[i, a] = value
-    return iteration + 1
+            sound += 0.0 * value
+    # comparisons pass over what is no number
+    return iteration + 1 if sound == 0.0 else -1

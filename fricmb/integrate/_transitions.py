@@ -30,6 +30,7 @@ from fricmb.integrate._problem import (
 from fricmb.integrate._room import block
 from fricmb.integrate._rows import AFTER, BEFORE, Rows, record, record_event
 from fricmb.integrate._step_error import step_error
+from fricmb.integrate._stop import stopped
 from fricmb.integrate._triggers import find_trigger, margin
 
 EPS = 2.220446049250313e-16
@@ -138,6 +139,8 @@ def locate(
     same = 0
     failures = 0
     for trial in range(60):
+        if stopped():
+            return -1
         if hi <= 4.0 * t_unit or step <= 2.0 * t_unit:
             copy_state(y, end)
             return k

@@ -175,8 +175,8 @@ class Rod(PlaneJoint):
 class Gear(Joint):
     """Angles in a fixed ratio: ``angle of a - start = -ratio (angle of b - start)``.  Reaction: torque on a.
 
-    Only torques are passed on.  The force between the teeth is not there, nor the load that it brings to the bearings of
-    both wheels: friction in their pins does not see it.
+    Only torques are passed on.  The force between the teeth is not there, nor the load that it brings to the bearings
+    of both wheels: friction in their pins does not see it.
 
     Parameters
     ----------

@@ -14,6 +14,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._pack import packed_of
 from fricmb.integrate._problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
+from fricmb.integrate._stop import ended, watched
 from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
 from fricmb.integrate.collocation._general_prepare import free_blocks
 from fricmb.integrate.collocation._general_run import run_general
@@ -177,13 +178,13 @@ def _run_single(
     _set_state(problem, run, start, tolerance)
     pause = (t_end - start.t) / 100.0 if progress is not None else np.inf
     while True:
-        code = run_single(run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.sx[0] + pause)
-        if code == FULL:
+        code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.sx[0] + pause)
+        if code == FULL and ended() is None:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
             if memory is not None and 2 * sum(x.nbytes for x in rows) > memory:
                 break
             run = held[0] = with_rows(run, Rows(*[np.concatenate([x, np.zeros_like(x)]) for x in rows]))
-        elif code == PAUSE and progress is not None:
+        elif code == PAUSE and progress is not None and ended() is None:
             progress(float(run.sx[0]))
         else:
             break
@@ -197,6 +198,6 @@ def _run_single(
         t=float(run.sx[0] + run.sx[1]), q=run.sd[0] + run.sd[1], v=run.sd[2].copy(), z=np.zeros(0),
         mode=np.array([mode], np.int8), direction=run.sm[1].copy(),
     )  # fmt: skip
-    failure = None if code in (DONE, FULL) else _FAILURES[code]
+    failure = None if code == DONE else ended() or _FAILURES.get(code)
     rows = Rows(run.steps[:n_rows].copy(), run.kinds[:n_rows].copy(), run.phases[:phases].copy(), events)
     return SingleRun(problem, s, rows, transitions, counters, end, failure)

@@ -23,6 +23,7 @@ from fricmb.integrate._pack import Packed
 from fricmb.integrate._ports import solve_ports
 from fricmb.integrate._problem import OPEN, Floats3, Ints
 from fricmb.integrate._room import block
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.collocation._general_blocks import all_outputs
 
 
@@ -225,6 +226,8 @@ def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     first_inputs(packed, s, y, one)
     last = np.inf
     for iteration in range(15):
+        if stopped():
+            return False
         all_outputs(ex, slot)
         evaluate_elements(packed, s, one, m, mi - m)
         evaluate_normals(packed, s, one, first_normal)

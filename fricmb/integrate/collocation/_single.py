@@ -7,6 +7,7 @@ import math
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._problem import EVENT_SLIP, SLIP, STICK, Ints
 from fricmb.integrate._room import block
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.collocation._fundamental import fundamental, two_sum
 from fricmb.integrate.collocation._landing import arrive, first_stop, land, nearly_stopped
 from fricmb.integrate.collocation._layout import (
@@ -107,7 +108,7 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
     fresh = True
     for a in range(m):
         fresh = fresh and run.sm[G, a] == 0.0
-    while taken < REBASE:
+    while taken < REBASE and not stopped():
         left = (t_end - run.sx[TIME]) - run.sx[TIME_LOW]
         if left <= 0.0:
             break
@@ -247,6 +248,8 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float)
             return FULL
         if run.sx[TIME] > t_pause:
             return PAUSE
+        if stopped():
+            return FULL
         t = run.sx[TIME]
         low = run.sx[TIME_LOW]
         if run.si[MODE] == STICK:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate._kernel import kernel
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.collocation._fundamental import fundamental
 from fricmb.integrate.collocation._layout import DAMP, FREE, LINES, MU_S, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
 from fricmb.integrate.collocation._run import Run
@@ -91,6 +92,8 @@ def release_time(run: Run, longest: float) -> float:
             cap = min(cap, abs(run.bx[A, j] / run.bx[K, j]) + brief)
     t = 0.0
     for _ in range(100000000):
+        if stopped():
+            break
         bound = stuck_force(run, t, b, cap)
         F = 0.0
         FdF = 0.0

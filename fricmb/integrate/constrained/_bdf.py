@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._problem import Codes
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.constrained._accept import Watch
 from fricmb.integrate.constrained._advance import arrive, is_there, radau_step
 from fricmb.integrate.constrained._change import next_stop, set_window
@@ -61,7 +62,7 @@ def drive_bdf(
     """Step from y until the end of the span, or until the room for steps is used up."""
     set_window(k, c, y.t[0])
     while True:
-        if crowded(rec, y.mode.shape[0]):
+        if stopped() or crowded(rec, y.mode.shape[0]):
             return FULL
         stop = next_stop(c, y.t[0])
         if is_there(y, stop):

@@ -10,6 +10,7 @@ import numpy as np
 from fricmb.integrate._integrator import Tolerance
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._problem import Floats, Problem, Start
+from fricmb.integrate._stop import ended, watched
 from fricmb.integrate._tableau import radau
 from fricmb.integrate._trajectory import Counters, Transitions
 from fricmb.integrate.constrained._accept import watch_of
@@ -78,7 +79,7 @@ def run_mechanism(
     chunks: list[tuple[Any, ...]] = []
     rooms = (mech, k, w, y, end, before, st, control, out, record, part)
     go_on = _bdf_loop(problem, start, t_end, stages, rooms) if multistep else lambda: drive(*rooms)
-    code = begin(mech, k, w, y, control, out, record, part, start.mode is not None, small)
+    code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
     if code == DONE:
         out.size[0] = max(float(out.size[0]), reach)
         load = _load(m, y)
@@ -88,8 +89,8 @@ def run_mechanism(
             out.size[0] = max(float(out.size[0]), to_come)
         control.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
         code = FULL
-    while code == FULL:
-        code = go_on()
+    while code == FULL and ended() is None:
+        code = watched(go_on)
         chunks.append(_taken(record))
         if progress is not None:
             progress(float(y.t[0]))
@@ -98,7 +99,7 @@ def run_mechanism(
     chunks.append(_taken(record))
     steps = [np.concatenate(x) for x in zip(*chunks, strict=True)]
     span, values, force, mode, opened, after, event = steps
-    failure = None if code == DONE else failure_text(code, problem, y, out)
+    failure = None if code == DONE else ended() or failure_text(code, problem, y, out)
     notes = (*notes, *held_notes(problem, span[:, 0], mode, opened))
     done, rejected, rhs, jac, lu = (int(x) for x in control.counts[:5])
     final = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())

@@ -17,6 +17,7 @@ import numpy as np
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import Codes, Floats, Floats2, Ints, Pivots, Problem
 from fricmb.integrate._room import block, room
+from fricmb.integrate._stop import stopped
 from fricmb.integrate._tableau import Complexes2, Tableau
 from fricmb.integrate.constrained._band import (
     factor_complex,
@@ -203,6 +204,8 @@ def iterate_stages(
     last = np.inf
     st.found[0] = 1.0
     for iteration in range(ITERATIONS):
+        if stopped():
+            return 0
         for i in range(s):
             stage_residual(mech, k, y, st, h, i, mech.address)
         if st.turns.near[0] > 0:
@@ -210,8 +213,10 @@ def iterate_stages(
         newton_change(mech, st, mech.address)
         if st.turns.near[0] > 0:
             correct_turns(mech, st.turns, st.R)
-        change = 0.0
+        change, sound = 0.0, 0.0
         for i in range(s):
+            for a in range(st.R.shape[1]):
+                sound += 0.0 * st.R[i, a]
             for a in range(n):
                 st.V[i, a] -= st.R[i, a]
                 change = max(change, abs(st.R[i, a]) / st.scale[a])
@@ -221,7 +226,7 @@ def iterate_stages(
                 st.F[i, a] -= st.R[i, n + m + a]
             for a in range(nz):
                 st.Z[i, a] -= st.R[i, n + m + n_c + a]
-        if not change < 1e30:
+        if not (change < 1e30 and sound == 0.0):
             return 0
         rate = change / last if iteration > 0 else 1.0
         if iteration > 0:

@@ -11,6 +11,7 @@ from fricmb.integrate._field import gather
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
 from fricmb.integrate._room import block, room
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.constrained._band import factor_real, solve_real_band
 from fricmb.integrate.constrained._field import bend, call_joint, forces, friction_at, move, pull_back
 from fricmb.integrate.constrained._friction import add_friction, friction_residual
@@ -241,6 +242,8 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
     # where everything comes to rest, round-off is that of what has been
     size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[0])
     for iteration in range(ITERATIONS):
+        if stopped():
+            return False
         instant_residual(mech, k, w, y, mech.address)
         for i in range(nz):
             w.r[n + m + n_c + i] = 0.0
@@ -248,6 +251,11 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
             return False
         solve_instant(mech, w)
         change, size, inertia = 0.0, size0, 0.0
+        sound = 0.0
+        for i in range(n + m + n_c):
+            sound += 0.0 * w.r[i]
+        if sound != 0.0:
+            return False
         for i in range(n):
             y.a[i] -= w.r[i]
             inertia = max(inertia, mech.mass[i] * abs(w.r[i]))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate._problem import Floats
+from fricmb.integrate._stop import stopped, watched
 from fricmb.integrate.dae import _differences as D
 from fricmb.integrate.dae import _layout as L
 from fricmb.integrate.dae._compile import kernel
@@ -63,6 +64,8 @@ def run(
     t = real[L.T_NEW : L.T_NEW + 1]
     y, yp, delta = rows[L.Y], rows[L.YP], rows[L.DELTA]
     while True:
+        if stopped():
+            return L.FULL
         request = advance(whole, real, rows, rtol, atol, served)
         if request < 0:
             return request
@@ -145,7 +148,8 @@ class CompiledEngine(Engine):
         pattern = (m.pattern.start, m.pattern.rows, m.pattern.place)
         served = L.SERVED
         while True:
-            request = run(
+            request = watched(
+                run,
                 self.whole, self.real, self.rows, s.rtol, s.atol, served, self.addresses, self.code.parameters,
                 self.code.parameters if self.jac is None else self.jac.parameters,
                 m.dy, m.dyp, m.store, self.pivots, self.small, pattern, self.members, self.ends,

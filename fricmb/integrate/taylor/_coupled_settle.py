@@ -10,7 +10,7 @@ from fricmb.integrate.taylor._change import MARGIN, keep_event
 from fricmb.integrate.taylor._coupled_series import coupled_series, relative_row
 from fricmb.integrate.taylor._layout import LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._series import belt_value, relative, signal_series
+from fricmb.integrate.taylor._series import belt_grain, belt_value, relative, signal_series
 
 
 @block
@@ -19,6 +19,7 @@ def coupled_settle(net: Net, given: bool, places: Ints) -> None:
 
     One that then moves against its force is held again.  ``given``: behind a breakpoint, where changes are transitions.
     """
+    before_it = net.x[STEP]
     h = min(net.x[LONGEST], net.stops[net.i[N_STOP]] - net.x[TIME])
     net.x[STEP] = h
     signal_series(net, net.x[TIME], h)
@@ -32,6 +33,9 @@ def coupled_settle(net: Net, given: bool, places: Ints) -> None:
         was[c] = STICK if net.mode[c] == STICK else int(net.sigma[c])
         g = relative(net, c, 0.0, h)
         noise = net.x[NOISE] + 1e-12 * (abs(belt_value(net, c, 0.5)) + abs(belt_value(net, c, 1.0)))
+        if given and was[c] == STICK:
+            # it has moved with the belt as powers of s have
+            noise += belt_grain(net, c, before_it)
         rests[c] = 0 if abs(g) > noise else 1
         net.mode[c] = STICK if rests[c] else SLIP
         if rests[c] == 0:

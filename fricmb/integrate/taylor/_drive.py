@@ -6,6 +6,7 @@ import math
 
 from fricmb.integrate._kernel import entry, kernel
 from fricmb.integrate._problem import STICK
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.taylor._account import coupled_pay
 from fricmb.integrate.taylor._change import hold_force, taylor_change
 from fricmb.integrate.taylor._heap import pop_due, push_due
@@ -25,6 +26,7 @@ from fricmb.integrate.taylor._layout import (
     N_STOP,
     NEXT,
     PHASE,
+    STALLED,
     STEP,
     TIME,
     TOL,
@@ -36,6 +38,7 @@ from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._sample import sample
 from fricmb.integrate.taylor._search import bounds, taylor_search
 from fricmb.integrate.taylor._series import (
+    ROUNDING,
     belt_value,
     horner,
     horner_rate,
@@ -46,9 +49,9 @@ from fricmb.integrate.taylor._series import (
 from fricmb.integrate.taylor._settle import EPS, set_window, settle
 
 #: Why a run came back.
-DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE = range(6)
-#: What round-off leaves between a prescribed function and its powers of s.
-ROUNDING = 1e-11
+DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT = range(8)
+#: Steps in a row that do not move the time.
+PATIENCE = 100
 #: Phases of a step.
 BEGIN, INSIDE, FINISH, SETTLE = range(4)
 
@@ -104,9 +107,15 @@ def begin_step(net: Net) -> bool:
         error = signal_series(net, t, h)
         if error <= fine:
             break
-        h *= max(0.3, 0.9 * (fine / error) ** 0.125)
+        # where a function has no value its error is no number
+        h *= max(0.3, 0.9 * (fine / error) ** 0.125) if error < math.inf else 0.3
+        if not error < math.inf and h <= EPS * max(abs(t), net.x[LONGEST]):
+            h = 0.0
+            break
     net.x[STEP] = h
     net.x[UNTIL] = net.x[ALLOWED] = 1.0
+    if h == 0.0:
+        return False
     busy = taylor_series(net, h, net.places)
     if not busy and net.series.shape[0] == 0:
         idle = idle_step(net, left)
@@ -161,6 +170,8 @@ def go_through(net: Net) -> int:
     """Transitions and samples of the step in order of time."""
     grain = 4.0 * EPS * max(abs(net.x[TIME]), net.x[STEP]) / net.x[STEP]
     while True:
+        if stopped():
+            return STOPPED
         end = next_end(net)
         at = next_sample(net)
         until = net.x[UNTIL]
@@ -260,7 +271,13 @@ def drive_taylor(net: Net, t_pause: float, most: int) -> int:
                 return FULL
             if net.i[N_STEPS] >= until or net.x[TIME] > t_pause:
                 return PAUSE
-            if begin_step(net):
+            busy = begin_step(net)
+            # a start from rest may take some steps that are nothing; more of them are no way to get on
+            still = net.x[TIME] + net.x[STEP] <= net.x[TIME]
+            net.i[STALLED] = net.i[STALLED] + 1 if still else 0
+            if net.i[STALLED] > PATIENCE or not net.x[STEP] > 0.0:
+                return TOO_SHORT
+            if busy:
                 find_ends(net)
             else:
                 net.i[N_HEAP] = 0

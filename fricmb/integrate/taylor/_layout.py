@@ -7,9 +7,9 @@
 TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, CUT, NOISE, NEXT, JUMP, UNTIL, ALLOWED, FASTEST = range(14)
 PAID = 14
 # i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
-# phase of the step, next stop; contacts and groups that a correction touches
+# phase of the step, next stop; contacts and groups that a correction touches; steps in a row that did not move the time
 N_STEPS, N_SHORTER, N_EVENTS, N_SAMPLES, N_HEAP, N_SEARCHES, N_HERE, LIMIT, PHASE, N_STOP = range(10)
-N_TOUCHED, N_GROUPS = range(10, 12)
+N_TOUCHED, N_GROUPS, STALLED = range(10, 13)
 # flat[.]: rows of work
 SUM, WORK, WORK2, WORK3 = range(4)
 # old[.]: polynomials of one contact: watched, shifted to where y = 0 and change of force, force before

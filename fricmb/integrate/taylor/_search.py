@@ -19,6 +19,10 @@ from fricmb.integrate.taylor._series import belt_at, force_row
 PIECES = 4
 #: So near to its beginning, with a jump of acceleration and without one, a slip speed is less than round-off.
 NEAR = (1e-10, 1e-7)
+#: Relative excess of a holding force over its limit that is round-off: more than what settling takes for it.
+AT_LIMIT = 2e-11
+#: Part of the limit by which a force that grows does so in a step.
+GROWS = 1e-9
 
 
 @kernel
@@ -172,7 +176,15 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         last -= 1
         for k in range(last + 1):
             y[k] = force_row(net, c, k, h)
-        return first_root(y, last, net.stick[c], low, 1.0)
+        limit = net.stick[c]
+        here, rise = 0.0, 0.0
+        for k in range(last, -1, -1):
+            rise = rise * low + here
+            here = here * low + y[k]
+        # what is held at its limit, by a force that does not grow, stays there to round-off
+        if abs(here) >= limit * (1.0 - AT_LIMIT) and here * rise <= GROWS * limit * limit:
+            limit *= 1.0 + AT_LIMIT
+        return first_root(y, last, limit, low, 1.0)
     size = 0.0
     for k in range(last + 1):
         y[k] = watch_row(net, c, k, h)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from fricmb.integrate._call import call
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import SLIP, STICK, Floats, Ints
 from fricmb.integrate._room import block
-from fricmb.integrate.taylor._layout import STEP
+from fricmb.integrate.taylor._layout import STEP, TOL
 from fricmb.integrate.taylor._net import Net
 
 
@@ -29,6 +31,8 @@ def signal_series(net: Net, t: float, h: float) -> float:
             net.fit[9, 3 * a] = x[3]
             net.fit[9, 3 * a + 1] = x[4] * h
             net.fit[9, 3 * a + 2] = x[5] * h * h
+            if not abs(x[3]) + abs(x[4]) + abs(x[5]) < math.inf:
+                return math.inf  # it has no value here
         for k in range(P):
             value = 0.0
             if k < 9:
@@ -45,11 +49,27 @@ def signal_series(net: Net, t: float, h: float) -> float:
         for k in range(P - 1, -1, -1):
             value = value * 0.25 + net.series[j, k]
             rate = rate * 0.25 + net.rates[j, k]
+        if not abs(x[3]) + abs(x[4]) < math.inf:
+            return math.inf
         net.large[0, j] = max(net.large[0, j], abs(x[3]))
         net.large[1, j] = max(net.large[1, j], abs(x[4]))
         worst = max(worst, abs(value - x[3]) / (net.large[0, j] + 1e-300))
         worst = max(worst, abs(rate - x[4]) / (net.large[1, j] + 0.01 * net.large[0, j] / h + 1e-300))
     return worst
+
+
+#: What round-off leaves between a prescribed function and its powers of s.
+ROUNDING = 1e-11
+
+
+@kernel
+def belt_grain(net: Net, c: int, h: float) -> float:
+    """How well powers of s follow the prescribed velocity of contact c in a step h (see signal_series)."""
+    value = 0.0
+    for e in range(net.wu_start[c], net.wu_start[c + 1]):
+        j = net.wu_signal[e]
+        value += abs(net.wu_coef[e]) * (net.large[1, j] + 0.01 * net.large[0, j] / h)
+    return float(2.0 * max(0.1 * net.x[TOL], ROUNDING) * value)
 
 
 @kernel

@@ -10,7 +10,7 @@ from fricmb.integrate.taylor._change import MARGIN, hold_force, keep_event, set_
 from fricmb.integrate.taylor._coupled_settle import coupled_settle
 from fricmb.integrate.taylor._layout import LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._series import belt_value, displacement, relative, signal_series, taylor_series
+from fricmb.integrate.taylor._series import belt_grain, belt_value, displacement, relative, signal_series, taylor_series
 
 EPS = 2.3e-16
 
@@ -34,6 +34,7 @@ def settle(net: Net, given: bool) -> None:
     if net.coupled.F.shape[0] > 0:
         coupled_settle(net, given, net.places)
         return
+    before_it = net.x[STEP]
     h = min(net.x[LONGEST], net.stops[net.i[N_STOP]] - net.x[TIME])
     net.x[STEP] = h
     signal_series(net, net.x[TIME], h)
@@ -48,6 +49,9 @@ def settle(net: Net, given: bool) -> None:
         net.mark[c] = here
         # a belt that starts from rest does so at a time that is round-off away
         noise = net.x[NOISE] + 1e-12 * (abs(belt_value(net, c, 0.5)) + abs(belt_value(net, c, 1.0)))
+        if given and was == STICK:
+            # it has moved with the belt as powers of s have
+            noise += belt_grain(net, c, before_it)
         if abs(g) > noise:
             set_mode(net, c, SLIP, math.copysign(1.0, g))
         elif abs(held) <= net.stick[c] * (1.0 + MARGIN):

@@ -12,6 +12,7 @@ import numpy as np
 
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._problem import SLIP, Floats, Problem, Start
+from fricmb.integrate._stop import ended, watched
 from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
 from fricmb.integrate.taylor._drive import (
     CROWDED,
@@ -20,6 +21,7 @@ from fricmb.integrate.taylor._drive import (
     NOT_FINITE,
     PAUSE,
     SETTLE,
+    TOO_SHORT,
     WIDE,
     drive_taylor,
 )  # fmt: skip
@@ -49,6 +51,7 @@ FAILURES = {
     CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (timestepping takes them)",
     WIDE: "a transition is felt by too many degrees of freedom within one step (timestepping or bdf take this)",
     NOT_FINITE: "the state grew beyond what numbers hold",
+    TOO_SHORT: "the step size fell below round-off: a function of time cannot be followed",
 }
 
 
@@ -107,7 +110,7 @@ class Taylor(Integrator):
             if t_eval is not None:
                 room = no_samples(problem.n, problem.n_c, len(t_eval))
                 net = with_arrays(net, **{**room, "times": np.ascontiguousarray(t_eval, dtype=float)})
-            settle_start(net)
+            watched(settle_start, net)
             marks = Checkpoints(problem.n)
             code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
             return _trajectory(problem, net, degree, marks, code, t_eval)
@@ -158,13 +161,13 @@ def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], 
     marks.add(net)
     report = float(net.x[TIME]) + every
     while True:
-        code = drive_taylor(net, math.inf, marks.stride)
-        if code == PAUSE:
+        code = watched(drive_taylor, net, math.inf, marks.stride)
+        if code == PAUSE and ended() is None:
             marks.add(net)
             if progress is not None and net.x[TIME] > report:
                 report += every
                 progress(float(net.x[TIME]))
-        elif code == FULL:
+        elif code == FULL and ended() is None:
             events = _longer(net.events, int(net.i[N_EVENTS]) + len(net.mode))
             net = with_arrays(net, events=events, steps=_longer(net.steps, int(net.i[N_STEPS])))
         else:
@@ -180,7 +183,8 @@ def _longer(table: Floats, wanted: int) -> Floats:
 def _trajectory(
     problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
 ) -> TaylorRun:
-    events = net.events[: net.i[N_EVENTS]].copy()
+    events = net.events[: net.i[N_EVENTS]]
+    events = events[events[:, 0] <= net.x[TIME]]  # a run that stops within a step ends where that began
     transitions = Transitions(t=events[:, 0].copy(), contact=events[:, 1].astype(int), kind=events[:, 2].astype(int))
     steps = int(net.i[N_STEPS])
     counters = Counters(
@@ -190,7 +194,7 @@ def _trajectory(
         t=float(net.x[TIME]), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0), mode=net.mode.copy(),
         direction=net.sigma.copy(),
     )  # fmt: skip
-    failure = None if code == DONE else FAILURES[code].format(limit=int(net.i[LIMIT]))
+    failure = None if code == DONE else ended() or FAILURES[code].format(limit=int(net.i[LIMIT]))
     taken = int(net.i[N_SAMPLES])
     held = None if t_eval is None or code != DONE else net
     return TaylorRun(problem, degree, net.steps[:steps].copy(), transitions, counters, end, failure, marks, held, taken)

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate._problem import Codes, Floats, Problem, Start
+from fricmb.integrate._stop import watched
 from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
 from fricmb.integrate.taylor._drive import PAUSE, drive_taylor
-from fricmb.integrate.taylor._layout import N_SAMPLES
+from fricmb.integrate.taylor._layout import END, N_SAMPLES
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._prepare import net_of, no_samples, with_arrays
 
@@ -115,8 +116,12 @@ class TaylorRun(Trajectory):
                 **{**no_samples(problem.n, problem.n_c, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip
             net.i[N_SAMPLES] = 0
-            while net.i[N_SAMPLES] < len(t) and drive_taylor(net, np.inf, 1) == PAUSE:
+            if self.failure is not None:
+                net.x[END] = self.end.t  # nothing comes behind it
+            while net.i[N_SAMPLES] < len(t) and watched(drive_taylor, net, np.inf, 1) == PAUSE:
                 pass
+            for at in range(int(net.i[N_SAMPLES]), len(t)):  # of a run that could not begin
+                net.out_q[at], net.out_v[at], net.out_mode[at] = net.q, net.v, net.mode
             return _samples(problem, net, slice(0, len(t)))
 
     def _state_before(self, t: float) -> dict[str, Any]:

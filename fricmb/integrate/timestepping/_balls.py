@@ -6,6 +6,7 @@ import math
 
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import Floats
+from fricmb.integrate.timestepping._layout import CAUGHT, HELD, RESIDUAL
 from fricmb.integrate.timestepping._run import Run
 
 #: R of the proximal steps times the local compliance.
@@ -104,7 +105,7 @@ def residual(run: Run, F: Floats, g: Floats) -> float:
 
 @kernel
 def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
-    """Make g exactly 0 where the force is inside its ball."""
+    """Make g exactly 0 where the force is inside its ball, or on its rim and no more than that is solved to."""
     for c in range(run.status.shape[0]):
         row0 = run.row[c]
         d = run.row[c + 1] - row0
@@ -112,6 +113,12 @@ def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
         for a in range(row0, row0 + d):
             distance = math.hypot(distance, F[a] - run.delta[a])
         inside = run.H[3 * c] == STIFF / run.soft[c] and (d == 1 or run.H[3 * c + 2] == run.H[3 * c])
-        if inside and distance <= run.rho[c] and run.rho[c] > 0.0:
+        held = inside and distance <= run.rho[c]
+        if run.status[c] == HELD or run.status[c] == CAUGHT:
+            size = 0.0
+            for a in range(row0, row0 + d):
+                size = math.hypot(size, g[a])
+            held = held or size <= 2.0 * run.x[RESIDUAL] * run.rho[c] * run.soft[c]
+        if held and run.rho[c] > 0.0:
             for a in range(row0, row0 + d):
                 g[a] = 0.0

@@ -22,6 +22,7 @@ from fricmb.integrate._lapack import solve_real
 from fricmb.integrate._places import PLACES
 from fricmb.integrate._problem import Floats, Floats2, Ints
 from fricmb.integrate._room import block
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, keep_piece, project, residual, same_piece
 from fricmb.integrate.timestepping._band import (
     add_contacts,
@@ -103,6 +104,8 @@ def newton_band(run: Run, h: float, F: Floats, g: Floats, places: Ints) -> bool:
     merit = band_merit(run, h, F, run.dv, g, r)
     flat_steps = 0
     for _ in range(NEWTON):
+        if stopped():
+            return False
         run.i[N_NEWTON] += 1
         slot = factors_of(run, h)
         keep_piece(run)
@@ -118,6 +121,8 @@ def newton_band(run: Run, h: float, F: Floats, g: Floats, places: Ints) -> bool:
         factor = 1.0
         before = merit
         for _ in range(HALVINGS):
+            if stopped():
+                break
             for i in range(n):
                 run.dv[i] += factor * step[i]
             merit = band_merit(run, h, F, run.dv, g, r)
@@ -156,6 +161,8 @@ def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -
     merit = condensed_merit(run, F, D, run.phi, g)
     flat_steps = 0
     for _ in range(NEWTON):
+        if stopped():
+            return False
         run.i[N_NEWTON] += 1
         for c in range(run.status.shape[0]):
             row0 = run.row[c]
@@ -179,6 +186,8 @@ def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -
         factor = 1.0
         before = merit
         for _ in range(HALVINGS):
+            if stopped():
+                break
             for a in range(m):
                 run.phi[a] += factor * run.move[a]
             merit = condensed_merit(run, F, D, run.phi, g)
@@ -210,6 +219,8 @@ def solve_contacts(run: Run, slot: int, h: float, F: Floats, g: Floats, places: 
     for a in range(F.shape[0]):
         run.phi[a] = F[a]
     for _ in range(PROXIMAL):
+        if stopped():
+            break
         if condensed:
             fine = newton_condensed(run, run.D[slot], F, g, places)
         else:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import SLIP, STICK
+from fricmb.integrate._problem import EVENT_SLIP, SLIP, STICK
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.timestepping._error import step_error
 from fricmb.integrate.timestepping._free import length, set_signals, set_window
 from fricmb.integrate.timestepping._layout import (
+    DRIVES,
     END,
     ERROR,
     FAULT,
@@ -22,9 +24,11 @@ from fricmb.integrate.timestepping._layout import (
     N_STEPS,
     N_STOP,
     N_UNSETTLED,
+    NO_NUMBER,
     NOISE,
     SAME,
     SHORTEST,
+    SOUND,
     STEP,
     THERE,
     TIME,
@@ -33,6 +37,10 @@ from fricmb.integrate.timestepping._layout import (
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._step import forces_at_start, take_step
 
+#: Parts of velocities that are nothing: round-off, and what contacts at rest are solved to.
+ROUND_OFF, CREEP = 1e-12, 1e-9
+#: Part of a usual step that is none: to ask what holds the contacts at an instant.
+PROBE = 1e-3
 #: Why a run came back.
 DONE, FULL, NOT_FINITE, NEGATIVE = range(4)
 
@@ -58,6 +66,7 @@ def copy_state(run: Run, source: int, target: int) -> None:
     run.F[target, :] = run.F[source]
     run.ends[target, :] = run.ends[source]
     run.hold[target, :] = run.hold[source]
+    run.grip[target, :] = run.grip[source]
     run.when[target, :] = run.when[source]
     run.known[target, :] = run.known[source]
     run.mode[target, :] = run.mode[source]
@@ -82,6 +91,16 @@ def keep_row(run: Run, slot: int, normal: int, t: float) -> None:
 
 
 @kernel
+def keep_event(run: Run, t: float, c: int, kind: int) -> None:
+    """Add a transition."""
+    e = run.i[N_EVENTS]
+    run.event[e, 0] = t
+    run.event[e, 1] = c
+    run.event[e, 2] = kind
+    run.i[N_EVENTS] = e + 1
+
+
+@kernel
 def accept(run: Run, slot: int, t: float) -> None:
     """Energies, transitions and the row of a step that ended in ``slot`` at t."""
     if run.i[N_STEPS] == 0 and run.i[N_ROWS] == 0:
@@ -92,11 +111,7 @@ def accept(run: Run, slot: int, t: float) -> None:
     for c in range(run.total.shape[0]):
         run.total[c] += run.loss[slot, c]
         if run.what[slot, c] >= 0:
-            e = run.i[N_EVENTS]
-            run.event[e, 0] = run.moment[slot, c]
-            run.event[e, 1] = c
-            run.event[e, 2] = run.what[slot, c]
-            run.i[N_EVENTS] = e + 1
+            keep_event(run, run.moment[slot, c], c, run.what[slot, c])
     run.spent[HERE, 0] += run.spent[slot, 0]
     run.spent[HERE, 1] += run.spent[slot, 1]
     keep_row(run, slot, slot, t)
@@ -156,30 +171,59 @@ def arrive(run: Run, t: float) -> None:
 
 @kernel
 def jump(run: Run, t: float) -> None:
-    """Signals behind a breakpoint; a belt whose velocity jumps ends what sticks."""
+    """Signals behind a breakpoint; a belt whose velocity jumps ends what sticks, forces that hold may jump."""
     set_signals(run, HERE, t)
-    relative_velocities(run)
+    for i in range(run.load.shape[0]):
+        run.top_v[i] = max(run.top_v[i], abs(run.v[HERE, i]))
+    relative_velocities(run, CREEP)
     for c in range(run.mode.shape[1]):
+        run.known[HERE, c] = 0
         if run.mode[HERE, c] == STICK:
             for a in range(run.row[c], run.row[c + 1]):
-                if run.g[HERE, a] != 0.0:
+                if run.g[HERE, a] != 0.0 and run.mode[HERE, c] == STICK:
                     run.mode[HERE, c] = SLIP
+                    keep_event(run, t, c, EVENT_SLIP)
+    probe(run, t)
 
 
 @kernel
-def relative_velocities(run: Run) -> None:
-    """G of the present state; what is round-off is 0."""
+def probe(run: Run, t: float) -> None:
+    """What holds the contacts at rest from t on: by a step that is nothing beside those of the run."""
+    some = False
+    for c in range(run.mode.shape[1]):
+        some = some or run.mode[HERE, c] == STICK
+    if not some:
+        return
+    h = min(PROBE * run.x[STEP], 0.5 * (run.window[1] - t))
+    if not h > 0.0:
+        return
+    take_step(run, HERE, WHOLE, t, h, run.places)
+    for c in range(run.mode.shape[1]):
+        if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == STICK and run.known[WHOLE, c] == 1:
+            run.known[HERE, c] = 1
+            run.when[HERE, c] = run.when[WHOLE, c]
+            run.grip[HERE, c] = run.grip[WHOLE, c]
+            for a in range(run.row[c], run.row[c + 1]):
+                run.hold[HERE, a] = run.hold[WHOLE, a]
+
+
+@kernel
+def relative_velocities(run: Run, fine: float) -> None:
+    """G of the present state, 0 where it is below ``fine`` of what moves, has moved or will; that of slip as it is."""
+    set_signals(run, WHOLE, run.x[TIME] + run.x[STEP])
     for c in range(run.mode.shape[1]):
         row0 = run.row[c]
         d = run.row[c + 1] - row0
         size = run.x[NOISE]
+        part_of = fine if run.mode[HERE, c] == STICK else ROUND_OFF
         for a in range(row0, row0 + d):
             value = -run.w[HERE, a]
-            size = max(size, 1e-12 * abs(value))
+            size = max(size, part_of * abs(value), part_of * abs(run.w[WHOLE, a]))
             for e in range(run.w_start[a], run.w_start[a + 1]):
                 part = run.w_coef[e] * run.v[HERE, run.w_dof[e]]
                 value += part
-                size = max(size, 1e-12 * abs(part))
+                j = run.w_dof[e]
+                size = max(size, part_of * abs(part), part_of * abs(run.w_coef[e]) * (run.top_v[j] + run.floor_v[j]))
             run.g[HERE, a] = value
         if length(run.g[HERE], row0, d) <= size or (run.mode[HERE, c] == STICK and size == 0.0):
             for a in range(row0, row0 + d):
@@ -191,7 +235,7 @@ def begin(run: Run, given: bool) -> None:
     """Signals, relative velocities and modes at the start."""
     set_window(run, 0)
     set_signals(run, HERE, run.x[TIME])
-    relative_velocities(run)
+    relative_velocities(run, ROUND_OFF)
     for c in range(run.mode.shape[1]):
         row0 = run.row[c]
         still = length(run.g[HERE], row0, run.row[c + 1] - row0) == 0.0
@@ -199,10 +243,12 @@ def begin(run: Run, given: bool) -> None:
             run.mode[HERE, c] = STICK if still else SLIP
     if not given and run.mode.shape[1] > 0:
         # what nothing can hold slips from the start
-        take_step(run, HERE, WHOLE, run.x[TIME], 1e-4 * run.x[STEP], run.places)
+        take_step(run, HERE, WHOLE, run.x[TIME], PROBE * run.x[STEP], run.places)
         for c in range(run.mode.shape[1]):
             if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == SLIP:
                 run.mode[HERE, c] = SLIP
+    if run.x[SAME] == 0.0:
+        probe(run, run.x[TIME])
 
 
 @entry
@@ -212,16 +258,17 @@ def drive(run: Run) -> int:
         if run.x[TIME] >= run.x[END] or run.i[N_STOP] >= run.stops.shape[0]:
             return DONE
         room = run.i[N_ROWS] + 3 <= run.row_t.shape[0]
-        if not room or run.i[N_EVENTS] + 2 * run.mode.shape[1] > run.event.shape[0]:
+        if stopped() or not room or run.i[N_EVENTS] + 3 * run.mode.shape[1] > run.event.shape[0]:
             return FULL
         t = run.x[TIME]
         h = next_length(run)
+        run.x[FAULT] = SOUND
         if run.x[FIXED] > 0.0:
             if not take_step(run, HERE, THERE, t, h, run.places):
                 run.i[N_UNSETTLED] += 1
-            if not is_finite(run):
+            if not is_finite(run) or run.x[FAULT] == NO_NUMBER:
                 return NOT_FINITE
-            if run.x[FAULT] == 1.0:
+            if run.x[FAULT] == DRIVES:
                 return NEGATIVE
             accept(run, THERE, t + h)
             arrive(run, t + h)
@@ -229,7 +276,7 @@ def drive(run: Run) -> int:
         settled = take_step(run, HERE, WHOLE, t, h, run.places)
         settled = take_step(run, HERE, MIDDLE, t, 0.5 * h, run.places) and settled
         settled = take_step(run, MIDDLE, THERE, t + 0.5 * h, 0.5 * h, run.places) and settled
-        if not is_finite(run):
+        if not is_finite(run) or run.x[FAULT] == NO_NUMBER:
             if h <= run.x[SHORTEST]:
                 return NOT_FINITE
             run.x[STEP] = 0.25 * h
@@ -237,7 +284,7 @@ def drive(run: Run) -> int:
         error = step_error(run)
         run.x[ERROR] = error
         if adapt(run, h, error, settled):
-            if run.x[FAULT] == 1.0:
+            if run.x[FAULT] == DRIVES:
                 return NEGATIVE
             accept(run, MIDDLE, t + 0.5 * h)
             accept(run, THERE, t + h)

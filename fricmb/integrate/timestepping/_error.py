@@ -25,7 +25,7 @@ def set_leeway(run: Run) -> None:
 
 @kernel
 def holding_error(run: Run) -> float:
-    """Difference of the forces that hold contacts, relative to the largest limit."""
+    """Difference of the forces that hold contacts, and of their limits, relative to the largest limit."""
     worst = 0.0
     largest = 0.0
     for c in range(run.status.shape[0]):
@@ -33,6 +33,9 @@ def holding_error(run: Run) -> float:
         if run.mode[WHOLE, c] == STICK and run.mode[THERE, c] == STICK and run.mode[HERE, c] == STICK:
             for a in range(run.row[c], run.row[c + 1]):
                 worst = max(worst, abs(run.ends[WHOLE, a] - run.ends[THERE, a]))
+            if run.var[c] == 1:
+                halves = 0.5 * (run.push[MIDDLE, c] + run.push[THERE, c])
+                worst = max(worst, run.mu_s[c] * abs(run.push[WHOLE, c] - halves))
     return worst / largest if largest > 0.0 else 0.0
 
 

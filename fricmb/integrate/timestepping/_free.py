@@ -8,7 +8,7 @@ from fricmb.integrate._call import call
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import Floats
 from fricmb.integrate.timestepping._band import assemble, factorise, solve
-from fricmb.integrate.timestepping._layout import CONDENSED, TIME
+from fricmb.integrate.timestepping._layout import CONDENSED, FAULT, NO_NUMBER, TIME
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -82,6 +82,8 @@ def find_normals(run: Run, one: int, two: int, t: float, h: float) -> float:
                 value += table.form_coefficient[e] * X[table.form_index[e]]
             run.args[a - first] = value
         call(table.address[c], run.args, 0, table.p, table.p_start[c], run.out, 0)
+        if not abs(run.out[0]) < math.inf:
+            run.x[FAULT] = NO_NUMBER
         force = max(0.0, run.out[0])
         worst = max(worst, abs(force - run.push[two, c]) / (abs(force) + abs(run.push[two, c]) + 1e-300))
         run.push[two, c] = force

@@ -144,7 +144,8 @@ def _states(n: int, m: int, nc: int, n_u: int) -> dict[str, Any]:
     z = np.zeros
     return {
         "q": z((4, n)), "v": z((4, n)), "u": z((4, n_u)), "du": z((4, n_u)), "g": z((4, m)), "w": z((4, m)),
-        "F": z((4, m)), "ends": z((4, m)), "hold": z((4, m)), "when": z((4, nc)), "known": z((4, nc), np.int8),
+        "F": z((4, m)), "ends": z((4, m)), "hold": z((4, m)), "grip": z((4, nc)),
+        "when": z((4, nc)), "known": z((4, nc), np.int8),
         "mode": z((4, nc), np.int8), "push": z((4, nc)), "loss": z((4, nc)), "spent": z((4, 2)),
         "what": z((4, nc), np.int8), "moment": z((4, nc)),
     }  # fmt: skip
@@ -156,7 +157,7 @@ def no_rows(n: int, m: int, nc: int, capacity: int) -> dict[str, Any]:
     return {
         "row_t": z(capacity), "row_q": z((capacity, n)), "row_v": z((capacity, n)), "row_F": z((capacity, m)),
         "row_g": z((capacity, m)), "row_N": z((capacity, nc)), "row_mode": z((capacity, nc), np.int8),
-        "row_loss": z((capacity, nc)), "row_x": z((capacity, 2)), "event": z((2 * nc + 64, 3)),
+        "row_loss": z((capacity, nc)), "row_x": z((capacity, 2)), "event": z((3 * nc + 64, 3)),
     }  # fmt: skip
 
 

@@ -15,7 +15,18 @@ from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import LAW_COEFFICIENT, STICK, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate.timestepping._free import length
-from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FAULT, FREE, HELD, PASSED
+from fricmb.integrate.timestepping._layout import (
+    BROKEN,
+    CAUGHT,
+    DRIVES,
+    FAULT,
+    FREE,
+    HELD,
+    NO_NUMBER,
+    PASSED,
+    RESIDUAL,
+    SOUND,
+)
 from fricmb.integrate.timestepping._run import Run
 
 #: Rounds in which a contact may still change between resting, passing and going on.
@@ -30,8 +41,10 @@ def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
     run.args[0] = speed
     run.args[1] = N
     call(run.laws.address[c], run.args, 0, run.laws.p, run.laws.p_start[c], run.out, 0)
-    if run.out[0] < 0.0:
-        run.x[FAULT] = 1.0
+    if not abs(run.out[0]) < math.inf:
+        run.x[FAULT] = NO_NUMBER
+    elif run.out[0] < 0.0 and run.x[FAULT] == SOUND:
+        run.x[FAULT] = DRIVES
     return float(max(0.0, run.out[0]) * N)
 
 
@@ -59,40 +72,65 @@ def first_balls(run: Run, one: int, two: int) -> None:
 
 @kernel
 def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool:
-    """Whether the line through the last holding force and that of this step passes the limit before the end."""
+    """Whether the line through the last holding force and that of this step passes that of the limit in the step."""
     gap = t + 0.5 * h - run.when[one, c]
     if run.known[one, c] == 0 or gap <= 0.0:
         return False
     size = 0.0
     for a in range(run.row[c], run.row[c + 1]):
         size = math.hypot(size, run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a]))
-    return bool(size > run.brake[c])
+    limit = run.brake[c] + 0.5 * h / gap * (run.brake[c] - run.grip[one, c])
+    # what is held at its limit stays there: what the contacts are solved to is no reason to slip
+    return bool(size > limit + 2.0 * run.x[RESIDUAL] * run.brake[c])
+
+
+@kernel
+def first_crossing(aa: float, ab: float, bb: float) -> float:
+    """The first positive root of aa x^2 + 2 ab x + bb, which is negative at 0; 0 where there is none."""
+    if not bb < 0.0:
+        return 0.0
+    root = math.sqrt(max(0.0, ab * ab - aa * bb))
+    # the same root in both forms, each where nothing cancels
+    if ab > 0.0:
+        return float(-bb / (ab + root))
+    return float((root - ab) / aa) if aa > 0.0 else 0.0
+
+
+@kernel
+def pressed_in_slip(run: Run, one: int, c: int, t: float, h: float, N: float) -> float:
+    """Normal force in the middle of the slip that begins in the step, on the line of the limit; N: of the step."""
+    gap = t + 0.5 * h - run.when[one, c]
+    if run.var[c] == 0 or run.known[one, c] == 0 or gap <= 0.0:
+        return N
+    later = 0.5 * h * max(run.share[c], 0.0) / gap
+    return float(max(0.0, N + later * (run.brake[c] - run.grip[one, c]) / max(run.mu_s[c], 1e-300)))
 
 
 @kernel
 def break_away(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
-    """When the holding force reached its limit: on the line through the last one and that of this step.
+    """When the holding force reached its limit: on the lines of both, through the last step and this one.
 
     ``away`` becomes the mean force less that of slip all along: (mean hold - slip) s, s the fraction held.
     """
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     middle = t + 0.5 * h
-    limit = run.brake[c]
+    rise_of_limit = run.brake[c] - run.grip[one, c]
     run.status[c] = BROKEN
     for a in range(row0, row0 + d):
         run.away[a] = run.F[two, a] - run.g[two, a] / run.soft[c]  # what would have held it
     s = 0.0
     gap = middle - run.when[one, c]
     if run.known[one, c] == 1 and gap > 0.0:
-        aa, ab, bb = 0.0, 0.0, 0.0
+        limit = run.grip[one, c]
+        aa, ab, bb = -(rise_of_limit**2), -limit * rise_of_limit, -(limit**2)
         for a in range(row0, row0 + d):
             rise = run.away[a] - run.hold[one, a]
             aa += rise * rise
             ab += rise * run.hold[one, a]
             bb += run.hold[one, a] ** 2
-        if bb < limit * limit and aa > 0.0:
-            x = (-ab + math.sqrt(max(0.0, ab * ab + aa * (limit * limit - bb)))) / aa
+        x = first_crossing(aa, ab, bb)
+        if x > 0.0:
             s = min(max((run.when[one, c] + x * gap - t) / h, -1.0), 1.0)
             # half of what is held lies before the middle of the time held
             y = x - 0.5 * max(s, 0.0) * h / gap
@@ -102,12 +140,15 @@ def break_away(run: Run, one: int, two: int, c: int, t: float, h: float) -> None
                 run.gf[a] = run.hold[one, a] + y * rise
                 run.away[a] = run.hold[one, a] + x * rise
                 size = math.hypot(size, run.away[a])
+            run.share[c] = s
+            # slip begins at speed 0
+            slide = slide_radius(run, c, 0.0, pressed_in_slip(run, one, c, t, h, run.push[two, c]))
             for a in range(row0, row0 + d):
-                slip = run.away[a] / size * run.slide[c]
+                slip = run.away[a] / size * slide if size > 0.0 else 0.0
                 run.away[a] = s * (run.gf[a] - slip)
-    else:
-        for a in range(row0, row0 + d):
-            run.away[a] = 0.0
+            return
+    for a in range(row0, row0 + d):
+        run.away[a] = 0.0
     run.share[c] = s
 
 
@@ -215,7 +256,8 @@ def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, pl
             for a in range(row0, row0 + d):
                 run.delta[a] = 0.0
         else:
-            run.slide[c] = slide_radius(run, c, mean_speed(run, one, two, c), N)
+            pressed = pressed_in_slip(run, one, c, t, h, N) if status == BROKEN else N
+            run.slide[c] = slide_radius(run, c, mean_speed(run, one, two, c), pressed)
             run.rho[c] = run.slide[c]
             s = run.share[c]
             size = length(run.away, row0, d)

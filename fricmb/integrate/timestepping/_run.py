@@ -28,8 +28,9 @@ class Run(NamedTuple):
     ``wu_signal``, ``wu_coef``: w and Wu; ``law``, ``mu_s``, ``mu_0``, ``N`` (n_c,); ``var``, ``acts`` (n_c,): varying
     normal force, felt by the bodies along ``n_start``, ``n_dof``, ``n_coef`` from ``N0``.
     State: ``q``, ``v`` (s, n); ``u``, ``du`` (s, n_u); ``g``, ``w`` (s, m); ``F``, ``ends`` (s, m): mean force of the
-    step before and force at its end; ``hold`` (s, m), ``when`` (s, n_c): last force that held the contact and its
-    time; ``known`` (s, n_c): whether there is one; ``mode``, ``push`` (s, n_c): modes and mean normal forces.
+    step before and force at its end; ``hold`` (s, m), ``grip``, ``when`` (s, n_c): last force that held the contact,
+    the limit it was under and its time; ``known`` (s, n_c): whether there is one; ``mode``, ``push`` (s, n_c): modes
+    and mean normal forces.
     Step: ``free``, ``dv``, ``turn``, ``trial`` (n,); ``gf``, ``y``, ``P``, ``phi``, ``move`` (m,); ``H``, ``weight``
     (3 n_c,) derivative of the projection; ``rho``, ``slide``, ``brake``, ``soft``, ``share`` (n_c,); ``delta``,
     ``away`` (m,); ``status`` (n_c,); ``loss`` (s, n_c), ``spent`` (s, 2): energies of a step;
@@ -92,6 +93,7 @@ class Run(NamedTuple):
     F: Floats2
     ends: Floats2
     hold: Floats2
+    grip: Floats2
     when: Floats2
     known: Codes2
     mode: Codes2

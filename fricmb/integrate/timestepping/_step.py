@@ -15,6 +15,7 @@ from fricmb.integrate._problem import (
     Ints,
 )
 from fricmb.integrate._room import block
+from fricmb.integrate._stop import stopped
 from fricmb.integrate.timestepping._balls import mark_stuck
 from fricmb.integrate.timestepping._cones import solve_contacts
 from fricmb.integrate.timestepping._free import (
@@ -31,12 +32,14 @@ from fricmb.integrate.timestepping._free import (
 from fricmb.integrate.timestepping._layout import (
     CAUGHT,
     CONDENSED,
+    DRIVES,
     FAULT,
     HELD,
     HERE,
     N_ROUNDS,
     PASSED,
     SETTLED,
+    SOUND,
     VARYING,
 )
 from fricmb.integrate.timestepping._review import first_balls, review_balls, slide_radius
@@ -67,6 +70,8 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
     first_balls(run, one, two)
     settled = False
     for turn in range(ROUNDS):
+        if stopped():
+            break
         run.i[N_ROUNDS] += 1
         free_motion(run, one, two, h, slot)
         if not solve_contacts(run, slot, h, run.F[two], run.g[two], places):
@@ -83,7 +88,8 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
         if change <= run.x[SETTLED]:
             settled = True
             break
-    run.x[FAULT] = 0.0  # what counts is where the step ends
+    if run.x[FAULT] == DRIVES:
+        run.x[FAULT] = SOUND  # what counts is where the step ends
     keep_end(run, one, two, t, h)
     return settled
 
@@ -110,6 +116,7 @@ def keep_end(run: Run, one: int, two: int, t: float, h: float) -> None:
         if still and (run.status[c] == HELD or run.status[c] == CAUGHT):
             caught = run.status[c] == CAUGHT
             run.known[two, c] = 1
+            run.grip[two, c] = run.brake[c]
             run.when[two, c] = t + 0.5 * h * (1.0 + run.share[c] if caught else 1.0)
             for a in range(row0, run.row[c + 1]):
                 run.hold[two, a] = run.away[a] if caught else run.F[two, a]

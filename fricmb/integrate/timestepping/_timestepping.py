@@ -11,8 +11,9 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate._integrator import Integrator, Tolerance
 from fricmb.integrate._problem import Floats, Problem, Start
+from fricmb.integrate._stop import ended, watched
 from fricmb.integrate._trajectory import Counters, Samples, Transitions
-from fricmb.integrate.timestepping._drive import FULL, NEGATIVE, NOT_FINITE, begin, drive
+from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, begin, drive
 from fricmb.integrate.timestepping._layout import (
     BAND,
     CONDENSED,
@@ -114,17 +115,18 @@ class TimeStepping(Integrator):
         run, condensed, band = run_of(problem, self.contacts, capacity)
         run.i[CONDENSED], run.i[BAND] = int(condensed), band
         run = self._set_start(problem, run, start, t_end, tolerance)
-        begin(run, start.mode is not None)
+        watched(begin, run, start.mode is not None)
         chunks: list[dict[str, Any]] = []
         held = 0
         code = FULL
-        while code == FULL and (memory is None or held < memory):
-            code = drive(run)
+        while code == FULL and (memory is None or held < memory) and ended() is None:
+            code = watched(drive, run)
             chunks.append(_emptied(run))
             held += 8 * width * len(chunks[-1]["row_t"])
             if progress is not None:
                 progress(float(run.x[TIME]))
-        return _trajectory(problem, run, chunks, FAILURES.get(code))
+        failure = None if code == DONE else ended() or FAILURES.get(code)
+        return _trajectory(problem, run, chunks, failure)
 
     def _set_start(self, problem: Problem, run: Run, start: Start, t_end: float, tolerance: Tolerance) -> Run:
         run.q[HERE], run.v[HERE] = start.q, start.v
@@ -170,7 +172,7 @@ def _add_floors(run: Run, span: float) -> None:
     run.floor_q[:] += 0.1 * largest * time**2
 
 
-_HELD = ("F", "ends", "hold", "when", "known")
+_HELD = ("F", "ends", "hold", "grip", "when", "known")
 _ROWS = ("row_t", "row_q", "row_v", "row_F", "row_g", "row_N", "row_mode", "row_loss", "row_x")
 
 

@@ -13,11 +13,15 @@ from fricmb.integrate._trajectory import SampledTrajectory, Samples
 
 @dataclass(frozen=True, kw_only=True)
 class SteppedStart(Start):
-    """A start that knows what held its contacts last: ``F``, ``ends``, ``hold`` (m,), ``when``, ``known`` (n_c,)."""
+    """A start that knows what held its contacts last.
+
+    ``F``, ``ends``, ``hold`` (m,), ``grip``, ``when``, ``known`` (n_c,): see Run.
+    """
 
     F: Floats
     ends: Floats
     hold: Floats
+    grip: Floats
     when: Floats
     known: Codes
 

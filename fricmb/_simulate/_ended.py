@@ -1,0 +1,36 @@
+"""A run that something from outside may end: what is raised then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fricmb.errors import IntegrationError, Interrupted
+from fricmb.integrate._stop import Watch, watching
+from fricmb.solution import Solution
+
+
+def run_watched(watch: Watch, run: Callable[[], Solution]) -> Solution:
+    """The solution that ``run`` returns, under a watch.
+
+    Raises
+    ------
+    IntegrationError
+        Where the run could not go on, or a limit was reached.
+    Interrupted
+        After Ctrl-C; what a handler of the user's own raises is raised as it is.
+    """
+    try:
+        with watching(watch):
+            solution = run()
+    except IntegrationError as error:
+        if watch.cause is None:
+            raise
+        if not isinstance(watch.cause, KeyboardInterrupt):
+            raise watch.cause from error
+        raise Interrupted(str(error), t=error.t, partial=error.partial) from None
+    if watch.cause is not None:  # it came while the last step was made
+        if not isinstance(watch.cause, KeyboardInterrupt):
+            raise watch.cause
+        t = float(solution.t[-1])
+        raise Interrupted(f"interrupted at the end of the run, t = {t:.10g}", t=t, partial=solution)
+    return solution

@@ -1,0 +1,75 @@
+"""How much memory a run takes, and whether its result will find room."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+#: Seconds between two looks.
+EVERY = 0.5
+#: Bytes below which nobody asks.
+SMALL = 2.5e8
+
+
+def available() -> float | None:
+    """Bytes that may still be taken, of the machine and of the group of processes this one is in; None: unknown."""
+    found = []
+    try:
+        for line in Path("/proc/meminfo").read_text().splitlines():
+            if line.startswith("MemAvailable:"):
+                found.append(1024.0 * float(line.split()[1]))
+    except (OSError, ValueError, IndexError):
+        pass
+    try:
+        most = float(Path("/sys/fs/cgroup/memory.max").read_text())
+        found.append(most - float(Path("/sys/fs/cgroup/memory.current").read_text()))
+    except (OSError, ValueError):  # no such group, or no limit ("max")
+        pass
+    if not found:
+        try:
+            return 0.5 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+        except (AttributeError, OSError, ValueError):
+            return None
+    return min(found)
+
+
+def taken() -> float | None:
+    """Bytes that this process holds; None: unknown."""
+    try:
+        return float(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError, AttributeError):
+        pass
+    try:
+        import resource
+        import sys
+
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        return float(peak * (1 if sys.platform == "darwin" else 1024))
+    except ImportError:
+        return None
+
+
+class Footprint:
+    """Memory that a run has taken so far; to put together what it holds takes as much again at the end."""
+
+    def __init__(self) -> None:
+        self._start = taken()
+        self._next = time.monotonic() + EVERY
+
+    def excess(self) -> str | None:
+        """Why the run has to end for want of memory, or None."""
+        now = time.monotonic()
+        if self._start is None or now < self._next:
+            return None
+        self._next = now + EVERY
+        held = (taken() or 0.0) - self._start
+        if held < SMALL:
+            return None
+        left = available()
+        if left is None or left > 1.2 * held:
+            return None
+        return (
+            f"memory: the result has taken {held / 1e9:.2g} GB and only {left / 1e9:.2g} GB are left, which putting it "
+            "together needs; t_eval= with dense=False, or on_chunk=, keeps less"
+        )

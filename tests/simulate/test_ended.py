@@ -1,0 +1,217 @@
+"""Runs that cannot go on, take too long or too much, or are interrupted: each ends, says why and keeps what it has."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+import sympy
+from scipy.integrate import solve_ivp
+
+import fricmb as fm
+from fricmb._simulate import _arguments
+from fricmb.integrate import _memory
+from fricmb.integrate._integrator import Integrator
+from fricmb.integrate._kernel import entry
+from fricmb.integrate._radau import Radau
+from fricmb.integrate._stop import Watch, stopped, watched, watching
+
+METHODS = ("auto", "bdf", "radau", "collocation", "taylor", "timestepping", "bdf2-paper")
+VALUES = {
+    "log": (sympy.log(5 - fm.t), lambda t: np.log(5 - t)),
+    "sqrt": (sympy.sqrt(5 - fm.t), lambda t: np.sqrt(5 - t)),
+    "asin": (sympy.asin(fm.t / 5), lambda t: np.arcsin(t / 5)),
+}
+
+
+def step_of(method):
+    return {"step": 0.01} if method == "bdf2-paper" else {}
+
+
+def pushed(value, velocity=8.0, **contact):
+    """A block that slips in one direction throughout, under a push."""
+    block = fm.Body("block", mass=1.0, velocity={"x": velocity})
+    contact = {"law": fm.laws.Coulomb(mu_s=0.2), "normal_force": 1.0, **contact}
+    push = fm.Force("push", block, axis="x", value=value)
+    return fm.Scene("pushed", [block, push, fm.Contact("floor", block, **contact)])
+
+
+def endless(**belt):
+    """A block on a belt that goes on for ever."""
+    block = fm.Body("block", mass=1.0)
+    belt = fm.Driven("belt", velocity={"x": 0.2})
+    law = fm.laws.Coulomb(mu_s=0.8, mu_k=0.5)
+    parts = [block, belt, fm.Spring("spring", block, axis="x", stiffness=1.0)]
+    return fm.Scene("endless", [*parts, fm.Contact("rub", block, belt, law=law, normal_force=1.0)])
+
+
+@pytest.mark.parametrize("value", VALUES)
+@pytest.mark.parametrize("method", METHODS)
+def test_a_force_without_a_value_ends_the_run(method, value):
+    formula, number = VALUES[value]
+    with pytest.raises(fm.IntegrationError) as caught:
+        fm.simulate(pushed(formula), t_end=10.0, method=method, t_eval=np.linspace(0, 10, 101), **step_of(method))
+    error = caught.value
+    assert error.t == pytest.approx(5.0, abs=1e-6)
+    assert "push.value" in error.reason
+    assert f"{formula} is nan" in error.reason
+    partial = error.partial
+    assert np.isfinite(partial.q).all()
+    assert 4.89 < partial.t[-1] <= 5.0
+    truth = solve_ivp(
+        lambda t, y: (y[1], number(t) - 0.2), (0, 4.5), (0, 8.0), method="DOP853", rtol=1e-11, atol=1e-12
+    )
+    assert partial["block.x"][45] == pytest.approx(truth.y[0, -1], rel=1e-3 if method == "bdf2-paper" else 1e-5)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf", "collocation", "timestepping"])
+def test_a_normal_force_without_a_value_is_no_open_contact(method):
+    load = 1 + sympy.sqrt(3 - fm.t)
+    with pytest.raises(fm.IntegrationError, match=r"floor.normal_force = sqrt\(3 - t\) \+ 1 is nan") as caught:
+        fm.simulate(pushed(0.0, normal_force=load), t_end=6.0, method=method)
+    # a time step takes the load in its middle
+    assert caught.value.t == pytest.approx(3.0, abs=1e-4 if method == "timestepping" else 1e-6)
+    assert (caught.value.partial.mode("floor") == 1).all()
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_mechanism_whose_drive_has_no_value_ends(method):
+    rod = fm.RigidBody("rod", mass=1.0, inertia=0.1, position={"x": 0.5})
+    pin = fm.Revolute("pin", rod.point("end", (-0.5, 0.0)))
+    push = fm.Torque("push", rod, value=sympy.sqrt(0.3 - fm.t))
+    with pytest.raises(fm.IntegrationError, match=r"push\.value") as caught:
+        fm.simulate(fm.Scene("driven", [rod, pin, push]), t_end=1.0, method=method)
+    assert caught.value.t == pytest.approx(0.3, abs=1e-6)
+    assert caught.value.partial.t[-1] > 0.29
+
+
+class Short(Integrator):
+    """Stops half way and does not say so."""
+
+    name = "short"
+    order = "any"
+    takes = Radau.takes
+
+    def integrate(self, problem, start, t_end, **options):
+        return Radau().integrate(problem, start, 0.5 * (start.t + t_end), **options)
+
+
+def test_the_end_is_asserted():
+    with pytest.raises(fm.IntegrationError, match="ended before its time") as caught:
+        fm.simulate(endless(), t_end=10.0, method=Short())
+    assert caught.value.partial.t[-1] == 5.0
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_time_limit_ends_a_run(method):
+    scene = endless()
+    fm.simulate(scene, t_end=1.0, method=method, **step_of(method))  # whatever has to be compiled is
+    begin = time.perf_counter()
+    with pytest.raises(fm.IntegrationError, match=r"the time limit of 0\.4 s was reached") as caught:
+        fm.simulate(scene, t_end=1e8, method=method, time_limit=0.4, **step_of(method))
+    assert time.perf_counter() - begin < 10.0  # what was computed is put together, too
+    partial = caught.value.partial
+    assert 1.0 < partial.t[-1] <= caught.value.t < 1e8
+    assert np.isfinite(partial.q).all()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.parametrize("method", METHODS)
+def test_ctrl_c_ends_a_run_and_keeps_it(method):
+    scene = endless()
+    fm.simulate(scene, t_end=1.0, method=method, **step_of(method))
+    sender = subprocess.Popen(["sh", "-c", f"sleep 0.4; date +%s.%N; kill -INT {os.getpid()}"], stdout=subprocess.PIPE)
+    with pytest.raises(fm.Interrupted) as caught:
+        fm.simulate(scene, t_end=1e8, method=method, t_eval=np.arange(0.0, 1e6, 100.0), **step_of(method))
+    done = time.time()
+    asked = float(sender.communicate()[0])
+    assert done - asked < 4.0  # well below 1 s where the machine does nothing else
+    assert isinstance(caught.value, KeyboardInterrupt)
+    assert caught.value.partial.t[-1] > 0.0
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert again.t == caught.value.t
+    assert again.partial.t[-1] == caught.value.partial.t[-1]
+
+
+@entry
+def hang(x):
+    """What a kernel does that does not get on."""
+    n = 0
+    while not stopped():
+        n += 1
+    return n
+
+
+def test_a_hanging_kernel_ends_at_its_limit():
+    begin = time.perf_counter()
+    watch = Watch(0.2)
+    with watching(watch):
+        assert watched(hang, 1.0) > 0
+    assert watch.reason == "the time limit of 0.2 s was reached"
+    assert time.perf_counter() - begin < 10.0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_what_a_handler_raises_comes_out_of_a_hanging_kernel():
+    class Mine(Exception):
+        pass
+
+    def handler(number, frame):
+        raise Mine("it is time")
+
+    with watching(Watch(1e-9)):
+        watched(hang, 1.0)  # compiled
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(Mine, match="it is time"):
+            watched(hang, 1.0)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_threads_have_limits_of_their_own():
+    found = {}
+
+    def run(limit):
+        with watching(watch := Watch(limit)):
+            watched(hang, 1.0)
+        found[limit] = watch.reason
+
+    threads = [threading.Thread(target=run, args=(limit,)) for limit in (0.1, 0.3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == {limit: f"the time limit of {limit:g} s was reached" for limit in (0.1, 0.3)}
+
+
+def test_a_result_that_finds_no_room_ends_the_run(monkeypatch):
+    held = iter(np.arange(0.0, 1e12, 1e9))
+    monkeypatch.setattr(_memory, "EVERY", 0.0)
+    monkeypatch.setattr(_memory, "taken", lambda: next(held))
+    monkeypatch.setattr(_memory, "available", lambda: 3e9)
+    with pytest.raises(fm.IntegrationError, match=r"taken .* GB and only 3 GB are left") as caught:
+        fm.simulate(endless(), t_end=1e8, method="radau")
+    assert caught.value.partial.t[-1] > 0.0
+
+
+def test_values_that_find_no_room_are_refused_before_the_run(monkeypatch):
+    monkeypatch.setattr(_arguments, "available", lambda: 1e3)
+    with pytest.raises(fm.SceneError, match=r"t_eval: 1001 times of 6 numbers take .* GB"):
+        fm.simulate(endless(), t_end=10.0, t_eval=np.linspace(0, 10, 1001))
+
+
+def test_a_time_limit_is_a_positive_number():
+    for wrong in (0.0, -1.0, np.nan, "soon", True):
+        with pytest.raises(fm.SceneError, match="time_limit"):
+            fm.simulate(endless(), t_end=1.0, time_limit=wrong)
+    assert fm.simulate(endless(), t_end=1.0, time_limit=100.0).t[-1] == 1.0
