@@ -92,7 +92,7 @@ def _passes(run: Trajectory, near: float) -> Iterator[str]:
         top = float(r.max(initial=0.0))
 
         def speed(t: Floats, rows: slice = rows) -> Floats:
-            return np.hypot(*run.sample(t).g[rows])
+            return np.asarray(np.hypot(*run.sample(t).g[rows]))
 
         i = _minima(r, slips, 0.05 * top)
         t, least = _lowest(speed, seen.t[i - 1], seen.t[i + 1])

@@ -64,13 +64,13 @@ def fall_of(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, h: float
         value = drive(packed, s, k, y.g, y.N[k], y.z, h)
         for j in range(w.r.shape[0]):
             value = max(value, drive(packed, s, k, w.g[j], w.N[j, k], w.z[j], h))
-        return value
+        return float(value)
     row0 = ports.row[k]
     speed = slip_speed(y.g, row0, ports.row[k + 1] - row0)
     value = -coefficient(ports, packed.laws, k, s, speed, y.N[k])[1] * y.N[k]
     for j in range(w.r.shape[0]):
         value = max(value, -coefficient(ports, packed.laws, k, s, w.r[j, k], w.N[j, k])[1] * w.N[j, k])
-    return value
+    return float(value)
 
 
 @kernel

@@ -88,7 +88,7 @@ def force_off(
     for b in range(d):
         stiff += abs(s.out[d + nz + a * (d + 1 + nz) + b])
     stiff *= packed.ports.D[row0 + a, row0 + a]
-    return max(off - ROUND_OFF * size * (1.0 + h * stiff), 0.0) / (1.0 + gap * stiff)
+    return float(max(off - ROUND_OFF * size * (1.0 + h * stiff), 0.0) / (1.0 + gap * stiff))
 
 
 @kernel
@@ -105,7 +105,7 @@ def rate_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, j: int,
     for b in range(d + 1 + nz):
         size = max(size, abs(s.out[at + b] * s.x[b]))
     off = abs(s.out[d + a] - between(one.tab.mid[j], y.zd[z0 + a], one))
-    return gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(s.out[at + d + 1 + a]))
+    return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(s.out[at + d + 1 + a])))
 
 
 @kernel

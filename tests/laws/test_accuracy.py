@@ -45,7 +45,9 @@ def test_a_disc_comes_to_rest_sliding_and_spinning(spin):
     for least, most, distance in ((1e-8, 1e-7, 2e-4), (2e-11, 1e-9, 1e-5)):  # it comes in with a power of the speed
         late = (size > least) & (size < most)
         assert late.any() or least > 1e-9  # steps may pass over the first
-        np.testing.assert_allclose(slide[late] / rim[late], 0.653002, atol=distance)
+        # and a speed is right to a hundredth of rtol of the largest at best, however small it is itself
+        known = distance + 0.01 * 1e-12 * 0.3 / size[late]
+        assert (np.abs(slide[late] / rim[late] - 0.653002) <= known).all()
 
 
 def test_disc_law_is_the_integral_over_the_disc():
