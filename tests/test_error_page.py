@@ -4,16 +4,21 @@ import ast
 import functools
 import inspect
 import re
+import textwrap
 from pathlib import Path
 
 import pytest
 
 import fricmb as fm
 from fricmb import errors
+from fricmb._simulate._blame import _law_without_value, blame
+from fricmb._simulate._result import not_there
 from fricmb.analysis import AnalysisError
+from fricmb.integrate import _memory, _stop
 from fricmb.integrate.collocation import _collocation
 from fricmb.integrate.taylor import _taylor
 
+BLAME = (blame, _law_without_value)
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md")]
 PAGE = "\n".join(path.read_text(encoding="utf-8") for path in PAGES)
@@ -51,9 +56,10 @@ def reasons():
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
-    for node in ast.walk(ast.parse(inspect.getsource(_messages.failure_text))):
-        if isinstance(node, ast.Return):
-            yield text_of(node.value)
+    for function in (_messages.failure_text, _memory.Footprint.excess, _stop.Watch.look, not_there, *BLAME):
+        for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
+            if isinstance(node, ast.Return | ast.Assign) and text_of(node.value):
+                yield text_of(node.value)
 
 
 @functools.cache

@@ -41,7 +41,7 @@ _words[DUE] = NEVER
 llvmlite.binding.add_symbol(_SYMBOL, _words.ctypes.data)
 
 
-@intrinsic
+@intrinsic  # type: ignore[untyped-decorator]
 def _asked(typingctx: Any) -> Any:
     """Whether the run is to end, as a number."""
     signature = types.int32()
@@ -56,7 +56,7 @@ def _asked(typingctx: Any) -> Any:
         at = lambda i: builder.gep(words, [ir.Constant(short, 0), ir.Constant(short, i)])  # noqa: E731
 
         def load(i: int) -> Any:
-            loaded = builder.load(at(i))
+            loaded = builder.load(at(i))  # type: ignore[no-untyped-call]
             loaded.volatile = True
             return loaded
 
@@ -65,9 +65,9 @@ def _asked(typingctx: Any) -> Any:
         with builder.if_then(builder.icmp_signed("==", load(FLAG), ir.Constant(word, 0))):
             builder.store(ir.Constant(short, 0), result)
             left = builder.sub(load(COUNT), ir.Constant(word, 1))
-            builder.store(left, at(COUNT))
+            builder.store(left, at(COUNT))  # type: ignore[no-untyped-call]
             with builder.if_then(builder.icmp_signed("<=", left, ir.Constant(word, 0)), likely=False):
-                builder.store(ir.Constant(word, QUESTIONS), at(COUNT))
+                builder.store(ir.Constant(word, QUESTIONS), at(COUNT))  # type: ignore[no-untyped-call]
                 now = builder.alloca(word, size=2)
                 builder.store(load(DUE), now)
                 clock = load(CLOCK)
@@ -84,7 +84,7 @@ def _asked(typingctx: Any) -> Any:
                     pending = builder.call(builder.inttoptr(load(SIGNALS), kind.as_pointer()), [])
                     with builder.if_then(builder.icmp_signed("!=", pending, ir.Constant(short, 0)), likely=False):
                         fetch = ir.FunctionType(ir.VoidType(), [word.as_pointer()] * 3)
-                        places = [at(RAISED + i) for i in range(3)]
+                        places = [at(RAISED + i) for i in range(3)]  # type: ignore[no-untyped-call]
                         builder.call(builder.inttoptr(load(FETCH), fetch.as_pointer()), places)
                     builder.store(builder.call(builder.inttoptr(load(ASK), kind.as_pointer()), []), result)
         return builder.load(result)
@@ -156,7 +156,7 @@ def _ask() -> int:
 
 def _raised() -> BaseException:
     """The exception that the kernel has fetched; goes on its way when the kernel has returned."""
-    taken = [None if word == 0 else _object_at(int(word)) for word in _words[RAISED:]]
+    taken: list[Any] = [None if word == 0 else _object_at(int(word)) for word in _words[RAISED:]]
     _words[RAISED:] = 0
     kind, value = taken[0], taken[1]
     if isinstance(value, BaseException):

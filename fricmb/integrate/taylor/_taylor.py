@@ -196,5 +196,5 @@ def _trajectory(
     )  # fmt: skip
     failure = None if code == DONE else ended() or FAILURES[code].format(limit=int(net.i[LIMIT]))
     taken = int(net.i[N_SAMPLES])
-    held = None if t_eval is None or code != DONE else net
+    held = None if t_eval is None else net
     return TaylorRun(problem, degree, net.steps[:steps].copy(), transitions, counters, end, failure, marks, held, taken)

@@ -16,6 +16,8 @@ from fricmb.integrate.taylor._prepare import net_of, no_samples, with_arrays
 
 #: Numbers that checkpoints and rows may hold altogether.
 NUMBERS, ROWS = 3_000_000, 20_000_000
+#: Steps at a time on the way to samples.
+STRIDE = 16
 #: Arrays of the state.
 STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "travel", "large", "free", "x", "i", "stops")
 
@@ -118,7 +120,7 @@ class TaylorRun(Trajectory):
             net.i[N_SAMPLES] = 0
             if self.failure is not None:
                 net.x[END] = self.end.t  # nothing comes behind it
-            while net.i[N_SAMPLES] < len(t) and watched(drive_taylor, net, np.inf, 1) == PAUSE:
+            while net.i[N_SAMPLES] < len(t) and watched(drive_taylor, net, np.inf, STRIDE) == PAUSE:
                 pass
             for at in range(int(net.i[N_SAMPLES]), len(t)):  # of a run that could not begin
                 net.out_q[at], net.out_v[at], net.out_mode[at] = net.q, net.v, net.mode
