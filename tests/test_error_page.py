@@ -58,8 +58,9 @@ def reasons():
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
     for function in (_messages.failure_text, _memory.Footprint.excess, _stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
-            if isinstance(node, ast.Return | ast.Assign) and text_of(node.value):
-                yield text_of(node.value)
+            text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
+            if text and text.strip("."):
+                yield text
 
 
 @functools.cache
