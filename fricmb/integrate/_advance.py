@@ -40,7 +40,8 @@ PATIENCE = 10
 class Clock(NamedTuple):
     """Step control: ``h`` (1,) next step, ``usual`` (1,) step to start with after a transition, ``span`` (2,) bounds.
 
-    ``stops`` breakpoints; ``same`` (1,) transitions in a row at one instant; ``found``, ``retry`` room for locating.
+    ``stops`` breakpoints; ``same`` (2,) transitions in a row at one instant, and since the time ``retry[1]``;
+    ``found``, ``retry[0]`` room for locating.
     """
 
     h: Floats
@@ -144,12 +145,24 @@ def advance(
         code = end_round_off(packed, s, y, r, old, out, clock, address)
         if code != FAIL_STEP:
             return code
-    if clock.same[0] > 20 + 4 * y.mode.shape[0]:
+    if clock.same[0] > 20 + 4 * y.mode.shape[0] or pile_up(clock, end.t[0], y.mode.shape[0]):
         return FAIL_CHATTER
     copy_state(end, y)
     clock.h[0] = clock.usual[0]
     one.last[1] = 0.0
     return settled(transition(packed, s, y, k, lifted, r, old, out, address))
+
+
+@kernel
+def pile_up(clock: Clock, t: float, n_c: int) -> bool:
+    """Count a transition at t; whether hundreds of them have brought the run on by nothing."""
+    if clock.same[1] == 0:
+        clock.retry[1] = t
+    clock.same[1] += 1
+    if clock.same[1] <= 200 + 20 * n_c:
+        return False
+    clock.same[1] = 0
+    return bool(t - clock.retry[1] < 1e-12 * (clock.span[1] - clock.span[0]))
 
 
 @kernel

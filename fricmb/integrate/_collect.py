@@ -182,4 +182,4 @@ def clock_of(run: Collector) -> Clock:
     """Step control at the start of a run."""
     h = np.array([first_step(run)])
     span = np.array([run.start.t, run.t_end])
-    return room(Clock(h, h.copy(), span, run.packed.breakpoints, np.zeros(1, np.int64), np.zeros(2), np.zeros(1)))
+    return room(Clock(h, h.copy(), span, run.packed.breakpoints, np.zeros(2, np.int64), np.zeros(2), np.zeros(2)))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate._discs import share
 from fricmb.integrate._field import (
     Scratch,
     belt_velocity,
@@ -17,7 +18,7 @@ from fricmb.integrate._field import (
 )
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._lapack import solve_real
-from fricmb.integrate._laws import coefficient, smooth_force
+from fricmb.integrate._laws import break_away, coefficient, smooth_force
 from fricmb.integrate._pack import Packed, Ports
 from fricmb.integrate._problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
 from fricmb.integrate._room import block, room
@@ -36,7 +37,7 @@ class State(NamedTuple):
     ``a0`` (m,) relative accelerations without the forces of stuck contacts, ``size`` (m,)
     sums of magnitudes behind g (its round-off), ``wd`` (m,) rates of the prescribed part.
     ``fault`` (1,): NEGATIVE where a slip coefficient has turned so, INFINITE where an acceleration has.
-    ``low`` (n,): what the last additions to q have lost to round-off.
+    ``low`` (n,): what the last additions to q have lost to round-off.  ``way`` (m,): see ``share``.
     """
 
     t: Floats
@@ -60,6 +61,7 @@ class State(NamedTuple):
     rhs: Floats
     fault: Floats
     low: Floats
+    way: Floats
 
 
 def state(problem: Problem, start: Start) -> State:
@@ -71,7 +73,7 @@ def state(problem: Problem, start: Start) -> State:
     return room(State(
         np.array([float(start.t)]), q, v, z, np.zeros_like(z), np.zeros(m), np.zeros(nc), direction, np.zeros(m),
         np.zeros(n), np.zeros(n), mode, np.zeros(nc + 2), np.zeros(nc + 2), np.zeros(m), np.zeros(m), np.zeros(m),
-        np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n),
+        np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n), np.zeros(m),
     ))  # fmt: skip
 
 
@@ -249,6 +251,23 @@ def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots, addres
     return True
 
 
+@kernel
+def hold_limits(packed: Packed, s: Scratch, N: Floats, limit: Floats) -> None:
+    """Forces up to which contacts stick (n_c,)."""
+    for k in range(limit.shape[0]):
+        smooth = packed.ports.law[k] == LAW_SMOOTH
+        limit[k] = 0.0 if smooth else break_away(packed.ports, packed.laws, k, s, N[k]) * N[k]
+
+
+@kernel
+def share_load(packed: Packed, s: Scratch, mode: Codes, N: Floats, F: Floats, g: Floats, part: float) -> float:
+    """Share what redundant stuck contacts hold so that none is beyond ``part`` of its cone: see ``share``."""
+    limit = np.zeros(mode.shape[0])
+    hold_limits(packed, s, N, limit)
+    limit *= part
+    return float(share(packed.ports, mode, limit, F, g))
+
+
 @block
 def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
     """All that follows from t, q, v, z, modes and directions.  False: redundant stuck contacts, or see ``fault``."""
@@ -256,5 +275,7 @@ def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots
     known_forces(packed, s, y)
     if not stuck_forces(packed, y, sizes, pivots, address):
         return False
+    if packed.ports.soft[0] > 0.0:
+        share_load(packed, s, y.mode, y.N, y.F, y.way, 1.0)
     powers(packed, s, y.F, y.N, y.g, y.rate)
     return True

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate._discs import share
 from fricmb.integrate._field import Scratch, normal_force
 from fricmb.integrate._instant import (
     INFINITE,
@@ -87,6 +88,9 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
     ports = r.ports
     nc = r.mode.shape[0]
     w = r.w
+    held = np.zeros(nc)
+    # of redundant contacts one that is released may be held by the others: it does not slip
+    least = 1e-9 if ports.soft[0] > 0.0 else -1e-9
     big = 1e-300
     for a in range(y.a0.shape[0]):
         big = max(big, abs(y.a0[a]))
@@ -106,6 +110,10 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
     for trial in range(6 * nc + 10):
         if stopped() or not try_modes(y, r, s, address):
             break
+        if ports.soft[0] > 0.0:
+            for k in range(nc):
+                held[k] = ports.mu_s[k] * y.N[k]
+            share(ports, r.mode, held, w.F[0], y.way)
         worst, back, excess = -1, -1, 1.0 + MARGIN
         for k in range(nc):
             row0 = ports.row[k]
@@ -116,7 +124,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
                 ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
                 if ratio > excess:
                     excess, worst = ratio, k
-            elif r.mode[k] == SLIP and w.r[0, k] < -1e-9 * big and r.part[k] == 1:
+            elif r.mode[k] == SLIP and w.r[0, k] < least * big and r.part[k] == 1:
                 back = k
         if worst >= 0:
             row0 = ports.row[worst]
@@ -171,18 +179,41 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
     sizes, pivots = r.w.sizes, r.w.pivots
     some = False
     for k in range(y.mode.shape[0]):
+        r.tol[k] = y.size[packed.ports.row[k]]
+    for k in range(y.mode.shape[0]):
         if r.part[k] != 0:
             some = True
             y.mode[k] = STICK
     if some:
         project(packed, s, y, r, address)
         kinematics(packed, s, y)
+        if packed.ports.soft[0] > 0.0 and find_held(packed, y, r):
+            project(packed, s, y, r, address)
+            kinematics(packed, s, y)
         known_forces(packed, s, y)
         if solve_rest(packed, s, y, r, address) < 0:
             return 1
     if not complete(packed, s, y, sizes, pivots, address):
         return 3 if y.fault[0] == INFINITE else 2
     return 0
+
+
+@kernel
+def find_held(packed: Packed, y: State, r: Rest) -> bool:
+    """Mark contacts that slip by no more than round-off once those at rest do not: loops close through them.
+
+    ``r.tol`` has the sizes of their velocities before.
+    """
+    some = False
+    for k in range(y.mode.shape[0]):
+        row0 = packed.ports.row[k]
+        speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        slips = r.part[k] == 0 and y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH
+        if slips and speed <= 1e-13 * r.tol[k] + r.small[k]:
+            r.part[k] = 1
+            y.mode[k] = STICK
+            some = True
+    return some
 
 
 @kernel

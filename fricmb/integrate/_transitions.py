@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate._field import Scratch
-from fricmb.integrate._instant import State, slip_speed
+from fricmb.integrate._instant import State, share_load, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._laws import break_away
 from fricmb.integrate._modes import Rest, find_open, mark_rest, settle
@@ -247,6 +247,29 @@ def holds_nothing(packed: Packed, y: State, k: int) -> bool:
     return bool(held <= 1e-12 * top)
 
 
+@kernel
+def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool:
+    """Release, of redundant contacts that share a load, those that slip in the motion by which they give way.
+
+    They reach their cones as one: none can hold the load without the others.  False where there is no such motion.
+    """
+    nc = y.mode.shape[0]
+    kept = y.F.copy()
+    load = share_load(packed, s, y.mode, y.N, kept, y.way, 1.0 - 1e-6)
+    most = 0.0
+    for c in range(nc if load > 0.0 else 0):
+        row0 = packed.ports.row[c]
+        most = max(most, slip_speed(y.way, row0, packed.ports.row[c + 1] - row0))
+    for c in range(nc if most > 0.0 else 0):
+        row0 = packed.ports.row[c]
+        speed = slip_speed(y.way, row0, packed.ports.row[c + 1] - row0)
+        if old.mode[c] == STICK and r.part[c] == 1 and speed > 1e-3 * most:
+            r.part[c] = 2
+            for a in range(row0, packed.ports.row[c + 1]):
+                y.n[a] = y.way[a] / speed
+    return most > 0.0
+
+
 @block
 def transition(
     packed: Packed, s: Scratch, y: State, k: int, lifted: bool, r: Rest, old: Before, out: Rows, address: Ints
@@ -278,15 +301,10 @@ def transition(
         if c != k and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
             # released at this very instant: tried stuck again it would be on its cone, and so without end
             r.part[c] = 2
-        elif c != k and old.mode[c] == STICK and r.part[c] == 1 and ports.soft[0] > 0.0 and k >= 0 and not lifted:
-            # redundant contacts share a load and reach their cones as one: none can hold it without the others
-            size = slip_speed(y.F, row0, ports.row[c + 1] - row0)
-            if size > 0.0 and ports.D[row0, row0] * size >= (1.0 - 1e-9) * force:
-                r.part[c] = 2
-                for a in range(row0, ports.row[c + 1]):
-                    y.n[a] = -y.F[a] / size
     if k >= 0 and not lifted and packed.ports.law[k] != LAW_SMOOTH:
-        if old.mode[k] == STICK:
+        if old.mode[k] == STICK and ports.soft[0] > 0.0 and give_way(packed, s, y, r, old):
+            pass
+        elif old.mode[k] == STICK:
             r.part[k] = 2
             size = slip_speed(y.F, ports.row[k], ports.row[k + 1] - ports.row[k])
             for a in range(ports.row[k], ports.row[k + 1]):

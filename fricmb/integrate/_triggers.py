@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate._field import Scratch, normal_force, set_state, set_time
-from fricmb.integrate._instant import State, slip_speed
+from fricmb.integrate._instant import State, share_load, slip_speed
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._laws import break_away
 from fricmb.integrate._onestep import OneStep
@@ -26,6 +26,9 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
     n_s = tab.c.shape[0]
     first = -1
     found[0] = 2.0
+    if packed.ports.soft[0] > 0.0:
+        for j in range(n_s):
+            share_load(packed, s, y.mode, w.N[j], w.F[j], y.way, 1.0)
     for k in range(y.mode.shape[0]):
         row0 = packed.ports.row[k]
         d = packed.ports.row[k + 1] - row0

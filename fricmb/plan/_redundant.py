@@ -22,7 +22,8 @@ def redundant(scene: Scene, islands: Iterable[Island]) -> list[str]:
         if names:
             notes.append(
                 f"contacts {short_list(names)} are redundant: stuck together, only some sums of their forces are"
-                " determined, and the forces of least norm are given"
+                " determined, and the forces of least norm are given (beyond a limit of sticking: those that load the"
+                " contacts alike)"
             )
     return notes
 
