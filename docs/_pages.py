@@ -190,3 +190,40 @@ def law_dimension(law: str, name: str) -> str:
     if (law, name) == ("Tabulated", "speed"):
         return "length/time"
     return LAW_DIMENSIONS.get(name, "1")
+
+
+# -- the oracle -----------------------------------------------------------------------------------------------------
+def oracle(result) -> str:
+    """Verdicts by method of a run of ``python -m tests.oracle``, then every run that failed."""
+    about, kinds = result["about"], ("right", "noted", "wrong", "stopped", "late", "crashed", "refused")
+    counted = {
+        kind: ", ".join(f"{n} {outcome}" for outcome, n in counts.items() if n)
+        for kind, counts in result["scenes"].items()
+    }
+    lines = [
+        f"{about['date']}, `rtol` {about['rtol']:g}, {about['minutes']:g} minutes, first seed {about['seed']}; scenes: "
+        + "; ".join(f"{kind}: {text}" for kind, text in counted.items()) + ".", "",
+    ]  # fmt: skip
+    rows = [
+        (f"`{name}`", *(str(row[kind]) for kind in kinds), digits(row["worst"]), digits(row["percentile_99"]),
+         str(row["wrong_transitions"]))
+        for name, row in result["methods"].items()
+    ]  # fmt: skip
+    lines += table(("method", *kinds, "worst", "99 %", "transitions wrong"), rows)
+    failed = [
+        (where(found), f"`{found['method']}`", found["verdict"], digits(found["ratio"]), cell(found["why"]))
+        for found in result["failures"]
+    ]
+    if failed:
+        lines += ["Runs that failed:", "", *table(("scene", "method", "verdict", "error", "why"), failed)]
+    return "\n".join(lines)
+
+
+def digits(number) -> str:
+    """Two digits; a dash where there is none."""
+    return "-" if number is None else f"{number:.2g}"
+
+
+def where(found) -> str:
+    """Law and situation, or kind and seed."""
+    return f"{found['law']}, {found['situation']}" if "law" in found else f"{found['kind']} {found['seed']}"

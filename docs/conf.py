@@ -103,18 +103,24 @@ def benchmark_pages(app):
 
 
 def reference_pages(app):
-    """The parts of the reference that come out of the code."""
+    """The parts of the reference that come out of the code, and what the oracle found, out of committed results."""
+    import json
     from pathlib import Path
 
     import _pages
     import _pictures
 
     here = Path(app.srcdir) / "reference"
+    found = {
+        name: json.loads((here.parent / "benchmark" / f"{name}.json").read_text(encoding="utf-8"))
+        for name in ("oracle", "oracle_laws")
+    }
     for name, text in {
         "command_line": _pages.command_line(),
         "models": _pages.model_pages(lambda model: _pictures.write(model, here)),
         "model_parameters": _pages.model_parameters(),
         "law_parameters": _pages.law_parameters(),
+        **{name: _pages.oracle(result) for name, result in found.items()},
     }.items():
         (here / f"_{name}.md").write_text(text, encoding="utf-8")
 
