@@ -1,6 +1,6 @@
 """Runs that are known to be wrong, with the cause: a test holds this list exact, an entry that passes is removed.
 
-``CELLS``: law, situation and method of the quick cells of the table.
+``CELLS``: law, situation and method of the quick cells of the table.  ``PARTS``: element or joint, and method.
 """
 
 from __future__ import annotations
@@ -19,4 +19,9 @@ CELLS: dict[tuple[str, str, str], str] = {
     ("Jenkins", "reversal", "radau"): _STATES,
     ("LoadDependent", "reversal under a varying load", "timestepping"): _VARYING,
     ("Logarithmic", "reversal", "taylor"): "the logarithm near r = 0 is beyond the series: it stops with an error",
+}
+
+#: Element or joint and method.
+PARTS: dict[tuple[str, str], str] = {
+    ("Rod", "taylor"): "a mechanism without contacts is not refused: a ValueError of numpy",
 }
