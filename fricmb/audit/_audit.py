@@ -22,7 +22,7 @@ from fricmb.integrate._trajectory import Samples
 #: Tolerance that a run of fixed steps is measured by, which nobody has asked for.
 FIXED = 1e-3
 #: Steps that are looked at: at most so many, and so many numbers at the nodes within them.
-STEPS, NUMBERS, STEPS_OF_MECHANISMS = 400, 6_000_000, 60
+STEPS, NUMBERS, STEPS_OF_MECHANISMS = 250, 6_000_000, 60
 #: A dense output may be off by so many times more than the ends of steps: in many methods it is of a lower order.
 DENSE = 10.0
 

@@ -28,8 +28,8 @@ _ONSETS, _NODES = 40, 12
 def look(statements: Statements, units: Units, gathered: Gathered, rows: Samples, sample: Any, events: Any) -> None:
     """Every contact with two rows at its break-away."""
     for k, law in statements.contacts.items():
-        if law.smooth:
-            continue
+        if law.smooth or len(statements.names.directions[k]) > 1 or statements.mass_matrices or statements.joints:
+            continue  # without a solution for D; the equations of motion are looked at all the same
         begins, own = opening(rows, k), np.asarray(events.of(contact=law.name).t)
         for t in begins[:: max(1, -(-begins.size // _ONSETS))].tolist():
             later = own[own > t]
@@ -48,8 +48,6 @@ def _one(
     begin = s.moment(sample(np.array([t])))
     found = s.found(begin)
     W = _matrix(found.rows[k], len(s.mass), 0)
-    if s.mass_matrices or s.joints or len(W) > 1:
-        return  # D is not known without a solution; the equations of motion are looked at all the same
     D = float((W**2 / s.mass).sum())
     N = float(found.N[k][0])
     fastest = float(np.abs(rows.g[int(s.names.row[k]), within]).max())
