@@ -16,6 +16,8 @@ from fricmb.integrate._trajectory import Samples
 
 #: Round-off of a value, relative to its size.
 ROUND_OFF = 4e-15
+#: What moves by less than this share of what friction could do in a step rests.
+RESTS = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +76,8 @@ def at_rest(units: Units, statements: Statements, rows: Samples) -> Units:
             for i, c in row:
                 push[i] += abs(float(np.ravel(c)[0])) * units.F[statements.names.row[k] + r]
     v = push / np.where(statements.mass > 0.0, statements.mass, np.inf) * h
+    # of what moves its own size counts, however little friction it would take to move it
+    v = np.where(units.v < RESTS * v, v, 0.0)
     loss = (
         np.array([float(units.F[a:b].sum()) for a, b in pairwise(statements.names.row)]) * float(v.max(initial=0.0)) * h
     )
