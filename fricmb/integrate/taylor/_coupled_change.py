@@ -22,6 +22,8 @@ from fricmb.integrate.taylor._series import belt_at, polynomial
 
 #: How often a correction is made again on a wider range of slip speeds.
 TRIES = 4
+#: Part of the rest of a step for which a correction has to be good.
+BRIEF = 1e-3
 
 
 @kernel
@@ -209,8 +211,14 @@ def coupled_change(net: Net, c: int, tau: float, places: Ints) -> int:
     cut_step(net, count, tau, h)
     co = net.coupled
     pay_touched(net, count, tau)
-    add_coupled(net, count, tau)
     keep_net_event(net, net.x[TIME] + tau * h, c, kind)
+    if net.x[UNTIL] - tau < BRIEF * (1.0 - tau) and tau > BRIEF:
+        # a correction that is good for next to nothing is the round-off of its coefficients: the step ends here
+        net.x[UNTIL] = tau
+        net.due[c] = math.inf
+        forget(net, count)
+        return 0
+    add_coupled(net, count, tau)
     for slot in range(net.i[N_TOUCHED]):
         push_due(net, co.here[slot], taylor_search(net, co.here[slot], tau, places))
     forget(net, count)

@@ -11,6 +11,9 @@ from fricmb.integrate.taylor._layout import ALLOWED, FASTEST, PAID
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._series import belt_at, belt_rate, belt_value, structure_row
 
+#: Speeds below this part of what friction may bring in the step are those of slip that begins.
+UNMOVED = 1e-3
+
 
 @kernel
 def relative_row(net: Net, c: int, k: int, h: float) -> float:
@@ -35,6 +38,10 @@ def slip_force(net: Net, c: int, k: int, h: float) -> float:
     else:
         if k == 1:
             pad = 0.3 * abs(x[1]) + 0.05 * abs(x[0]) + 0.01 * net.x[FASTEST]
+            reach = net.compliance[c] * net.coupled.N[c] * coefficient_at(net, c, x[0]) * h
+            if pad < UNMOVED * reach:
+                # slip that begins does not tell yet where it goes: as far as friction may bring it
+                pad = reach
             fit_around(net, c, x[0], pad - min(0.0, x[1]), pad + max(0.0, x[1]))
             x[0] = (x[0] - net.coupled.middle[at]) / net.coupled.half[at]
             compose(net.coupled.curve[at], net.coupled.terms[at], x, b, 0)

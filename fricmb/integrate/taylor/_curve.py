@@ -103,16 +103,28 @@ def compose(curve: Floats, terms: int, x: Floats, b: Floats2, k: int) -> float:
 
 
 @kernel
+def holds_at(x: Floats, last: int, s: float, closed: bool) -> bool:
+    """Whether the argument x(s) lies where the curve holds; one that begins at speed 0 holds below it, too."""
+    value = 0.0
+    for k in range(last, -1, -1):
+        value = value * s + x[k]
+    return bool(value <= 1.02 and (value >= -1.02 or not closed))
+
+
+@kernel
 def within(net: Net, at: int, x: Floats, last: int, length: float) -> float:
-    """Part of ``length`` in which the argument x(s) stays where the curve holds (from 1/12 on), 1.0 if in all of it."""
+    """Part of ``length`` in which the argument x(s) stays where the curve holds, 1.0 if in all of it."""
     closed = net.coupled.middle[at] > 1.001 * net.coupled.half[at]
     for i in range(1, 13):
-        s = length * i / 12.0
-        value = 0.0
-        for k in range(last, -1, -1):
-            value = value * s + x[k]
-        if value > 1.02 or (closed and value < -1.02):
-            return max(1, i - 1) / 12.0
+        if not holds_at(x, last, length * i / 12.0, closed):
+            if i > 1:
+                return (i - 1) / 12.0
+            part = 1.0 / 24.0
+            for _ in range(60):
+                if holds_at(x, last, length * part, closed):
+                    break
+                part *= 0.5
+            return part
     return 1.0
 
 
