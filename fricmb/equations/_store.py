@@ -83,10 +83,15 @@ def write(name: str, facts: dict[str, Any], source: str | None) -> None:
 _sources: dict[str, str] = {}
 
 
+def source_of(name: str) -> str:
+    """The source of the kernel stored under a key."""
+    return str(_sources.get(name) or (_held(name) or {})["source"])
+
+
 @cache
 def _module(name: str) -> Any:
     """The module of a kernel, known by name, its source to be found by tracebacks."""
-    source = _sources.get(name) or (_held(name) or {})["source"]
+    source = source_of(name)
     path = f"<template {name}>"
     linecache.cache[path] = len(source), None, source.splitlines(keepends=True), path
     # machine code is kept by content and knows its module by name: the same content has the same one

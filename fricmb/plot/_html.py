@@ -98,8 +98,10 @@ def solution_html(sol: Solution) -> str:
 
 
 def solution_notebook(sol: Solution) -> str:
-    """What a notebook shows; of a loaded file a line, since more would open the pickle in it unasked."""
-    if isinstance(sol._run, bytes):
+    """What a notebook shows; of a loaded file a line, since more would open the run in it unasked."""
+    from fricmb.solution._stored import Stored
+
+    if isinstance(sol._run, Stored):
         return _block(f"<pre>{escape(repr(sol))}</pre>sol.plot.view(path) writes an interactive view")
     return solution_html(sol)
 

@@ -15,7 +15,7 @@ SMOOTH = [n for n in laws.names if getattr(laws, n).example().kind == "smooth" a
 
 
 def statements_of(template):
-    text = (_store.folder() / f"{template.key}.py").read_text()
+    text = _store.source_of(template.key)
     return re.search(r'straight\("""\n(.*)\n"""\)', text, re.DOTALL).group(1)
 
 

@@ -13,6 +13,7 @@ from PIL import Image
 from scipy.io import wavfile
 
 import fricmb as fm
+from fricmb.solution._stored import Stored
 from fricmb.cli import main
 from fricmb.plot._animation import Animation
 from fricmb.plot._layout import layout
@@ -147,7 +148,7 @@ def test_a_loaded_run_is_not_opened_unasked(belt, tmp_path):
     belt.save(tmp_path / "run.npz")
     loaded = fm.Solution.load(tmp_path / "run.npz")
     assert f"{len(belt.events)} events" in loaded._repr_html_()
-    assert isinstance(loaded._run, bytes)
+    assert isinstance(loaded._run, Stored)
     assert "<canvas" in loaded.plot.view(tmp_path / "view.html").read_text()
 
 

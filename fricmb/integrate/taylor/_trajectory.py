@@ -114,7 +114,7 @@ class TaylorRun(Trajectory):
             last = len(self.transitions.t)
             net = with_arrays(
                 net, stops=state["stops"], events=np.zeros((last + problem.n_c + 1, 3)),
-                steps=np.zeros((len(self._steps) + 1, 2)),
+                steps=np.zeros((2 * len(self._steps) + STRIDE, 2)),  # pauses at marks may end steps, too
                 **{**no_samples(problem.n, problem.n_c, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip
             net.i[N_SAMPLES] = 0
