@@ -13,11 +13,11 @@ from PIL import Image
 from scipy.io import wavfile
 
 import fricmb as fm
-from fricmb.solution._stored import Stored
 from fricmb.cli import main
 from fricmb.plot._animation import Animation
 from fricmb.plot._layout import layout
 from fricmb.plot._style import BLUE, ORANGE
+from fricmb.solution._stored import Stored
 
 
 @pytest.fixture(scope="module")
