@@ -125,6 +125,7 @@ INTERRUPTED = """
 import pickle, signal, sys
 import numpy as np
 import fricmb as fm
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be told to ignore it
 method, options = sys.argv[1], eval(sys.argv[2])
 block, belt = fm.Body("block", mass=1.0), fm.Driven("belt", velocity={"x": 0.2})
 rub = fm.Contact("rub", block, belt, law=fm.laws.Coulomb(mu_s=0.8, mu_k=0.5), normal_force=1.0)

@@ -79,7 +79,8 @@ def test_the_store_does_not_keep_what_was_ended(tmp_path, monkeypatch):
 
 
 SCRIPT = """
-    import os, sys, time
+    import os, signal, sys, time
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be told to ignore it
     from fricmb._sweep._processes import run_in_processes
 
     def work(value):
