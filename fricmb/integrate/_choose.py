@@ -124,7 +124,8 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
         rows = port_rows(problem)
         return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     stepping = TimeStepping()
-    if problem.m > many_rows(rtol) and stepping.refuses(problem) is None:
+    # under normal forces that vary in time, time steps still make transitions that are none
+    if problem.m > many_rows(rtol) and problem.n_v == 0 and stepping.refuses(problem) is None:
         crowd = f"{problem.m} rows of contacts, more than {many_rows(rtol)}: implicit steps over transitions"
         return stepping, f"{crowd}; {many.refuses(problem)}"
     if problem.n > BEARABLE and problem.n_c and not is_banded(problem) and stepping.refuses(problem) is None:

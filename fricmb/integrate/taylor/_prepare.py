@@ -38,6 +38,8 @@ def refusal(problem: Problem) -> str | None:
 
 
 def _refusal(problem: Problem) -> str | None:
+    if problem.mechanism is not None:
+        return "this scene has bodies that turn, or joints"
     contacts, linear = problem.contacts, problem.linear
     if len(problem.elements.table.address):
         return "this scene has nonlinear elements"
@@ -47,6 +49,9 @@ def _refusal(problem: Problem) -> str | None:
         return "coefficients of friction that depend on slip speed must be formulas"
     if problem.m != problem.n_c:
         return "every contact must slide along one direction"
+    on_belts = contacts.csr("Wu").rows
+    if len(problem.signals.breakpoints) and (contacts.law[on_belts] != LAW_CONSTANT).any():
+        return "where functions of time have breakpoints, contacts with driven bodies need a constant coefficient"
     if not linear.csr("M").is_diagonal():
         return "the mass matrix must be diagonal"
     if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
