@@ -17,7 +17,7 @@ from fricmb.integrate._pack import Packed
 from fricmb.integrate._problem import Floats, Floats2
 
 #: Halvings of the way from the start to the end of a step, each time towards the larger change of the force.
-HALVINGS = 4
+HALVINGS = 10
 
 
 @kernel
