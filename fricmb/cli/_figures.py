@@ -14,9 +14,8 @@ import fricmb as fm
 from fricmb.errors import unknown_name
 from fricmb.models.brake4dof import CASES, brake4dof
 from fricmb.models.brake_paper import FIGURES, T_END, run
-from fricmb.plot import SolutionPlots, Units
+from fricmb.plot import SolutionPlots
 
-DIMENSIONLESS = Units(time="1", length="1", force="1")
 #: Models whose source has figures.
 MODELS = ("brake4dof",)
 
@@ -70,7 +69,7 @@ def page(sol: fm.Solution, title: str) -> Figure:
     """Six panels on one page."""
     figure = Figure(figsize=(10.0, 9.5), layout="constrained")
     axes = figure.subplots(3, 2)
-    plots = SolutionPlots(sol, DIMENSIONLESS)
+    plots = SolutionPlots(sol)
     plots.velocities(["pad.x", "rotor.x"], ax=axes[0, 0])
     plots.velocities(["pad.y", "rotor.y"], ax=axes[0, 1])
     plots.phase("pad.x", ax=axes[1, 0])

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 import fricmb as fm
 from fricmb.cli._output import replace_together
-from fricmb.plot import Units
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 PICTURES = ("velocities", "phase", "energy", "transitions", "force")
 
 
-def write_all(sol: fm.Solution, folder: Path, units: Units, summary: str, *, plots: bool) -> list[str]:
+def write_all(sol: fm.Solution, folder: Path, summary: str, *, plots: bool) -> list[str]:
     """Write summary, data and, unless told otherwise, the pictures; returns the names of the files.
 
     Those of an earlier run are replaced together, once all have been written, and its other pictures go.
@@ -34,7 +33,7 @@ def write_all(sol: fm.Solution, folder: Path, units: Units, summary: str, *, plo
         write_csv(sol, new / "solution.csv")
         write_events(sol, new / "events.csv")
         names = ["summary.json", "solution.npz", "solution.csv", "events.csv"]
-        return names + (write_pictures(sol, new, units) if plots else [])
+        return names + (write_pictures(sol, new) if plots else [])
 
     return replace_together(folder, write, tuple(f"{name}.png" for name in PICTURES))
 
@@ -71,14 +70,14 @@ def write_events(sol: fm.Solution, path: Path) -> None:
         file.writelines(f"{event.t!r},{event.contact},{event.kind}\n" for event in sol.events)
 
 
-def write_pictures(sol: fm.Solution, folder: Path, units: Units) -> list[str]:
+def write_pictures(sol: fm.Solution, folder: Path) -> list[str]:
     """Velocities, phase planes, forces with their cones, transitions, energy."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     import matplotlib.pyplot as plt
 
-    plots = fm.plot.SolutionPlots(sol, units)
+    plots = sol.plot
     pictures: dict[str, Callable[[], Figure]] = {
         "velocities": plots.velocities,
         "phase": partial(plots.phase, _liveliest(sol)),

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._style import figure_of, panels
-from fricmb.plot._units import SCENE_UNITS, Units
+from fricmb.plot._units import Units
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 class SignalPlots:
     """The part of ``sol.plot`` that is about signals."""
 
-    def __init__(self, sol: Solution, units: Units = SCENE_UNITS) -> None:
+    def __init__(self, sol: Solution, units: Units | None = None) -> None:
         self.sol = sol
-        self.units = units
+        self.units = sol.units if units is None else units
 
     def spectrum(self, name: str, *, highest: float | None = None, ax: Axes | None = None) -> Figure:
         """Maximum-entropy spectrum of a signal ("pad.y", "lining.force.x", ...) with its peaks.

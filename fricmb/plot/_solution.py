@@ -28,7 +28,7 @@ class SolutionPlots(SignalPlots):
     ----------
     sol : Solution
     units : Units, optional
-        For the labels; default: the names of the dimensions.
+        For the labels; default: those of the solution, which are those of its scene.
     """
 
     @cached_property

@@ -19,6 +19,7 @@ from fricmb.solution._run import Record, Run, first_bad, is_finite
 from fricmb.solution._stats import Stats
 from fricmb.solution._stored import Stored
 from fricmb.solution._summary import describe, summarise
+from fricmb.values import Units
 
 if TYPE_CHECKING:
     import pandas
@@ -53,6 +54,7 @@ class Solution:
         self._span = run.t_start, run.t_end
         self.has_rows = times is None
         self._energies: tuple[Floats, Floats] | None = None
+        self._units: Units | None = None
         self.record = _finite(run.rows() if times is None else run.sample(times))
 
     # ---- motion
@@ -134,6 +136,7 @@ class Solution:
         run = self.run
         other = Solution(names=self.names, run=run, stats=self.stats, events=self.events, times=run.inside(t))
         other.__dict__["_reference"] = self._reference
+        other._units = self._units
         return other
 
     # ---- contacts
@@ -239,6 +242,13 @@ class Solution:
     def scene(self) -> Any:
         """The scene that was run, with the values it was run with (of joined runs the last)."""
         return self.run.scene
+
+    @property
+    def units(self) -> Units:
+        """Names of the units, those of the scene (of a loaded file without opening it)."""
+        if self._units is None:
+            self._units = getattr(self.scene, "units", None) or Units()
+        return self._units
 
     @property
     def end(self) -> Start:
@@ -364,10 +374,12 @@ def restore(
     energies: tuple[Floats, Floats],
     reference: Reference,
     run: Stored,
+    units: Units,
 ) -> Solution:
     """A solution from what a file holds; ``run`` is left closed until it is needed."""
     sol = Solution.__new__(Solution)
     sol.names, sol.stats, sol.record, sol.has_rows = names, stats, record, has_rows
     sol._events, sol._span, sol._energies, sol._run = events, span, energies, run
+    sol._units = units
     sol.__dict__["_reference"] = reference
     return sol
