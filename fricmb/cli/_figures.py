@@ -31,7 +31,7 @@ def figures(options: argparse.Namespace) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     for case in cases:
         sol = run(str(case), t_end=options.t_end, rtol=options.rtol)
-        path = folder / f"brake4dof-case{case}.png"
+        path = folder / f"brake4dof-case{case}.{options.format}"
         page(sol, f"brake4dof, case {case}").savefig(path, dpi=150)
         print(path)
     if options.t_end >= T_END:
@@ -54,7 +54,7 @@ def _paper(folder: Path, cases: list[str], options: argparse.Namespace) -> Itera
         if figure.case not in cases:
             continue
         sol = run(figure.case, t_end=options.t_end, rtol=options.rtol)
-        path = folder / f"figure{number:02d}.png"
+        path = folder / f"figure{number:02d}.{options.format}"
         drawn = figure.draw(sol)
         drawn.savefig(path, dpi=150)
         plt.close(drawn)
