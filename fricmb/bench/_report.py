@@ -116,8 +116,8 @@ process, compilation apart.</p>"""
 
 
 _SLOPES = (
-    "each line is one formula with steps of one length each; a formula of order p falls by p decades while the steps grow "
-    "by one, until round-off ends it, and the legend says the slope that was fitted"
+    "each line is one formula with steps of one length each; a formula of order p falls by p decades while the "
+    "steps grow by one, until round-off ends it, and the legend says the slope that was fitted"
 )
 _ORDERS = """<p class="note">Error against number of steps where nothing sticks: the largest over the run, also between
 steps, where the order of the dense output counts (for Radau IIA that of its stages, about s, not the 2 s - 1 at the

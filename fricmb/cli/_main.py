@@ -253,13 +253,15 @@ def _add_plot(commands: _Commands) -> None:
     sub.add_argument(
         "kind",
         metavar="KIND",
-        help="velocities, phase, path, force, transitions, energy, spectrum, spectrogram, orders, animation, sound, view",
+        help="velocities, phase, path, force, transitions, energy, spectrum, spectrogram, orders, animation, sound or "
+        "view",
     )
     sub.add_argument("--laws", type=Path, metavar="FILE.py", help="where own laws are defined; this file is run")
     sub.add_argument("--of", metavar="NAME", help="the dof, contact or signal that is shown, such as pad.y")
     sub.add_argument("--hz", action="store_true", help="spectra: frequency in place of angular frequency")
     sub.add_argument("--theme", choices=("light", "dark"), help="colours for a light or a dark page")
-    sub.add_argument("--out", type=Path, metavar="FILE", help="default: KIND.png, .gif, .wav or .html beside FILE; .svg and .pdf are lines")
+    kinds = "default: KIND.png, .gif, .wav or .html beside FILE; .svg and .pdf are lines"
+    sub.add_argument("--out", type=Path, metavar="FILE", help=kinds)
     sub.add_argument("--t-start", type=float, metavar="T", help="start of the part shown; default: that of the run")
     sub.add_argument("--t-end", type=float, metavar="T", help="end of the part shown; default: that of the run")
     sub.add_argument("--frames", type=int, default=120, metavar="N", help="animation: pictures (default: %(default)s)")
