@@ -1,9 +1,9 @@
 """
-A law of your own
-=================
+What does a law of my own do?
+=============================
 
-A friction law is one small class.  Here a coefficient that falls with the logarithm of the slip speed, as
-rate-dependent friction of rock does, on the mass on a belt.
+A friction law is one small class. This one falls with the logarithm of the slip speed, as friction of rock does. The
+mass on the belt is torn off when its spring (k = 1) has reached mu_s N = 1.5, first after 1.5/0.1 = 15 of time.
 """
 
 from dataclasses import dataclass
@@ -27,31 +27,13 @@ class LogWeakening(fm.FrictionLaw):
         return self.mu_s / (1 + self.slope * sympy.log(1 + r / self.v_0))
 
 
-law = LogWeakening(mu_s=1.5, slope=0.1)
-
-# %%
-# Before it runs, look at it.  The derivative comes from the same definition.
-
-r = np.linspace(0.0, 0.5, 400)
-figure, ax = plt.subplots(figsize=(6, 3.2), layout="constrained")
-ax.plot(r, law.coefficient(r))
-ax.set_xlabel("slip speed")
-ax.set_ylabel("coefficient of friction")
-ax.grid(True, linewidth=0.4, alpha=0.5)
+law, r = LogWeakening(mu_s=1.5, slope=0.1), np.linspace(0.0, 0.5, 400)
+sol = fm.simulate(fm.models.belt_oscillator(law=law, belt=0.1), t_end=100.0, rtol=1e-9)
+figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.2), layout="constrained")
+left.plot(r, law.coefficient(r))
+left.set(xlabel="slip speed", ylabel="coefficient of friction")
+sol.plot.phase("mass.x", ax=right)
 plt.show()
 
-# %%
-
-sol = fm.simulate(fm.models.belt_oscillator(law=law), t_end=100.0, rtol=1e-9)
-figure, ax = plt.subplots(figsize=(6, 4), layout="constrained")
-sol.plot.phase("mass.x", ax=ax)
-plt.show()
-
-# %%
-# It is torn off when the spring has reached mu_s N: at x = 1.5, for the first time at 15.
-
-first = sol.events[0]
-print(first)
-assert first.kind == "slip"
-assert abs(first.t - 15.0) < 1e-7
-assert abs(sol.energy.residual).max() < 1e-6
+print(sol.events[0])
+assert abs(sol.events[0].t - 15.0) < 1e-7

@@ -168,7 +168,7 @@ class _Reader:
 
 
 def _globals_of(code: CodeType) -> set[str]:
-    """Names that a code takes from its module; an attribute may have the name of something there that it never calls."""
+    """Names that a code takes from its module; an attribute may have the name of something there and be another."""
     return {str(step.argval) for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
 
 
