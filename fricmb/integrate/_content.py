@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
-_COMPILER = ("_room", "_call", "_kernel", "_linked")
+_COMPILER = ("_room", "_call", "_kernel")
 
 
 @lru_cache(maxsize=1)
@@ -168,7 +168,7 @@ class _Reader:
 
 
 def _globals_of(code: CodeType) -> set[str]:
-    """Names that a code takes from its module; an attribute may have the name of something there that it never calls."""
+    """Names that a code takes from its module; an attribute may have the name of something there and be another."""
     return {str(step.argval) for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
 
 
