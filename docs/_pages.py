@@ -195,7 +195,8 @@ def law_dimension(law: str, name: str) -> str:
 # -- the oracle -----------------------------------------------------------------------------------------------------
 def oracle(result) -> str:
     """Verdicts by method of a run of ``python -m tests.oracle``, then every run that failed."""
-    about, kinds = result["about"], ("right", "noted", "wrong", "stopped", "late", "crashed", "refused")
+    about = result["about"]
+    kinds = ("right", "noted", "wrong", "stopped", "late", "crashed", "refused", "marginal")
     counted = {
         kind: ", ".join(f"{n} {outcome}" for outcome, n in counts.items() if n)
         for kind, counts in result["scenes"].items()
@@ -204,8 +205,10 @@ def oracle(result) -> str:
         f"{about['date']}, `rtol` {about['rtol']:g}, {about['minutes']:g} minutes, first seed {about['seed']}; scenes: "
         + "; ".join(f"{kind}: {text}" for kind, text in counted.items()) + ".", "",
     ]  # fmt: skip
+    for name, rtol in about.get("least_rtol", {}).items():
+        lines += [f"`{name}`: `rtol` {rtol:g}.", ""]
     rows = [
-        (f"`{name}`", *(str(row[kind]) for kind in kinds), digits(row["worst"]), digits(row["percentile_99"]),
+        (f"`{name}`", *(str(row.get(kind, 0)) for kind in kinds), digits(row["worst"]), digits(row["percentile_99"]),
          str(row["wrong_transitions"]))
         for name, row in result["methods"].items()
     ]  # fmt: skip

@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-from .judge import Truth, Worker, judge, truth
-from .mechanisms import Chain
-from .mechanisms import case_of as chain_case
-from .problem import OracleError
-from .random_scenes import KINDS, generate
-from .shrink import BAD, shrunk
-from .spec import case_of
-from .table import LAWS, METHODS, SITUATIONS
-from .table import case as cell
+from .campaign import gathered, tried
+from .random_scenes import KINDS
+from .shrink import BAD
+from .table import METHODS
 from .tally import Tally
 
 
@@ -30,6 +23,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--methods", default=",".join(METHODS), help=f"of {', '.join(METHODS)}")
     parser.add_argument("--rtol", type=float, default=1e-6)
     parser.add_argument("--limit", type=float, default=20.0, help="seconds of the processor for a run (default 20)")
+    parser.add_argument("--processes", type=int, default=1, help="so many scenes at once")
     parser.add_argument("--table", action="store_true", help="every law in every situation in place of random scenes")
     parser.add_argument("--laws", default="", help="with --table: these alone")
     parser.add_argument("--shrink", action="store_true", help="look for a smaller scene that fails")
@@ -37,65 +31,27 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def scenes(options: argparse.Namespace) -> Iterator[tuple[str, dict[str, Any], Any]]:
-    """Kind, where it comes from, and the scene as data (None: a cell of the table)."""
-    if options.table:
-        for law in options.laws.split(",") if options.laws else LAWS:
-            for situation in SITUATIONS:
-                yield "table", {"law": law, "situation": situation}, None
-        return
-    kinds = options.kinds.split(",")
-    for i in range(options.scenes):
-        seed, kind = options.seed + i // len(kinds), kinds[i % len(kinds)]
-        yield kind, {"kind": kind, "seed": seed}, generate(kind, seed)
-
-
-def make(where: dict[str, Any], spec: Any) -> Any:
-    """The scene in both forms."""
-    if spec is None:
-        return cell(where["law"], where["situation"])
-    return chain_case(spec) if isinstance(spec, Chain) else case_of(spec)
-
-
 def main() -> int:
     """Try scenes until the time is over; exit status 1 where a run was wrong."""
     options = arguments()
-    worker, tally, start = Worker(options.limit), Tally(options.rtol, options.seed), time.monotonic()
-    methods = options.methods.split(",")
-    for kind, where, spec in scenes(options):
-        minutes = (time.monotonic() - start) / 60.0
-        if minutes > options.minutes:
-            break
-        try:
-            true = truth(make(where, spec))
-        except OracleError as error:
-            tally.scene(kind, "undecided")
-            print(*where.values(), "undecided:", error, flush=True)
-            continue
-        tally.scene(kind, "marginal" if true.marginal else "judged")
-        if not true.marginal:
-            runs(tally, true, methods, where, spec, worker, options)
+    tally, start = Tally(options.rtol, options.seed), time.monotonic()
+    found = tried(options, 0, start) if options.processes == 1 else gathered(options, start)
+    for kind, where, outcome, verdicts in found:
+        if outcome not in ("judged", "marginal"):
+            print(*where.values(), "undecided:", outcome, flush=True)
+            outcome = "undecided"
+        tally.scene(kind, outcome)
+        for method, verdict, extra in verdicts:
+            if verdict.kind in BAD:
+                print(
+                    *where.values(), method, verdict.kind, f"{verdict.ratio:.2g}", verdict.wrong_transitions,
+                    verdict.why, *extra.values(), flush=True,
+                )  # fmt: skip
+            tally.run(method, verdict, {**where, **extra})
         if options.json:
-            tally.save(options.json, minutes)
-    worker.stop()
+            tally.save(options.json, (time.monotonic() - start) / 60.0)
     print(tally.text())
     return int(any(failure["verdict"] == "wrong" for failure in tally.failures))
-
-
-def runs(
-    tally: Tally, true: Truth, methods: list[str], where: dict[str, Any], spec: Any, worker: Worker,
-    options: argparse.Namespace,
-) -> None:  # fmt: skip
-    """Every method on one scene."""
-    for method in methods:
-        verdict = judge(true, method, options.rtol, worker)
-        found = dict(where)
-        if verdict.kind in BAD:
-            print(*where.values(), method, verdict.kind, f"{verdict.ratio:.2g}", verdict.wrong_transitions, verdict.why)
-            if options.shrink and spec is not None and not isinstance(spec, Chain):
-                found["smallest"] = shrunk(spec, method, options.rtol, worker).data()
-                print("   smallest:", found["smallest"], flush=True)
-        tally.run(method, verdict, found)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import numpy as np
 
 import fricmb as fm
 
-from .problem import Motion, Problem
+from .problem import Motion, OracleError, Problem
 from .run import solve
 
 #: Perturbation of starts and loads that tells the growth of errors.
@@ -25,6 +25,8 @@ DELTA = 1e-6
 BAR = 100.0
 #: Tolerance of the oracle's own steps.
 RTOL = 1e-10
+#: The least tolerance at which a method is judged: one of second order takes steps beyond number at smaller ones.
+LEAST = {"timestepping": 1e-4}
 #: Growth beyond which a scene says nothing at these tolerances.
 UNRULY = 1e4
 
@@ -53,16 +55,20 @@ class Truth:
     events: list[Any]
     marginal: str = ""
     scales: tuple[np.ndarray, np.ndarray] = field(default_factory=lambda: (np.ones(1), np.ones(1)))
+    hangs: dict[float, bool] = field(default_factory=dict)
+    """Whether transitions hang on changes of that size, as far as that has been asked."""
 
 
 @dataclass
 class Verdict:
-    """``kind``: right, wrong, noted (wrong, and the run says so), refused, stopped, late, crashed."""
+    """``kind``: right, wrong, noted (wrong, and the run says so), refused, stopped, late, crashed, marginal."""
 
     kind: str
     ratio: float = 0.0
     wrong_transitions: int = 0
     why: str = ""
+    method: str = ""
+    """Who did the run."""
 
 
 @dataclass
@@ -173,16 +179,16 @@ def scale_of(signal: np.ndarray, speed: float) -> np.ndarray:
     return np.where(largest > 1e-6 * speed, largest, speed)
 
 
-def perturbed(p: Problem) -> Problem:
+def perturbed(p: Problem, delta: float = DELTA) -> Problem:
     """The same from a start and under loads changed in the sixth digit."""
     signs = np.where(np.arange(p.q.size) % 3 == 1, -1.0, 1.0)
 
     def more(N: Any) -> Any:
-        return lambda t, q, v: N(t, q, v) * (1.0 + DELTA)
+        return lambda t, q, v: N(t, q, v) * (1.0 + delta)
 
     contacts = tuple(replace(c, N=more(c.N)) for c in p.contacts)
     moved = signs * p.scale * np.clip(np.abs(p.q), 1e-2, 1.0)
-    return replace(p, q=p.q + DELTA * moved, contacts=contacts)
+    return replace(p, q=p.q + delta * moved, contacts=contacts)
 
 
 def kinds(motion: Motion) -> dict[str, list[str]]:
@@ -217,8 +223,9 @@ def attempt(scene: Any, method: str, rtol: float, t: np.ndarray, t_end: float, s
 
 
 def judge(true: Truth, method: str, rtol: float = 1e-6, worker: Worker | None = None) -> Verdict:
-    """What one method makes of it; with a worker, within its limit of time."""
+    """What one method makes of it at ``rtol`` (or LEAST); with a worker, within its limit of time."""
     case = true.case
+    rtol = max(rtol, LEAST.get(method, 0.0))
     asked = (case.scene, method, rtol, true.t, case.problem.t_end, case.signals)
     outcome = attempt(*asked) if worker is None else worker.ask(*asked)
     if outcome.kind != "done":
@@ -234,9 +241,24 @@ def compare(true: Truth, found: Outcome, rtol: float) -> Verdict:
     ratio = float(off / (rtol * true.growth))
     wrong = wrong_transitions([(e.contact, e.kind) for e in true.events], found.events)
     if ratio <= BAR and wrong == 0:
-        return Verdict("right", ratio)
+        return Verdict("right", ratio, method=found.method)
     why = f"{found.method}: error {off:.1e}, growth {true.growth:.1e}; {found.why}"
-    return Verdict("noted" if found.why else "wrong", ratio, wrong, why)
+    if rtol > DELTA and uncertain(true, rtol):
+        return Verdict("marginal", ratio, why=f"transitions hang on changes of {rtol:g}", method=found.method)
+    return Verdict("noted" if found.why else "wrong", ratio, wrong, why, found.method)
+
+
+def uncertain(true: Truth, delta: float) -> bool:
+    """Whether starts and loads changed by ``delta``, to either side, lead to other transitions."""
+    if delta not in true.hangs:
+        p, expected = true.case.problem, sequence(true.events)
+        try:
+            true.hangs[delta] = any(
+                kinds(solve(perturbed(p, change), 1e-2 * delta)) != expected for change in (delta, -delta)
+            )
+        except OracleError:
+            true.hangs[delta] = True
+    return true.hangs[delta]
 
 
 def wrong_transitions(true: Any, found: Any) -> int:

@@ -92,14 +92,20 @@ def numbers(chain: Chain) -> Problem:
         drive[-1] = chain.torque * math.sin(chain.omega * t)
         return turning + weight + drive
 
-    def reaction(i: int) -> Any:
-        def load(t: float, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> float:
-            # of all links from i on: mass times the acceleration of centres, less weight
-            ax = arm @ (np.cos(q) * a - np.sin(q) * v**2)
-            ay = arm @ (np.sin(q) * a + np.cos(q) * v**2) + GRAVITY
-            return float(np.hypot(m[i:] @ ax[i:], m[i:] @ ay[i:]))
+    below = m[:, None] * arm  # of all links from i on, summed from the last up
+    below = np.cumsum(below[::-1], axis=0)[::-1]
+    weight_below = GRAVITY * np.cumsum(m[::-1])[::-1]
+    last: list[Any] = [None, None, ()]
 
-        return load
+    def reactions(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Any:
+        """Of all pins: mass times acceleration of all links from each on, less their weight."""
+        if last[0] is not q or last[1] is not a:
+            s, c, square = np.sin(q), np.cos(q), v * v
+            last[:] = q, a, np.hypot(below @ (c * a - s * square), below @ (s * a + c * square) + weight_below).tolist()
+        return last[2]
+
+    def reaction(i: int) -> Any:
+        return lambda t, q, v, a: reactions(q, v, a)[i]
 
     def pin(i: int) -> Contact:
         W = np.zeros((n, 1))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from .instant import loaded
-from .problem import OPEN, SLIP, STICK, OracleError, Problem
+from .problem import OPEN, SLIP, STICK, OracleError, Problem, nothing
 
 
 class Field:
@@ -22,6 +24,11 @@ class Field:
             [j for c, s, m in zip(self.contacts, self.rows, modes, strict=True) if m == STICK and c.force is None
              for j in range(s.start, s.stop)], dtype=int,
         )  # fmt: skip
+        self.W_held = self.W[:, self.held]
+        self.acting = [
+            i for i, (c, m) in enumerate(zip(self.contacts, modes, strict=True)) if c.force is not None or m == SLIP
+        ]
+        self.driven = [i for i, c in enumerate(self.contacts) if c.slide is not nothing]
         self.reactive = any(c.reaction is not None for c in self.contacts)
         self.guess = np.zeros(self.n)
         self.load: list[float] = []
@@ -44,15 +51,15 @@ class Field:
     def speeds(self, t: float, v: np.ndarray) -> np.ndarray:
         """Relative velocities of all contacts."""
         g = self.W.T @ v
-        for c, s in zip(self.contacts, self.rows, strict=True):
-            g[s] -= c.slide(t)
+        for i in self.driven:
+            g[self.rows[i]] -= self.contacts[i].slide(t)
         return g
 
     def slide_rates(self, t: float) -> np.ndarray:
         """Rates of the prescribed part."""
         rates = np.zeros(self.W.shape[1])
-        for c, s in zip(self.contacts, self.rows, strict=True):
-            rates[s] = c.slide_rate(t)
+        for i in self.driven:
+            rates[self.rows[i]] = self.contacts[i].slide_rate(t)
         return rates
 
     def given(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -71,43 +78,53 @@ class Field:
         """Accelerations, forces, relative velocities and rates of states."""
         t = min(max(t, self.low), self.high)
         q, v = y[: self.n], y[self.n : 2 * self.n]
-        self.load = self.loads(t, q, v, self.guess)
-        found = self.under(t, y, self.load)
-        if self.reactive:
-            for _ in range(200):
-                self.load = self.loads(t, q, v, found[0])
-                before, found = found, self.under(t, y, self.load)
-                if np.abs(found[0] - before[0]).max() <= 1e-14 * max(1.0, np.abs(found[0]).max()):
-                    break
-            else:
-                raise OracleError("loads from reactions are not found")
-            self.guess = found[0]
+        known = self.known(t, y)
+        if not self.reactive:
+            self.load = self.loads(t, q, v, self.guess)
+            return self.under(t, y, self.load, known)
+        asked = before = np.array(self.loads(t, q, v, self.guess))
+        answer = asked
+        for k in range(200):  # N = f(N) by secants (Anderson 1965, one earlier pair)
+            found = self.under(t, y, asked.tolist(), known)
+            new = np.array(self.loads(t, q, v, found[0]))
+            miss = new - asked
+            if np.abs(miss).max() <= 1e-14 * max(1.0, np.abs(new).max()):
+                break
+            turn = miss - (answer - before)
+            share = float(miss @ turn) / max(float(turn @ turn), 1e-300) if k else 0.0
+            before, asked, answer = asked, new - share * (new - answer), new
+        else:
+            raise OracleError("loads from reactions are not found")
+        self.guess, self.load = found[0], new.tolist()
         return found
 
+    def known(self, t: float, y: np.ndarray) -> tuple[Any, ...]:
+        """What does not depend on the loads: relative velocities, forces other than friction, matrices."""
+        q, v = y[: self.n], y[self.n : 2 * self.n]
+        return self.speeds(t, v), self.given(t, q, v), self.matrices(q)
+
     def under(
-        self, t: float, y: np.ndarray, load: list[float]
+        self, t: float, y: np.ndarray, load: list[float], known: tuple[Any, ...] | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The same under given loads."""
         n = self.n
-        q, v = y[:n], y[n : 2 * n]
-        g = self.speeds(t, v)
+        g, given, (Mi, _D, P) = self.known(t, y) if known is None else known
         F = np.zeros(g.size)
         rates = np.zeros(y.size - 2 * n)
-        for i, (c, s) in enumerate(zip(self.contacts, self.rows, strict=True)):
-            if c.force is not None:
-                z, N = y[2 * n :][self.z_rows[i]], max(load[i], 0.0)
-                F[s] = c.force(g[s], N, z)
-                if c.rate is not None:
-                    rates[self.z_rows[i]] = c.rate(g[s], N, z)
-            elif self.modes[i] == SLIP:
+        for i in self.acting:
+            c, s = self.contacts[i], self.rows[i]
+            if c.force is None:
                 F[s] = self.slip(i, g[s], max(load[i], 0.0))
-        Mi, _D, P = self.matrices(q)
-        rest = self.given(t, q, v) + self.W @ F
-        a = Mi @ rest
+                continue
+            z, N = y[2 * n :][self.z_rows[i]], max(load[i], 0.0)
+            F[s] = c.force(g[s], N, z)
+            if c.rate is not None:
+                rates[self.z_rows[i]] = c.rate(g[s], N, z)
+        a = Mi @ (given + self.W @ F)
         if self.held.size:
             h = self.held
-            F[h] = P @ (self.slide_rates(t)[h] - self.W[:, h].T @ a)
-            a = a + Mi @ (self.W[:, h] @ F[h])
+            F[h] = P @ (self.slide_rates(t)[h] - self.W_held.T @ a)
+            a = a + Mi @ (self.W_held @ F[h])
         return a, F, g, rates
 
     def slip(self, i: int, g: np.ndarray, N: float) -> np.ndarray:
@@ -115,7 +132,8 @@ class Field:
         c = self.contacts[i]
         assert c.mu is not None
         if c.d == 1:
-            return np.array([-self.signs[i] * c.mu(max(self.signs[i] * g[0], 0.0), N) * N])
+            sign = self.signs[i]
+            return -sign * c.mu(max(sign * float(g[0]), 0.0), N) * N  # type: ignore[return-value]
         r = float(np.sqrt(g @ g))
         if r == 0.0:
             raise OracleError("no direction of slip")

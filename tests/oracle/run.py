@@ -66,6 +66,7 @@ class Run:
         g = field.speeds(t, self.y[self.n : 2 * self.n])
         loads = field.loads(t, self.y[: self.n], self.y[self.n : 2 * self.n], np.zeros(self.n))
         before, self.start = list(zip(self.modes, self.signs, strict=True)), {}
+        guess = field.evaluate(t, self.y)[0] if field.reactive else np.zeros(self.n)
         resting = []
         for i, (c, s) in enumerate(zip(p.contacts, field.rows, strict=True)):
             if c.force is not None:
@@ -84,14 +85,16 @@ class Run:
                 self.modes[i] = SLIP
                 self.signs[i] = 1.0 if g[s.start] > 0.0 else -1.0
         if resting:
-            self.choose(resting, released, one_of, t)
+            self.choose(resting, released, one_of, t, guess)
         if not first:
             self.record(before)
         if self.start:
             self.begin()
 
-    def choose(self, resting: list[int], released: frozenset[int], one_of: frozenset[int], t: float) -> None:
-        """Modes of contacts at rest, and the velocity made exactly consistent."""
+    def choose(
+        self, resting: list[int], released: frozenset[int], one_of: frozenset[int], t: float, guess: np.ndarray
+    ) -> None:
+        """Modes of contacts at rest, and the velocity made exactly consistent; ``guess``: accelerations before."""
         p = self.p
         modes = [OPEN if i in resting else m for i, m in enumerate(self.modes)]
         moving = Field(p, modes, self.signs, (self.t, self.end))
@@ -105,7 +108,7 @@ class Run:
         D = D[np.ix_(columns, columns)]
         local = frozenset(resting.index(i) for i in released if i in resting)
         some = frozenset(resting.index(i) for i in one_of if i in resting)
-        total, push = np.zeros(self.n), np.zeros(moving.W.shape[1])
+        total, push = guess, np.zeros(moving.W.shape[1])
         for _ in range(200):  # once, unless loads depend on accelerations
             loads = moving.loads(t, q, v, total)
             a, push, _, _ = moving.under(t, self.y, loads)

@@ -14,7 +14,7 @@ import fricmb as fm
 
 from .judge import Case
 from .laws import parts_of
-from .problem import Contact, Problem
+from .problem import Contact, Problem, nothing
 
 AXES = "xy"
 Vector = tuple[float, ...]
@@ -205,11 +205,14 @@ def contact(spec: Spec, number: int, ways: list[np.ndarray]) -> Contact:
     def normal(t: float, q: np.ndarray, v: np.ndarray) -> float:
         return float(touch.N * (1.0 + touch.swing * math.sin(touch.omega * t) + touch.slope * (first @ q)))
 
+    along = np.eye(spec.d)[0]
+    early, late = spec.belt * along, spec.belt_later * along
+
     def slide(t: float) -> np.ndarray:
-        speed = spec.belt_later if spec.belt_change and t >= spec.belt_change else spec.belt
-        return speed * np.eye(spec.d)[0] if touch.b == -2 else np.zeros(spec.d)
+        return late if spec.belt_change and t >= spec.belt_change else early
 
     return Contact(
-        name=f"c{number}", W=W, N=normal, slide=slide, constant=not (touch.swing or touch.slope),
+        name=f"c{number}", W=W, N=normal, slide=slide if touch.b == -2 else nothing,
+        constant=not (touch.swing or touch.slope),
         **parts_of(getattr(fm.laws, touch.law)(**touch.fields), spec.d),
     )  # fmt: skip

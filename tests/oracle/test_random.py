@@ -16,9 +16,15 @@ from tests.oracle.table import METHODS
 SEEDS = {"line": 0, "plane": 0, "stack": 3, "modes": 0, "chain": 0}
 
 
-@pytest.mark.parametrize("kind", SEEDS)
-def test_scene_moves_as_the_oracle_says(kind):
-    spec = generate(kind, SEEDS[kind])
+#: Scenes that a longer run found wrong once, and what was wrong.
+FOUND = {
+    ("chain", 1001): "a pin that had stuck let go where another one's reversal did not ask for it",
+}
+
+
+@pytest.mark.parametrize(("kind", "seed"), [*SEEDS.items(), *FOUND])
+def test_scene_moves_as_the_oracle_says(kind, seed):
+    spec = generate(kind, seed)
     true = truth(chain_case(spec) if isinstance(spec, Chain) else case_of(spec))
     assert not true.marginal
     verdicts = {method: judge(true, method) for method in METHODS}

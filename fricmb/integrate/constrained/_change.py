@@ -26,7 +26,7 @@ from fricmb.integrate.constrained._codes import (
     FAIL_PROJECT,
     FAIL_SEVERAL,
 )
-from fricmb.integrate.constrained._decide import FOUND, SEVERAL, decide
+from fricmb.integrate.constrained._decide import ARRIVES, FOUND, LENT, RESTED, SEVERAL, SLIPS_ON, decide
 from fricmb.integrate.constrained._field import move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import EPS, project_velocities
@@ -93,12 +93,12 @@ def bears(k: Moving, y: State, i: int) -> bool:
 def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
     """Take the round-off of slip away from what sticks, and from what has been at rest and sets out from there."""
     for i in range(part.shape[0]):
-        if part[i] == 1 and y.mode[i] == SLIP and not plane(mech, i):
+        if part[i] in (ARRIVES, RESTED) and y.mode[i] == SLIP and not plane(mech, i):
             y.mode[i] = STICK
-            part[i] = 2
+            part[i] = LENT
     done = project_velocities(mech, k, w, y, False, True, mech.address)
     for i in range(part.shape[0]):
-        if part[i] == 2:
+        if part[i] == LENT:
             y.mode[i] = SLIP
     return bool(done)
 
@@ -126,10 +126,10 @@ def change_modes(
             return code
     set_window(k, c, y.t[0])
     for i in range(n_c):
-        part[i] = 1 if y.mode[i] == STICK else 0
+        part[i] = RESTED if y.mode[i] == STICK else SLIPS_ON
         # without load the direction of slip decides nothing: found anew it would be that of round-off
         if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.size[0] and bears(k, y, i):
-            part[i] = 1
+            part[i] = ARRIVES
     forced = -1
     if 0 <= j < 2 * n_c:
         port = j // 2
@@ -139,14 +139,14 @@ def change_modes(
                 speed = magnitude(row, port, y.g)
                 for a in range(row[port], row[port + 1]):
                     y.n[a] = y.g[a] / speed if speed > 0.0 else y.n[a]
-                part[port] = 1 if speed <= 1e-11 * out.size[0] else 0
+                part[port] = ARRIVES if speed <= 1e-11 * out.size[0] else SLIPS_ON
         elif y.mode[port] == STICK:
             forced = port
         elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.size[0]:
-            part[port] = 1
+            part[port] = ARRIVES
         else:
             # one that had no load to speak of has gone on through rest
-            part[port] = 0
+            part[port] = SLIPS_ON
             y.n[row[port]] = -y.n[row[port]]
     code = decide(mech, k, w, y, part, forced, mech.address)
     if code != FOUND:

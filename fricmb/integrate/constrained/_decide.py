@@ -21,6 +21,8 @@ from fricmb.integrate.constrained._state import Instant, State, react
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
+#: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT: see _change.
+SLIPS_ON, ARRIVES, RESTED, LENT = 0, 1, 2, 3
 #: Up to this many ports at rest every combination is tried where the search by release fails.
 ENUMERATED = 6
 #: Round-off of forces beside the limit of sticking.
@@ -117,7 +119,7 @@ def largest_acceleration(mech: Mech, k: Moving, y: State) -> float:
 @kernel
 def at_rest(mech: Mech, y: State, c: int, part: Codes) -> bool:
     """Whether port c takes part in the decision."""
-    return bool(part[c] != 0 and mech.port.law[c] != LAW_SMOOTH and y.mode[c] != OPEN)
+    return bool(part[c] != SLIPS_ON and mech.port.law[c] != LAW_SMOOTH and y.mode[c] != OPEN)
 
 
 @block
@@ -125,8 +127,9 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     """Modes of the ports in ``part`` (their slip is 0); the others keep theirs.  ``forced`` (or -1) does not stick.
 
     Sticking first (what is at its limit already stays there where another breaks away); the port that is furthest
-    beyond its limit is released against its force, one that would slip the wrong way sticks again.  Where that does not
-    settle, every combination is tried.
+    beyond its limit is released against its force, one that would slip the wrong way sticks again.  One that comes to
+    rest is released before those that have rested: more friction at rest than in slip lets several combinations hold,
+    and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried.
     """
     n_c = y.mode.shape[0]
     count, anew = 0, True
@@ -136,6 +139,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     for c in range(n_c):
         if at_rest(mech, y, c, part):
             count += 1
+            part[c] = RESTED if y.mode[c] == STICK else ARRIVES
             if c == forced:
                 release(mech, k, y, c)
             elif forced < 0 or y.mode[c] == STICK or plane(mech, c):
@@ -150,7 +154,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
                 beyond = wrong(mech, k, y, c, scale)
                 if c == forced and y.mode[c] != STICK and beyond < 1e-6:
                     beyond = 0.0
-                if beyond > most:
+                first = worst >= 0 and part[c] < part[worst]  # it comes to rest, the other has rested
+                if beyond > 0.0 and (first or (beyond > most and (worst < 0 or part[c] == part[worst]))):
                     worst, most = c, beyond
         if worst < 0:
             set_out(mech, y)
@@ -224,7 +229,7 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
     """Ports whose slip is no more than round-off; directions of the others; contacts without load are open."""
     port = mech.port
     for c in range(y.mode.shape[0]):
-        part[c] = 0
+        part[c] = SLIPS_ON
         row = port.row[c]
         j = port.joint[c]
         if j >= 0 and mech.joint.dropped[mech.joint.row[j]] == 2:
@@ -244,7 +249,7 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
             continue
         speed = magnitude(port.row, c, y.g)
         if speed <= small or y.mode[c] == STICK:
-            part[c] = 1
+            part[c] = ARRIVES
         else:
             y.mode[c] = SLIP
             for a in range(row, port.row[c + 1]):

@@ -42,7 +42,7 @@ def begin(
     mark_rest(mech, y, small, part)
     if given:
         for i in range(part.shape[0]):
-            if y.mode[i] == SLIP and part[i] == 1:
+            if y.mode[i] == SLIP and part[i] != 0:
                 part[i] = 0
     code = decide(mech, k, w, y, part, -1, mech.address)
     if code != FOUND:

@@ -1,0 +1,95 @@
+"""Scenes one after the other, each by every method, in one process or in several."""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import queue
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from .judge import LEAST, Truth, Verdict, Worker, judge, truth
+from .mechanisms import Chain
+from .mechanisms import case_of as chain_case
+from .problem import OracleError
+from .random_scenes import generate
+from .shrink import BAD, shrunk
+from .spec import case_of
+from .table import LAWS, SITUATIONS
+from .table import case as cell
+
+Found = tuple[str, dict[str, Any], str, list[tuple[str, Verdict, dict[str, Any]]]]
+
+
+def scenes(options: argparse.Namespace) -> Iterator[tuple[str, dict[str, Any], Any]]:
+    """Kind, where it comes from, and the scene as data (None: a cell of the table)."""
+    if options.table:
+        for law in options.laws.split(",") if options.laws else LAWS:
+            for situation in SITUATIONS:
+                yield "table", {"law": law, "situation": situation}, None
+        return
+    kinds = options.kinds.split(",")
+    for i in range(options.scenes):
+        seed, kind = options.seed + i // len(kinds), kinds[i % len(kinds)]
+        yield kind, {"kind": kind, "seed": seed}, generate(kind, seed)
+
+
+def make(where: dict[str, Any], spec: Any) -> Any:
+    """The scene in both forms."""
+    if spec is None:
+        return cell(where["law"], where["situation"])
+    return chain_case(spec) if isinstance(spec, Chain) else case_of(spec)
+
+
+def gathered(options: argparse.Namespace, start: float) -> Iterator[Found]:
+    """What several processes find, each of them every so many scenes."""
+    context = multiprocessing.get_context("spawn")
+    done: Any = context.Queue()
+    crew = [context.Process(target=part, args=(options, k, start, done)) for k in range(options.processes)]
+    for process in crew:
+        process.start()
+    while any(process.is_alive() for process in crew) or not done.empty():
+        try:
+            yield done.get(timeout=1.0)
+        except queue.Empty:
+            continue
+
+
+def part(options: argparse.Namespace, number: int, start: float, done: Any) -> None:
+    """What one of several processes does."""
+    for found in tried(options, number, start):
+        done.put(found)
+
+
+def tried(options: argparse.Namespace, number: int, start: float) -> Iterator[Found]:
+    """Every so many scenes, from ``number`` on: kind, where from, judged, marginal or why not decided, verdicts."""
+    worker = Worker(options.limit)
+    for i, (kind, where, spec) in enumerate(scenes(options)):
+        if i % options.processes != number:
+            continue
+        if (time.monotonic() - start) / 60.0 > options.minutes:
+            break
+        try:
+            true = truth(make(where, spec))
+        except OracleError as error:
+            yield kind, where, str(error), []
+            continue
+        if true.marginal:
+            yield kind, where, "marginal", []
+        else:
+            yield kind, where, "judged", list(runs(true, spec, worker, options))
+    worker.stop()
+
+
+def runs(true: Truth, spec: Any, worker: Worker, options: argparse.Namespace) -> Iterator[tuple[str, Verdict, Any]]:
+    """Every method on one scene; what ``auto`` has done alone is not done again under its name."""
+    known: dict[str, Verdict] = {}
+    for method in options.methods.split(","):
+        verdict = known[method] if method in known else judge(true, method, options.rtol, worker)
+        if method == "auto" and verdict.method not in ("", *LEAST):
+            known[verdict.method] = verdict
+        extra = {}
+        if options.shrink and verdict.kind in BAD and spec is not None and not isinstance(spec, Chain):
+            extra["smallest"] = shrunk(spec, method, options.rtol, worker).data()
+        yield method, verdict, extra
