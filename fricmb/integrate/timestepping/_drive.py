@@ -69,6 +69,7 @@ def copy_state(run: Run, source: int, target: int) -> None:
     run.grip[target, :] = run.grip[source]
     run.when[target, :] = run.when[source]
     run.known[target, :] = run.known[source]
+    run.jolted[target, :] = run.jolted[source]
     run.mode[target, :] = run.mode[source]
     run.push[target, :] = run.push[source]
 

@@ -31,7 +31,9 @@ def holding_error(run: Run) -> float:
     for c in range(run.status.shape[0]):
         largest = max(largest, run.brake[c])
         if run.mode[WHOLE, c] == STICK and run.mode[THERE, c] == STICK and run.mode[HERE, c] == STICK:
-            for a in range(run.row[c], run.row[c + 1]):
+            # where it jumped in the step, means over its parts are not the same
+            jolted = run.jolted[WHOLE, c] + run.jolted[MIDDLE, c] + run.jolted[THERE, c] > 0
+            for a in range(run.row[c], run.row[c] if jolted else run.row[c + 1]):
                 worst = max(worst, abs(run.ends[WHOLE, a] - run.ends[THERE, a]))
             if run.var[c] == 1:
                 halves = 0.5 * (run.push[MIDDLE, c] + run.push[THERE, c])

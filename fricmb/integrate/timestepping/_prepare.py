@@ -130,7 +130,8 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, 
         **{name: z(n) for name in ("free", "dv", "turn", "trial", "top_q", "top_v", "floor_q", "floor_v")},
         **{name: z(m) for name in ("gf", "y", "P", "phi", "move", "delta", "away", "rhs")},
         **{name: z(nc) for name in ("rho", "slide", "brake", "soft", "share", "total")},
-        "H": z(3 * nc), "weight": z(3 * nc), "status": z(nc, np.int8), "instant": z((nc, 2)),
+        "H": z(3 * nc), "weight": z(3 * nc), "status": z(nc, np.int8), "tried": z(nc, np.int8),
+        "jolt": z(n), "last": z(nc), "instant": z((nc, 2)),
         "lu": z((slots, n * (2 * band + 1))), "of": z((slots, 3 * nc + 1)), "used": z(slots, i),
         "Y": z((slots if k else 0, k, n)), "D": z((slots if k else 0, k, k)), "J": z(k * k),
         "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "window": z(2), "args": z(n_x),
@@ -145,7 +146,7 @@ def _states(n: int, m: int, nc: int, n_u: int) -> dict[str, Any]:
     return {
         "q": z((4, n)), "v": z((4, n)), "u": z((4, n_u)), "du": z((4, n_u)), "g": z((4, m)), "w": z((4, m)),
         "F": z((4, m)), "ends": z((4, m)), "hold": z((4, m)), "grip": z((4, nc)),
-        "when": z((4, nc)), "known": z((4, nc), np.int8),
+        "when": z((4, nc)), "known": z((4, nc), np.int8), "jolted": z((4, nc), np.int8),
         "mode": z((4, nc), np.int8), "push": z((4, nc)), "loss": z((4, nc)), "spent": z((4, 2)),
         "what": z((4, nc), np.int8), "moment": z((4, nc)),
     }  # fmt: skip

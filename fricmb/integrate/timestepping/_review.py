@@ -65,6 +65,8 @@ def first_balls(run: Run, one: int, two: int) -> None:
         else:
             run.status[c] = FREE
             run.rho[c] = run.slide[c]
+        run.last[c] = -1.0
+        run.tried[c] = 0
         for a in range(row0, row0 + d):
             run.delta[a] = 0.0
             run.away[a] = 0.0
@@ -74,7 +76,7 @@ def first_balls(run: Run, one: int, two: int) -> None:
 def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool:
     """Whether the line through the last holding force and that of this step passes that of the limit in the step."""
     gap = t + 0.5 * h - run.when[one, c]
-    if run.known[one, c] == 0 or gap <= 0.0:
+    if run.known[one, c] == 0 or gap <= 0.0 or run.last[c] >= 0.0 or run.tried[c] == 1:
         return False
     size = 0.0
     for a in range(run.row[c], run.row[c + 1]):
@@ -107,6 +109,20 @@ def pressed_in_slip(run: Run, one: int, c: int, t: float, h: float, N: float) ->
 
 
 @kernel
+def break_by_jolt(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
+    """A contact that another one's transition tears off: held until then by what held it before, if that is known."""
+    row0 = run.row[c]
+    d = run.row[c + 1] - row0
+    s = run.last[c] if run.known[one, c] == 1 else 0.0
+    size = length(run.away, row0, d)
+    run.share[c] = s
+    slide = slide_radius(run, c, 0.0, pressed_in_slip(run, one, c, t, h, run.push[two, c]))
+    for a in range(row0, row0 + d):
+        slip = run.away[a] / size * slide if size > 0.0 else 0.0
+        run.away[a] = s * (run.hold[one, a] - slip)
+
+
+@kernel
 def break_away(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
     """When the holding force reached its limit: on the lines of both, through the last step and this one.
 
@@ -121,6 +137,9 @@ def break_away(run: Run, one: int, two: int, c: int, t: float, h: float) -> None
         run.away[a] = run.F[two, a] - run.g[two, a] / run.soft[c]  # what would have held it
     s = 0.0
     gap = middle - run.when[one, c]
+    if run.last[c] >= 0.0:
+        break_by_jolt(run, one, two, c, t, h)
+        return
     if run.known[one, c] == 1 and gap > 0.0:
         limit = run.grip[one, c]
         aa, ab, bb = -(rise_of_limit**2), -limit * rise_of_limit, -(limit**2)
@@ -180,28 +199,90 @@ def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
 
 
 @kernel
-def choose_status(run: Run, one: int, two: int, c: int, t: float, h: float, turn: int) -> None:
-    """What a contact does in this step, from forces and relative velocities found so far."""
+def slip_on(run: Run, one: int, two: int, c: int, turn: int) -> bool:
+    """What a contact that slips at the beginning of the step does in it; whether that is news."""
+    row0 = run.row[c]
+    d = run.row[c + 1] - row0
+    before = run.status[c]
+    if before in (HELD, BROKEN) or length(run.g[one], row0, d) == 0.0:
+        return False
+    if turn >= DECIDING and not (before == CAUGHT and length(run.g[two], row0, d) > 0.0):
+        return False
+    along = 0.0
+    for a in range(row0, row0 + d):
+        along += run.g[one, a] * run.g[two, a]
+    if along > 0.0 and before != PASSED:
+        run.status[c] = FREE
+    else:
+        come_to_rest(run, one, two, c)
+        if run.status[c] == PASSED and d == 1 and run.share[c] >= 1.0 - 2e-9:
+            run.status[c] = FREE
+    return bool(run.status[c] != before)
+
+
+@kernel
+def mark_jolts(run: Run) -> None:
+    """Contacts at rest whose force jumps in the step: next to one with a transition, or to another one that jumps.
+
+    Forces between bodies that stick together jump where that of a neighbour does; those of springs do not.
+    """
+    for i in range(run.jolt.shape[0]):
+        run.jolt[i] = -1.0
+    for c in range(run.status.shape[0]):
+        run.last[c] = -1.0
+        if run.status[c] in (CAUGHT, PASSED, BROKEN):
+            spread(run, c, min(max(run.share[c], 0.0), 1.0))
+    again = True
+    while again:
+        again = False
+        for c in range(run.status.shape[0]):
+            if run.status[c] != HELD:
+                continue
+            latest = run.last[c]
+            for a in range(run.row[c], run.row[c + 1]):
+                for e in range(run.w_start[a], run.w_start[a + 1]):
+                    latest = max(latest, run.jolt[run.w_dof[e]])
+            if latest > run.last[c]:
+                run.last[c] = latest
+                again = True
+                spread(run, c, latest)
+
+
+@kernel
+def spread(run: Run, c: int, share: float) -> None:
+    """A jump at contact c is felt by its degrees of freedom."""
+    for a in range(run.row[c], run.row[c + 1]):
+        for e in range(run.w_start[a], run.w_start[a + 1]):
+            run.jolt[run.w_dof[e]] = max(run.jolt[run.w_dof[e]], share)
+
+
+@kernel
+def hold_on(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
+    """Whether a contact that sticks at the beginning of the step breaks away in it; one that did so in vain is held."""
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     end = length(run.g[two], row0, d)
     if run.status[c] == HELD:
         if end > 0.0 or will_break(run, one, two, c, t, h):
             break_away(run, one, two, c, t, h)
-        return
-    if run.status[c] == BROKEN or length(run.g[one], row0, d) == 0.0:
-        return
-    if turn >= DECIDING and not (run.status[c] == CAUGHT and end > 0.0):
-        return
-    along = 0.0
-    for a in range(row0, row0 + d):
-        along += run.g[one, a] * run.g[two, a]
-    if along > 0.0 and run.status[c] != PASSED:
-        run.status[c] = FREE
-    else:
-        come_to_rest(run, one, two, c)
-        if run.status[c] == PASSED and d == 1 and run.share[c] >= 1.0 - 2e-9:
-            run.status[c] = FREE
+    elif run.status[c] == BROKEN and end == 0.0 and run.tried[c] == 0:
+        run.status[c] = HELD
+        run.tried[c] = 1
+
+
+@kernel
+def choose_statuses(run: Run, one: int, two: int, t: float, h: float, turn: int) -> None:
+    """What contacts do in this step, from forces and relative velocities found so far.
+
+    Those that slip first: what the others have to hold is known only with it.
+    """
+    news = False
+    for c in range(run.status.shape[0]):
+        if slip_on(run, one, two, c, turn):
+            news = True
+    mark_jolts(run)
+    for c in range(0 if news and turn < DECIDING else run.status.shape[0]):
+        hold_on(run, one, two, c, t, h)
 
 
 @kernel
@@ -239,15 +320,16 @@ def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, pl
     worst = 0.0
     largest = 1e-300
     for c in range(run.status.shape[0]):
+        run.brake[c] = run.mu_s[c] * run.push[two, c]
+        largest = max(largest, run.brake[c])
+    choose_statuses(run, one, two, t, h, turn)
+    for c in range(run.status.shape[0]):
         row0 = run.row[c]
         d = run.row[c + 1] - row0
         N = run.push[two, c]
-        run.brake[c] = run.mu_s[c] * N
-        largest = max(largest, run.brake[c])
         old = run.rho[c]
         old0 = run.delta[row0]
         old1 = run.delta[row0 + d - 1]
-        choose_status(run, one, two, c, t, h, turn)
         status = run.status[c]
         if status in (HELD, CAUGHT):
             run.rho[c] = run.brake[c]

@@ -33,7 +33,9 @@ class Run(NamedTuple):
     and mean normal forces.
     Step: ``free``, ``dv``, ``turn``, ``trial`` (n,); ``gf``, ``y``, ``P``, ``phi``, ``move`` (m,); ``H``, ``weight``
     (3 n_c,) derivative of the projection; ``rho``, ``slide``, ``brake``, ``soft``, ``share`` (n_c,); ``delta``,
-    ``away`` (m,); ``status`` (n_c,); ``loss`` (s, n_c), ``spent`` (s, 2): energies of a step;
+    ``away`` (m,); ``status``, ``tried`` (n_c,): whether it was let go in vain; ``jolt`` (n,), ``last`` (n_c,): the last
+    jump of forces in the step on a dof and on a contact at rest, as a fraction of it (-1: none); ``loss`` (s, n_c),
+    ``spent`` (s, 2): energies of a step;
     ``what``, ``moment`` (s, n_c): transitions in it; ``instant`` (n_c, 2): rate of
     the distance and dV/de of varying normal forces.
     Factors: ``lu`` (k, n (2 b + 1)), ``of`` (k, 3 n_c + 1): h and weights each was made for, ``used`` (k,);
@@ -96,6 +98,7 @@ class Run(NamedTuple):
     grip: Floats2
     when: Floats2
     known: Codes2
+    jolted: Codes2
     mode: Codes2
     push: Floats2
     free: Floats
@@ -117,6 +120,9 @@ class Run(NamedTuple):
     delta: Floats
     away: Floats
     status: Codes
+    tried: Codes
+    jolt: Floats
+    last: Floats
     loss: Floats2
     spent: Floats2
     what: Codes2

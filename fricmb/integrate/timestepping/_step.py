@@ -113,9 +113,10 @@ def keep_end(run: Run, one: int, two: int, t: float, h: float) -> None:
             run.mode[two, c] = OPEN
         forces_at_end(run, one, two, c, t + 0.5 * h, h)
         run.known[two, c] = 0
+        run.jolted[two, c] = 1 if run.last[c] >= 0.0 else 0
         if still and (run.status[c] == HELD or run.status[c] == CAUGHT):
             caught = run.status[c] == CAUGHT
-            run.known[two, c] = 1
+            run.known[two, c] = 1 - run.jolted[two, c]
             run.grip[two, c] = run.brake[c]
             run.when[two, c] = t + 0.5 * h * (1.0 + run.share[c] if caught else 1.0)
             for a in range(row0, run.row[c + 1]):
@@ -136,7 +137,8 @@ def forces_at_end(run: Run, one: int, two: int, c: int, middle: float, h: float)
             run.ends[two, a] = -radius * run.g[two, a] / speed
         return
     gap = middle - run.when[one, c]
-    share = 0.5 * h / gap if run.status[c] == HELD and run.known[one, c] == 1 and gap > 0.25 * h else 0.0
+    line = run.status[c] == HELD and run.known[one, c] == 1 and run.jolted[two, c] == 0
+    share = 0.5 * h / gap if line and gap > 0.25 * h else 0.0
     for a in range(row0, row0 + d):
         force = run.away[a] if run.status[c] == CAUGHT else run.F[two, a]
         run.ends[two, a] = force + share * (force - run.hold[one, a])
