@@ -90,7 +90,8 @@ def advance(
     else:
         # steps of a ladder come again, and their factors with them
         h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h)
-    if not h > 8.0 * EPS * abs(t) + 1e-280:
+    # the shortest rung of the ladder of exact structure is no end of steps: what is asked for is
+    if not min(h, clock.h[0]) > 8.0 * EPS * abs(t) + 1e-280:
         return end_round_off(packed, s, y, r, old, out, clock, address)
     error = np.inf
     if attempt(packed, s, y, one, acc, h, address):

@@ -77,7 +77,9 @@ class Collector:
         self.counts = np.zeros(8, np.int64)
         half = int(self.packed.structure.half[0])
         self.address = places_of(half, "step_error", *further) if places is None else places
-        self.natural_v, self.natural_q = natural_scales(problem, self.packed, self.scratch, start.t, t_end - start.t)
+        self.natural_v, self.natural_q = natural_scales(
+            problem, self.packed, self.scratch, start.t, t_end - start.t, start.q
+        )
         self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
         self._chunks: list[tuple[np.ndarray, ...]] = []

@@ -77,10 +77,13 @@ def magnitudes(structure: Structure) -> Csr:
     return Csr((n, n), structure.Minv_start, structure.Minv_index, np.abs(structure.Minv))
 
 
-def natural_scales(problem: Problem, packed: Packed, s: Scratch, t: float, span: float) -> tuple[Floats, Floats]:
-    """Velocities and positions (n,) that the scene's own forces bring about in its own time.
+def natural_scales(
+    problem: Problem, packed: Packed, s: Scratch, t: float, span: float, q: Floats
+) -> tuple[Floats, Floats]:
+    """Velocities and positions (n,) that the scene's own forces bring about in its own time, from positions q.
 
-    Friction mu_s N, constant and prescribed forces and the speed of drivers, over the time 1/omega of the fastest
+    Friction mu_s N, constant and prescribed forces, those of springs at the start (friction whose normal force varies
+    may hold them for ever, with nothing else to tell a size by) and the speed of drivers, over the time 1/omega of the fastest
     oscillation (the span where there is none).  Signals far below them are noise, also where a run starts with nothing
     moving.
     """
@@ -89,7 +92,9 @@ def natural_scales(problem: Problem, packed: Packed, s: Scratch, t: float, span:
         return np.zeros(0), np.zeros(0)
     per_row = np.repeat(np.abs(contacts.mu_s) * np.maximum(contacts.N, np.abs(contacts.N0)), np.diff(contacts.row))
     load, driven_speed, driven_way = signal_scales(problem, packed, s, t, span)
-    acceleration = magnitudes(structure) @ (np.abs(contacts.W) @ per_row + np.abs(structure.f) + load)
+    springs = Csr((problem.n, problem.n), structure.first, structure.column, structure.K) @ np.asarray(q, dtype=float)
+    forces = np.abs(contacts.W) @ per_row + np.abs(structure.f) + load + np.abs(springs)
+    acceleration = magnitudes(structure) @ forces
     omega = float(np.max(problem.omega, initial=0.0))
     time = min(1.0 / omega, span) if omega > 0.0 else span
     speed = max(float(np.max(np.abs(contacts.w), initial=0.0)), driven_speed)
