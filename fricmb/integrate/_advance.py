@@ -17,7 +17,7 @@ from fricmb.integrate._problem import LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate._room import block
 from fricmb.integrate._rows import INSIDE, STEP, Rows, put, record
 from fricmb.integrate._step_error import step_error
-from fricmb.integrate._transitions import EPS, Before, copy_state, locate, slip_rate, swap_state, transition
+from fricmb.integrate._transitions import EPS, Before, copy_state, locate, passes_by, slip_rate, swap_state, transition
 from fricmb.integrate._triggers import find_trigger
 
 #: What a step or a loop of steps ends with: an accepted or rejected step, a transition gone through, or why not.
@@ -138,6 +138,11 @@ def advance(
         clock.h[0] = clock.retry[0]
         return REJECTED
     lifted = clock.found[1] == 1.0
+    if not lifted and end.t[0] - t > 1e-6 * clock.usual[0] and passes_by(packed, s, y, end, acc, k):
+        one.counts[1] += 1
+        clock.h[0] = 0.5 * (end.t[0] - t)
+        one.last[1] = 0.0
+        return REJECTED
     if end.t[0] > t:
         record_inside(packed, s, y, end, one, acc, out, address)
         one.counts[0] += 1

@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate._instant import State
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Codes, Codes2, Floats, Floats2, Ints, Problem
+from fricmb.integrate._problem import EVENT_SLIP, EVENT_STICK, Codes, Codes2, Floats, Floats2, Ints, Problem
 from fricmb.integrate._room import room
 
 #: What a row is: a stage inside a step, the end of a step, the left and the right side of a transition.
@@ -71,10 +71,24 @@ def record(out: Rows, y: State, kind: int) -> None:
     out.used[0] = k + 1
 
 
+#: Part of the time by which transitions are one instant: what it takes to locate them.
+SAME_INSTANT = 1e-14
+
+
 @kernel
 def record_event(out: Rows, t: float, contact: int, kind: int) -> None:
-    """Add a transition."""
+    """Add a transition; a slip that ends at the instant at which it begins has not been one, and is taken back."""
     k = out.used[1]
+    last = k - 1
+    while kind == EVENT_STICK and last >= 0 and t - out.event[last, 0] <= SAME_INSTANT * abs(t):
+        if out.event[last, 1] == contact:
+            if out.event[last, 2] != EVENT_SLIP:
+                break
+            for i in range(last, k - 1):
+                out.event[i, :] = out.event[i + 1]
+            out.used[1] = k - 1
+            return
+        last -= 1
     out.event[k, 0] = t
     out.event[k, 1] = contact
     out.event[k, 2] = kind

@@ -83,9 +83,9 @@ def natural_scales(
     """Velocities and positions (n,) that the scene's own forces bring about in its own time, from positions q.
 
     Friction mu_s N, constant and prescribed forces, those of springs at the start (friction whose normal force varies
-    may hold them for ever, with nothing else to tell a size by) and the speed of drivers, over the time 1/omega of the fastest
-    oscillation (the span where there is none).  Signals far below them are noise, also where a run starts with nothing
-    moving.
+    may hold them for ever, with nothing else to tell a size by) and the speed of drivers, over the time 1/omega of the
+    fastest oscillation (the span where there is none).  Signals far below them are noise, also where a run starts with
+    nothing moving.
     """
     contacts, structure = problem.contacts, packed.structure
     if problem.n == 0:

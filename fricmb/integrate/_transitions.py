@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate._field import Scratch
 from fricmb.integrate._instant import State, share_load, slip_speed
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._laws import break_away
+from fricmb.integrate._laws import break_away, coefficient
 from fricmb.integrate._modes import Rest, find_open, mark_rest, settle
 from fricmb.integrate._onestep import Accuracy, OneStep, attempt, finish
 from fricmb.integrate._pack import Packed
@@ -199,6 +199,35 @@ def locate(
             new = 0.5 * (lo + hi)
         step = new
     return k
+
+
+@kernel
+def passes_by(packed: Packed, s: Scratch, y: State, end: State, acc: Accuracy, k: int) -> bool:
+    """Whether slip of k in two directions that seems to end at ``end`` of a step from y may have turned round instead.
+
+    Friction cannot hold the contact there, so only a path that is straight to round-off comes to rest on its way; any
+    other one turns round beside it, faster than the step can see.  What it misses rest by is less than the tolerance
+    once the step begins near enough.
+    """
+    row0 = packed.ports.row[k]
+    if packed.ports.row[k + 1] - row0 != 2 or y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+        return False
+    D, n, N = packed.ports.D, end.n, end.N[k]
+    pull = coefficient(packed.ports, packed.laws, k, s, 0.0, N)[0] * N
+    b0, b1 = -end.wd[row0], -end.wd[row0 + 1]
+    for i in range(y.q.shape[0]):
+        b0 += packed.ports.W[i, row0] * end.a[i]
+        b1 += packed.ports.W[i, row0 + 1] * end.a[i]
+    # without friction
+    b0 += pull * (D[row0, row0] * n[row0] + D[row0, row0 + 1] * n[row0 + 1])
+    b1 += pull * (D[row0 + 1, row0] * n[row0] + D[row0 + 1, row0 + 1] * n[row0 + 1])
+    whole = D[row0, row0] * D[row0 + 1, row0 + 1] - D[row0, row0 + 1] * D[row0 + 1, row0]
+    hold0 = D[row0 + 1, row0 + 1] * b0 - D[row0, row0 + 1] * b1
+    hold1 = D[row0, row0] * b1 - D[row0 + 1, row0] * b0
+    if np.hypot(hold0, hold1) <= break_away(packed.ports, packed.laws, k, s, N) * N * abs(whole):
+        return False
+    beside = abs(n[row0] * b1 - n[row0 + 1] * b0) / max(np.hypot(b0, b1), 1e-290)
+    return bool(slip_speed(y.g, row0, 2) * beside > 0.01 * acc.rtol[0] * acc.r[k])
 
 
 @kernel

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import EVENT_SLIP, SLIP, STICK
+from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
 from fricmb.integrate._stop import stopped
-from fricmb.integrate.timestepping._error import step_error
+from fricmb.integrate.timestepping._error import doubtful, step_error
 from fricmb.integrate.timestepping._free import length, set_signals, set_window
 from fricmb.integrate.timestepping._layout import (
     DRIVES,
@@ -41,6 +41,8 @@ from fricmb.integrate.timestepping._step import forces_at_start, take_step
 ROUND_OFF, CREEP = 1e-12, 1e-9
 #: Part of a usual step that is none: to ask what holds the contacts at an instant.
 PROBE = 1e-3
+#: Shortest steps to which steps are shortened until it is clear which transitions they hold.
+COARSE = 1e4
 #: Why a run came back.
 DONE, FULL, NOT_FINITE, NEGATIVE = range(4)
 
@@ -176,9 +178,13 @@ def jump(run: Run, t: float) -> None:
     set_signals(run, HERE, t)
     for i in range(run.load.shape[0]):
         run.top_v[i] = max(run.top_v[i], abs(run.v[HERE, i]))
+    run.g[MIDDLE, :] = run.g[HERE]
     relative_velocities(run, CREEP)
     for c in range(run.mode.shape[1]):
         run.known[HERE, c] = 0
+        row0 = run.row[c]
+        if run.mode[HERE, c] == SLIP and run.row[c + 1] - row0 == 1 and run.g[MIDDLE, row0] * run.g[HERE, row0] < 0.0:
+            keep_event(run, t, c, EVENT_REVERSAL)
         if run.mode[HERE, c] == STICK:
             for a in range(run.row[c], run.row[c + 1]):
                 if run.g[HERE, a] != 0.0 and run.mode[HERE, c] == STICK:
@@ -283,6 +289,8 @@ def drive(run: Run) -> int:
             run.x[STEP] = 0.25 * h
             continue
         error = step_error(run)
+        if error <= 1.0 and h > COARSE * run.x[SHORTEST] and doubtful(run, t, h):
+            error = 2.0
         run.x[ERROR] = error
         if adapt(run, h, error, settled):
             if run.x[FAULT] == DRIVES:

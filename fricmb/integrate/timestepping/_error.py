@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import STICK
+from fricmb.integrate._problem import EVENT_STICK, STICK
 from fricmb.integrate.timestepping._layout import HERE, LEEWAY, MIDDLE, THERE, TOL, WHOLE
 from fricmb.integrate.timestepping._run import Run
 
@@ -39,6 +39,27 @@ def holding_error(run: Run) -> float:
                 halves = 0.5 * (run.push[MIDDLE, c] + run.push[THERE, c])
                 worst = max(worst, run.mu_s[c] * abs(run.push[WHOLE, c] - halves))
     return worst / largest if largest > 0.0 else 0.0
+
+
+#: Transitions in a step up to which it is asked what they are; of more of them single ones do not tell.
+FEW = 2
+#: Part of a step behind which a contact comes to rest too late in it to know what holds it then.
+LATE = 0.75
+
+
+@kernel
+def doubtful(run: Run, t: float, h: float) -> bool:
+    """Whether the few transitions in the step are others by halves than done whole, or come too late in it to tell."""
+    count = 0
+    found = False
+    for c in range(run.status.shape[0]):
+        whole, first, second = run.what[WHOLE, c], run.what[MIDDLE, c], run.what[THERE, c]
+        if whole < 0 and first < 0 and second < 0:
+            continue
+        count += 1
+        late = second == EVENT_STICK and run.moment[THERE, c] > t + 0.5 * (1.0 + LATE) * h
+        found = found or late or (first >= 0 and second >= 0) or max(first, second) != whole
+    return bool(found and count <= FEW)
 
 
 @kernel
