@@ -35,7 +35,7 @@ def write(model, folder: Path) -> list[str]:
     standing = any(body.points for body in bodies)
     scheme = draw_mechanism(scene, bodies) if standing else draw_scene(scene)
     sol = fm.simulate(scene, t_end=model.t_end, rtol=1e-6)
-    plots = SolutionPlots(sol, model.units)
+    plots = SolutionPlots(sol)
     run = plots.velocities(TELLING.get(model.name, list(sol.dof_names[:2])))
     names = [f"_{model.name}_{what}.png" for what in ("scheme", "run")]
     for figure, name in zip((scheme, run), names, strict=True):

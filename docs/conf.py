@@ -49,11 +49,14 @@ os.makedirs(os.path.join(os.path.dirname(__file__), MADE), exist_ok=True)
 html_static_path = ["static", MADE]
 html_css_files = ["pages.css"]
 
+# the gallery by question, in this order
+GROUPS = "stick_slip", "motion", "damping", "shaking", "plane", "squeal", "methods", "paper"
 sphinx_gallery_conf = {
     "examples_dirs": ["../examples"],
     "gallery_dirs": ["gallery"],
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
+    "subsection_order": [f"../examples/{name}" for name in GROUPS],
     "abort_on_example_error": True,
     "download_all_examples": False,
     "remove_config_comments": True,

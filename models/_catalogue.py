@@ -26,10 +26,7 @@ from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
-from fricmb.plot import Units
-
-DIMENSIONLESS = Units(time="1", length="1", force="1")
-SI = Units(time="s", length="m", force="N")
+from fricmb.values import DIMENSIONLESS, SI, Units
 
 
 @dataclass(frozen=True, kw_only=True)

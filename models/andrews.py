@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 
 import fricmb as fm
+from fricmb.values import SI
 
 #: Joint coordinates (beta, Theta, gamma, Phi, delta, Omega, epsilon) at the start, as published.
 START = (
@@ -82,7 +83,7 @@ def andrews(*, torque: float = 0.033, stiffness: float = 4530.0, friction: fm.Fr
         _body("K6", 6, omega + epsilon, F, (_FA, 0.0), {"F": (_FA, 0.0), "pin": (_FA - _ZF, 0.0)}),
         _pivoted("K7", 7, epsilon, _A, (_UA, _UB), {"tip": (0.0, -_U)}),
     ]
-    return fm.Scene("andrews", [*bodies, *_joints(bodies, friction), *_forces(bodies, torque, stiffness)])
+    return fm.Scene("andrews", [*bodies, *_joints(bodies, friction), *_forces(bodies, torque, stiffness)], units=SI)
 
 
 def _pivoted(name: str, number: int, angle: float, at: _Pair, centre: _Pair, points: dict[str, _Pair]) -> fm.RigidBody:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 def belt_oscillator(
@@ -58,4 +59,5 @@ def belt_oscillator(
                 "sole", body, moving, law=law or fm.laws.Coulomb(mu_s=mu_s, mu_k=mu_k), normal_force=normal_force
             ),
         ],
+        units=DIMENSIONLESS,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def block_stack(
@@ -63,7 +64,7 @@ def block_stack(
         )
         for i in range(n)
     ]
-    return fm.Scene(f"stack of {n} blocks", [*blocks, floor, *contacts])
+    return fm.Scene(f"stack of {n} blocks", [*blocks, floor, *contacts], units=SI)
 
 
 def _each(name: str, value: float | Sequence[float], n: int) -> tuple[float, ...]:

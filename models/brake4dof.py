@@ -6,6 +6,7 @@ import math
 from types import MappingProxyType
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 #: Case -> (Omega1, Omega2, delta).
 CASES = MappingProxyType(
@@ -94,4 +95,5 @@ def brake4dof(
             fm.Damper("c2y", rotor, axis="y", damping=mass_ratio * delta),
             fm.Contact("lining", pad, rotor, law=law, normal_force=mu_k_N),
         ],
+        units=DIMENSIONLESS,
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,4 +64,5 @@ def car_axis(*, eps: float = 1e-2, mass: float = 10.0, gravity: float = 1.0, bum
             fm.Rod("axis", left, right, length=length),
             fm.Gravity("gravity", acceleration={"y": -gravity}),
         ],
+        units=DIMENSIONLESS,
     )

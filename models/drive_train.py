@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def drive_train(
@@ -69,4 +70,5 @@ def drive_train(
             fm.TorsionDamper("loss", disc, wheel, damping=damping),
             fm.Gravity("gravity", acceleration={"y": -gravity}),
         ],
+        units=SI,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def dry_pendulum(
@@ -63,4 +64,5 @@ def dry_pendulum(
             fm.Revolute("pin", arm.point("pin"), radius=radius, friction=friction),
             fm.Gravity("gravity", acceleration={"y": -gravity}),
         ],
+        units=SI,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import atan2, cos, hypot, sin, sqrt
 
 import fricmb as fm
+from fricmb.values import SI
 
 _Pair = tuple[float, float]
 
@@ -65,6 +66,7 @@ def four_bar(
             fm.Torque("motor", first, value=torque),
             fm.Gravity("gravity", acceleration={"y": -gravity}),
         ],
+        units=SI,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 def friction_oscillator(
@@ -63,4 +64,5 @@ def friction_oscillator(
             fm.Contact("sole", body, law=law or fm.laws.Coulomb(mu_s=1.0), normal_force=friction),
             *forces,
         ],
+        units=DIMENSIONLESS,
     )

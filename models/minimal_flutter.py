@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 def minimal_flutter(
@@ -74,6 +75,7 @@ def minimal_flutter(
                 normal_force=fm.normal.Spring(axis="y", stiffness=k3, preload=preload),
             ),
         ],
+        units=DIMENSIONLESS,
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import fricmb as fm
+from fricmb.values import SI
 
 Floats = NDArray[np.float64]
 
@@ -142,7 +143,7 @@ def pad_rotor(
         for i, N in enumerate(loads)
     ]
     name = f"pad and rotor, {pad_count} + {rotor_count} modes, {len(places)} contacts"
-    return fm.Scene(name, [pad, rotor, *contacts])
+    return fm.Scene(name, [pad, rotor, *contacts], units=SI)
 
 
 def _count(name: str, value: Any, low: int, high: int) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def painleve_rod(
@@ -65,4 +66,5 @@ def painleve_rod(
             fm.RollerOnLine("tip", rod.point("tip"), push_only=True, friction=friction),
             fm.Gravity("gravity", acceleration={"y": -gravity}),
         ],
+        units=SI,
     )

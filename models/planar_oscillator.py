@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 def planar_oscillator(
@@ -55,4 +56,5 @@ def planar_oscillator(
             fm.Spring("ky", body, axis="y", stiffness=stiffness[1]),
             fm.Contact("sole", body, law=law or fm.laws.Coulomb(mu_s=1.0), normal_force=friction),
         ],
+        units=DIMENSIONLESS,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def puck_on_belt(
@@ -49,4 +50,5 @@ def puck_on_belt(
             moving,
             fm.Contact("sole", puck, moving, law=law or fm.laws.Coulomb(mu_s=mu), normal_force=mass * gravity),
         ],
+        units=SI,
     )

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 def rotor_doublet(
@@ -86,4 +87,4 @@ def rotor_doublet(
                 slide=-speed,
             ),
         ]
-    return fm.Scene(f"disc with a pair of {n} nodal diameters", parts)
+    return fm.Scene(f"disc with a pair of {n} nodal diameters", parts, units=DIMENSIONLESS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import asin, cos, sin
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def slider_crank(
@@ -71,6 +72,7 @@ def slider_crank(
             fm.Torque("motor", first, value=torque),
             fm.Gravity("gravity", acceleration={"y": -gravity}),
         ],
+        units=SI,
     )
 
 

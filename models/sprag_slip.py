@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 
 import fricmb as fm
+from fricmb.values import SI
 
 
 def sprag_slip(
@@ -74,4 +75,5 @@ def sprag_slip(
             fm.TorsionSpring("spring", arm, stiffness=stiffness, angle=-angle),
             fm.Force("load", carrier, axis="y", value=load),
         ],
+        units=SI,
     )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import fricmb as fm
+from fricmb.values import DIMENSIONLESS
 
 
 def stick_slip_chain(
@@ -82,4 +83,4 @@ def stick_slip_chain(
         fm.Contact(f"sole{i + 1}", block, moving, law=law(i), normal_force=normal_force)
         for i, block in enumerate(blocks)
     ]
-    return fm.Scene(f"chain of {n} blocks", [*blocks, moving, *springs, *dampers, *contacts])
+    return fm.Scene(f"chain of {n} blocks", [*blocks, moving, *springs, *dampers, *contacts], units=DIMENSIONLESS)

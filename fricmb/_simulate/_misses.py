@@ -10,6 +10,7 @@ import numpy as np
 from fricmb._simulate._joined import JoinedRun
 from fricmb.integrate._long import KeptTrajectory
 from fricmb.integrate._problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
+from fricmb.integrate._row_run import RowTrajectory
 from fricmb.integrate._trajectory import Trajectory
 from fricmb.solution import Solution
 
@@ -27,7 +28,9 @@ def miss_notes(sol: Solution, trajectory: Trajectory, rtol: float | None) -> tup
     near = NEAR * (FIXED if rtol is None else rtol)
     runs = [run for _, run in trajectory.runs] if isinstance(trajectory, JoinedRun) else [trajectory]
     notes = [note for run in runs for note in _passes(run, near)]
-    if not any(isinstance(run, KeptTrajectory) for run in runs):
+    # steps that are controlled by their error see the jump (but those of mechanisms)
+    seen = rtol is not None and all(isinstance(run, RowTrajectory) for run in runs)
+    if not seen and not any(isinstance(run, KeptTrajectory) for run in runs):
         notes += _through_zero(sol, trajectory, near)
     return tuple(notes)
 

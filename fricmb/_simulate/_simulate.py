@@ -91,9 +91,10 @@ def simulate(
         After Ctrl-C (a KeyboardInterrupt); ``partial`` is the solution up to there.
     """
     begin = time.perf_counter()
+    from fricmb._simulate._blas import blas_threads
     from fricmb._simulate._watch import CompileWatch
 
-    with CompileWatch() as compiling:
+    with CompileWatch() as compiling, blas_threads(scene):
         from fricmb._simulate._arguments import (
             check_limit,
             check_room,

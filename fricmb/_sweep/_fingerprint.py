@@ -19,7 +19,7 @@ import numpy as np
 
 from fricmb.scene import Scene
 from fricmb.solution import Solution
-from fricmb.values import parameters_in
+from fricmb.values import DIMENSIONS, parameters_in
 
 #: Methods with these names count; others with two underscores are made by Python or by dataclasses.
 _SPECIAL = ("__init__", "__post_init__", "__call__", "__new__")
@@ -107,7 +107,8 @@ class Fingerprint:
         if isinstance(value, Solution):
             yield from self._tokens((value.end, value.scene))
         elif isinstance(value, Scene):
-            yield from self._tokens(("scene", value.name, value.parts))
+            named = () if value.units == DIMENSIONS else (value.units,)
+            yield from self._tokens(("scene", value.name, value.parts, *named))
         elif module == "sympy" or _is_expression(value):
             yield from self._expression(value)
         elif module == "scipy" and hasattr(value, "tocoo"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._steady import SteadySliding, steady_sliding
-from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, eigenpairs, follow
+from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, eigenpairs, follow, refine
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
@@ -34,6 +35,10 @@ class Eigenvalues:
         Free degrees of freedom.
     critical : tuple of Crossing
         Where modes become unstable or stable again, in rising order of the parameter.
+    fine_values : (n_fine,)
+        The values again with those between them at which the modes were looked at, in the same direction: for curves.
+    fine_eigenvalues : (n_fine, n_modes) complex
+        The same modes there.
     """
 
     over: str
@@ -42,6 +47,8 @@ class Eigenvalues:
     shapes: Complexes
     dofs: tuple[str, ...]
     critical: tuple[Crossing, ...]
+    fine_values: Floats
+    fine_eigenvalues: Complexes
 
     @property
     def growth(self) -> Floats:
@@ -104,6 +111,7 @@ def complex_eigenvalues(
     grid = checked_values("complex_eigenvalues", values)
     dofs: list[str] = []
 
+    @functools.cache
     def solve(value: float) -> Pairs:
         steady = _steady(scene, {over: value}, speeds)
         dofs[:] = [steady.system.dof_names[i] for i in steady.free]
@@ -111,6 +119,7 @@ def complex_eigenvalues(
 
     found = follow(solve, grid)
     critical = crossings(solve, grid, found)
+    fine, between = refine(solve, grid, found, [c.value for c in critical])
     eigenvalues = np.array([pairs[0] for pairs in found])
     vectors = np.array([pairs[1] for pairs in found])[:, :, : len(dofs)]
     limit = 1e-12 * max(float(np.abs(eigenvalues).max(initial=0.0)), 1e-300)
@@ -129,6 +138,8 @@ def complex_eigenvalues(
         shapes=_scaled(vectors[:, kept]),
         dofs=tuple(dofs),
         critical=tuple(replace(c, mode=stands[c.mode], kind=_kind(c, len(dofs))) for c in critical),
+        fine_values=fine,
+        fine_eigenvalues=between[:, kept],
     )
 
 

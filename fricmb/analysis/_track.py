@@ -45,6 +45,26 @@ def follow(solve: Solve, values: Floats) -> list[Pairs]:
     return found
 
 
+def refine(solve: Solve, values: Floats, found: list[Pairs], critical: list[float]) -> tuple[Floats, Complexes]:
+    """Values with those between them where eigenvalues were counted, and the critical ones; eigenvalues followed there.
+
+    Between two given values modes are followed from the first; at given values they are those found there.
+    """
+    parts = max(1, -(-PLACES // max(1, len(values) - 1)))
+    at, rows = [float(values[0])], [found[0][0]]
+    for i, (low, high) in enumerate(zip(values[:-1].tolist(), values[1:].tolist(), strict=True)):
+        inner = {*np.linspace(low, high, parts + 1).tolist()[1:-1], *critical}
+        here = sorted((v for v in inner if min(low, high) < v < max(low, high)), reverse=high < low)
+        pairs, before = found[i], low
+        for value in here:
+            pairs, before = _step(solve, before, pairs, value, solve(value), _HALVINGS), value
+            at.append(value)
+            rows.append(pairs[0])
+        at.append(high)
+        rows.append(found[i + 1][0])
+    return np.array(at), np.array(rows)
+
+
 def _sorted(pairs: Pairs) -> Pairs:
     order = np.lexsort((pairs[0].real, pairs[0].imag))
     return pairs[0][order], pairs[1][order]

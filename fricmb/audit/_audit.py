@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from fricmb._simulate._closes import unclosed
 from fricmb.audit import _onset
+from fricmb.audit._fading import Fading
 from fricmb.audit._gather import LIMIT, Gathered
 from fricmb.audit._points import Points
 from fricmb.audit._result import Audit
 from fricmb.audit._statements import Statements
 from fricmb.audit._transitions import Changes
-from fricmb.audit._units import Units, at_rest, units_of
+from fricmb.audit._units import ROUND_OFF, Units, at_rest, units_of
 from fricmb.audit._weak import NODES, Weak
 from fricmb.integrate._long import KeptTrajectory, take
 from fricmb.integrate._problem import Floats, Ints
@@ -95,16 +97,19 @@ def _look(
     if sure.any():
         first, half, last = (take(samples, sure) for samples in (begin, middle, end))
         one, two = weak.residual(first, half, rng), weak.residual(half, last, rng)
-        _put(weak, gathered, (one[0] + two[0]) / np.maximum(one[1], two[1]), first.t, "")
-        within = np.maximum(np.abs(one[0]) / one[1], np.abs(two[0]) / two[1])
-        _put(weak, gathered, within / DENSE, half.t, ", between steps")
+        fading = Fading(statements, units, rows, sample)
+        whole = weak.judged(one[0] + two[0], np.maximum(one[1], two[1]), last.t, fading)
+        _put(weak, gathered, whole, first.t, "")
+        parts = [weak.judged(*part, now.t, fading) for part, now in ((one, half), (two, last))]
+        _put(weak, gathered, np.maximum(*parts) / DENSE, half.t, ", between steps")
     if open_.any():
         first, last = take(begin, open_), take(end, open_)
         difference, allowed = weak.residual(first, last, rng, statements.jump(first, last))
         _put(weak, gathered, difference / allowed, first.t, "")
     points.look(take(middle, sure), rng)
     points.look(begin, rng)
-    points.look(end, rng)
+    # where a function of time jumps, what ends a step has not seen it yet
+    points.look(replace(end, t=end.t - ROUND_OFF * np.abs(end.t)), rng)
 
 
 def _put(weak: Weak, gathered: Gathered, ratio: Floats, t: Floats, where: str) -> None:

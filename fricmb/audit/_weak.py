@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.audit._fading import Fading
+from fricmb.audit._gather import LIMITS
 from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
 from fricmb.integrate._problem import Floats
@@ -136,6 +138,18 @@ class Weak:
             whole[:, bad], unsure[:, bad] = self._finer(a[bad], b[bad], allowed[:, bad])
             allowed[:, bad] += unsure[:, bad]
         return change - whole, allowed
+
+    def judged(self, difference: Floats, allowed: Floats, t: Floats, fading: Fading) -> Floats:
+        """Residuals over what is allowed; those of states that fade, made at times t, by the force they make."""
+        ratio = np.abs(difference) / allowed
+        at = self.groups["states of laws"][0].start
+        for k in self.stateful:
+            own = slice(at, at + len(self.statements.states_of(k)))
+            worst = ratio[own].max(axis=0)
+            by_force = fading.forces(k, worst, difference[own], allowed[own], t, LIMITS["states of laws"])
+            ratio[own] *= np.divide(by_force, worst, out=np.ones_like(worst), where=worst > 0.0)
+            at = own.stop
+        return ratio
 
     def _finer(self, a: Floats, b: Floats, allowed: Floats) -> tuple[Floats, Floats]:
         """Integrals over stretches that are cut in two where the rule is not sure."""

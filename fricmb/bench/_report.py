@@ -95,7 +95,8 @@ def _parts(result: dict[str, Any], put: Put) -> Iterator[str]:
     formulas = [row for row in result["orders"] if "steps" in row]
     for family in dict.fromkeys(row["method"].partition(",")[0] for row in formulas):
         rows = [row for row in formulas if row["method"].partition(",")[0] == family]
-        yield put(f"order_{family}.svg", plots.svg(plots.convergence(rows, family)), f"error against steps: {family}")
+        picture = plots.svg(plots.convergence(rows, family))
+        yield put(f"order_{family}.svg", picture, f"error against steps, {family}: {_SLOPES}")
     yield "<h2>Cost against size</h2>" + "".join(_sizes(result, put))
     yield "<h2>Not run</h2>" + table(
         ("scene", "method", "why"), ((row["case"], row["method"], (row["why"], "text")) for row in result["refusals"])
@@ -114,6 +115,10 @@ Their transitions are where the slip speed crosses 10 eps. Times: processor time
 process, compilation apart.</p>"""
 
 
+_SLOPES = (
+    "each line is one formula with steps of one length each; a formula of order p falls by p decades while the "
+    "steps grow by one, until round-off ends it, and the legend says the slope that was fitted"
+)
 _ORDERS = """<p class="note">Error against number of steps where nothing sticks: the largest over the run, also between
 steps, where the order of the dense output counts (for Radau IIA that of its stages, about s, not the 2 s - 1 at the
 ends of steps). bdf leaves the run to Radau IIA at tight tolerances, with fewer steps: orders are fitted up to

@@ -14,9 +14,8 @@ import fricmb as fm
 from fricmb.errors import unknown_name
 from fricmb.models.brake4dof import CASES, brake4dof
 from fricmb.models.brake_paper import FIGURES, T_END, run
-from fricmb.plot import SolutionPlots, Units
+from fricmb.plot import SolutionPlots
 
-DIMENSIONLESS = Units(time="1", length="1", force="1")
 #: Models whose source has figures.
 MODELS = ("brake4dof",)
 
@@ -32,7 +31,7 @@ def figures(options: argparse.Namespace) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     for case in cases:
         sol = run(str(case), t_end=options.t_end, rtol=options.rtol)
-        path = folder / f"brake4dof-case{case}.png"
+        path = folder / f"brake4dof-case{case}.{options.format}"
         page(sol, f"brake4dof, case {case}").savefig(path, dpi=150)
         print(path)
     if options.t_end >= T_END:
@@ -55,7 +54,7 @@ def _paper(folder: Path, cases: list[str], options: argparse.Namespace) -> Itera
         if figure.case not in cases:
             continue
         sol = run(figure.case, t_end=options.t_end, rtol=options.rtol)
-        path = folder / f"figure{number:02d}.png"
+        path = folder / f"figure{number:02d}.{options.format}"
         drawn = figure.draw(sol)
         drawn.savefig(path, dpi=150)
         plt.close(drawn)
@@ -70,7 +69,7 @@ def page(sol: fm.Solution, title: str) -> Figure:
     """Six panels on one page."""
     figure = Figure(figsize=(10.0, 9.5), layout="constrained")
     axes = figure.subplots(3, 2)
-    plots = SolutionPlots(sol, DIMENSIONLESS)
+    plots = SolutionPlots(sol)
     plots.velocities(["pad.x", "rotor.x"], ax=axes[0, 0])
     plots.velocities(["pad.y", "rotor.y"], ax=axes[0, 1])
     plots.phase("pad.x", ax=axes[1, 0])

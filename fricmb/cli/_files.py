@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 import fricmb as fm
 from fricmb.cli._output import replace_together
-from fricmb.plot import Units
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,10 +19,12 @@ if TYPE_CHECKING:
 
 #: All that a run may draw.
 PICTURES = ("velocities", "phase", "energy", "transitions", "force")
+#: Kinds of files they are written as.
+FORMATS = ("png", "svg", "pdf")
 
 
-def write_all(sol: fm.Solution, folder: Path, units: Units, summary: str, *, plots: bool) -> list[str]:
-    """Write summary, data and, unless told otherwise, the pictures; returns the names of the files.
+def write_all(sol: fm.Solution, folder: Path, summary: str, *, plots: str | None) -> list[str]:
+    """Write summary, data and pictures of the format ``plots`` (None: no pictures); returns the names of the files.
 
     Those of an earlier run are replaced together, once all have been written, and its other pictures go.
     """
@@ -34,9 +35,9 @@ def write_all(sol: fm.Solution, folder: Path, units: Units, summary: str, *, plo
         write_csv(sol, new / "solution.csv")
         write_events(sol, new / "events.csv")
         names = ["summary.json", "solution.npz", "solution.csv", "events.csv"]
-        return names + (write_pictures(sol, new, units) if plots else [])
+        return names + (write_pictures(sol, new, plots) if plots else [])
 
-    return replace_together(folder, write, tuple(f"{name}.png" for name in PICTURES))
+    return replace_together(folder, write, tuple(f"{name}.{kind}" for name in PICTURES for kind in FORMATS))
 
 
 def columns(sol: fm.Solution) -> dict[str, NDArray[Any]]:
@@ -71,14 +72,14 @@ def write_events(sol: fm.Solution, path: Path) -> None:
         file.writelines(f"{event.t!r},{event.contact},{event.kind}\n" for event in sol.events)
 
 
-def write_pictures(sol: fm.Solution, folder: Path, units: Units) -> list[str]:
+def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
     """Velocities, phase planes, forces with their cones, transitions, energy."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     import matplotlib.pyplot as plt
 
-    plots = fm.plot.SolutionPlots(sol, units)
+    plots = sol.plot
     pictures: dict[str, Callable[[], Figure]] = {
         "velocities": plots.velocities,
         "phase": partial(plots.phase, _liveliest(sol)),
@@ -89,9 +90,10 @@ def write_pictures(sol: fm.Solution, folder: Path, units: Units) -> list[str]:
         pictures["force"] = partial(plots.force, sol.contact_names[0])
     for name, draw in pictures.items():
         figure = draw()
-        figure.savefig(folder / f"{name}.png", dpi=130, pil_kwargs={"compress_level": 2})
+        options: dict[str, Any] = {"pil_kwargs": {"compress_level": 2}} if kind == "png" else {}
+        figure.savefig(folder / f"{name}.{kind}", dpi=130, **options)
         plt.close(figure)
-    return [f"{name}.png" for name in pictures]
+    return [f"{name}.{kind}" for name in pictures]
 
 
 def _liveliest(sol: fm.Solution) -> str:

@@ -47,7 +47,7 @@ def show_law(options: argparse.Namespace) -> int:
         print(f"states in one direction: {', '.join(law.state_labels('xyz'[: law.dimensions[0]]))}")
     figure = fm.plot.law_figure(law, normal_force=options.normal_force)
     options.out.mkdir(parents=True, exist_ok=True)
-    target = options.out / f"{options.law}.png"
+    target = options.out / f"{options.law}.{options.format}"
     figure.savefig(target, dpi=150)
     print(f"wrote {target}")
     return 0

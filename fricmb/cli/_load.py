@@ -8,7 +8,7 @@ import inspect
 import re
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 import fricmb as fm
 from fricmb.errors import FricmbError, SceneError, unknown_name
 from fricmb.models import catalogue
-from fricmb.plot import SCENE_UNITS, Units
+from fricmb.values import DIMENSIONS, Units
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +26,6 @@ class Loaded:
     scene: fm.Scene
     label: str
     t_end: float | None
-    units: Units = field(default=SCENE_UNITS)
 
 
 def load(model: str, *, case: str | None = None, values: Sequence[str] = ()) -> Loaded:
@@ -36,12 +35,12 @@ def load(model: str, *, case: str | None = None, values: Sequence[str] = ()) -> 
         settings = {"case": case, **settings}
     if model in catalogue:
         known = catalogue[model]
-        return _built_in(model, settings, known.build, known.t_end, known.units)
+        return _built_in(model, settings, known.build, known.t_end)
     if model.endswith(".py") or Path(model).is_file():
         return _from_file(Path(model), settings)
     found, broken = fm.laws.published("fricmb.models")
     if model in found:
-        return _built_in(model, settings, found[model], None, SCENE_UNITS)
+        return _built_in(model, settings, found[model], None)
     if model in broken:
         raise SceneError(f"model {model!r}: {broken[model]}")
     raise unknown_name("model", model, [*catalogue, *found])
@@ -58,9 +57,7 @@ def setting(text: str) -> tuple[str, Any]:
         return name.strip(), value.strip()
 
 
-def _built_in(
-    name: str, settings: dict[str, Any], build: Callable[..., Any], t_end: float | None, units: Units
-) -> Loaded:
+def _built_in(name: str, settings: dict[str, Any], build: Callable[..., Any], t_end: float | None) -> Loaded:
     arguments = inspect.signature(build).parameters
     own = {key: value for key, value in settings.items() if key in arguments}
     if "case" in settings and "case" not in arguments:
@@ -77,7 +74,7 @@ def _built_in(
         scene = _with_parameters(scene, rest)
     except KeyError as error:
         raise SceneError(f"--set: {error}; arguments of {name}: {', '.join(arguments)}") from None
-    return Loaded(scene=scene, label=label, t_end=t_end, units=units)
+    return Loaded(scene=scene, label=label, t_end=t_end)
 
 
 def _from_file(path: Path, settings: dict[str, Any]) -> Loaded:
@@ -87,10 +84,12 @@ def _from_file(path: Path, settings: dict[str, Any]) -> Loaded:
         found = "none" if scene is None else repr(scene)
         raise SceneError(f"{path}: expected a module-level scene = fricmb.Scene(...); found {found}")
     t_end = getattr(module, "t_end", None)
-    units = getattr(module, "units", SCENE_UNITS)
+    units = getattr(module, "units", None)
+    if isinstance(units, Units) and scene.units == DIMENSIONS:
+        scene = scene.with_units(units)
     if "case" in settings:
         raise SceneError(f"--case: {path} is a file; only a built-in model has cases")
-    return Loaded(scene=_with_parameters(scene, settings), label=path.stem, t_end=t_end, units=units)
+    return Loaded(scene=_with_parameters(scene, settings), label=path.stem, t_end=t_end)
 
 
 def module_of(path: Path) -> ModuleType:

@@ -167,6 +167,7 @@ def _add_run(commands: _Commands) -> None:
     )
     sub.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: fricmb-out/MODEL)")
     sub.add_argument("--no-plots", action="store_true", help="no pictures")
+    _add_format(sub)
     sub.add_argument("--audit", action="store_true", help="check the run against the scene's equations: sol.audit()")
     sub.add_argument("--json", action="store_true", help="print the summary as JSON and nothing else")
     sub.add_argument("--quiet", action="store_true", help="no progress bar and no notices")
@@ -190,6 +191,13 @@ def _add_law(commands: _Commands) -> None:
     sub.add_argument(
         "--out", type=Path, default=Path("fricmb-out/laws"), metavar="DIR", help="folder (default: %(default)s)"
     )
+    _add_format(sub)
+
+
+def _add_format(sub: argparse.ArgumentParser) -> None:
+    kinds = ("png", "svg", "pdf")
+    text = "of the pictures; svg and pdf are lines (default: %(default)s)"
+    sub.add_argument("--format", choices=kinds, default="png", help=text)
 
 
 def _add_equations(commands: _Commands) -> None:
@@ -236,6 +244,7 @@ def _add_figures(commands: _Commands) -> None:
     sub.add_argument("--rtol", type=float, default=1e-8, metavar="R", help="relative tolerance (default: %(default)g)")
     sub.add_argument("--t-end", type=float, default=700.0, metavar="T", help="end of the runs (default: %(default)g)")
     sub.add_argument("--case", action="append", metavar="CASE", help="only this case; may be repeated")
+    _add_format(sub)
 
 
 def _add_plot(commands: _Commands) -> None:
@@ -244,12 +253,16 @@ def _add_plot(commands: _Commands) -> None:
     sub.add_argument(
         "kind",
         metavar="KIND",
-        help="velocities, phase, force, transitions, energy, spectrum, spectrogram, orders, animation, sound or view",
+        help="velocities, phase, path, force, transitions, energy, spectrum, spectrogram, orders, animation, sound or "
+        "view",
     )
     sub.add_argument("--laws", type=Path, metavar="FILE.py", help="where own laws are defined; this file is run")
     sub.add_argument("--of", metavar="NAME", help="the dof, contact or signal that is shown, such as pad.y")
-    sub.add_argument("--out", type=Path, metavar="FILE", help="default: KIND.png, .gif, .wav or .html beside FILE")
-    sub.add_argument("--t-start", type=float, metavar="T", help="animation: start; default: that of the run")
-    sub.add_argument("--t-end", type=float, metavar="T", help="animation: end; default: that of the run")
+    sub.add_argument("--hz", action="store_true", help="spectra: frequency in place of angular frequency")
+    sub.add_argument("--theme", choices=("light", "dark"), help="colours for a light or a dark page")
+    kinds = "default: KIND.png, .gif, .wav or .html beside FILE; .svg and .pdf are lines"
+    sub.add_argument("--out", type=Path, metavar="FILE", help=kinds)
+    sub.add_argument("--t-start", type=float, metavar="T", help="start of the part shown; default: that of the run")
+    sub.add_argument("--t-end", type=float, metavar="T", help="end of the part shown; default: that of the run")
     sub.add_argument("--frames", type=int, default=120, metavar="N", help="animation: pictures (default: %(default)s)")
     sub.add_argument("--seconds", type=float, default=3.0, metavar="S", help="sound: length (default: %(default)g)")

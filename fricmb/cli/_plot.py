@@ -13,9 +13,12 @@ from fricmb.errors import SceneError, unknown_name
 from fricmb.values import Declaration
 
 #: Kinds that need a signal or contact (``--of``), and those that write a file of their own.
-NEED_NAME = ("phase", "force", "spectrum", "spectrogram", "orders", "sound")
+NEED_NAME = ("phase", "path", "force", "spectrum", "spectrogram", "orders", "sound")
 OWN_FILE = {"animation": ".gif", "sound": ".wav", "view": ".html"}
-KINDS = ("velocities", "phase", "force", "transitions", "energy", "spectrum", "spectrogram", "orders", *OWN_FILE)
+KINDS = (
+    "velocities", "phase", "path", "force", "transitions", "energy", "spectrum", "spectrogram", "orders", *OWN_FILE,
+)  # fmt: skip
+FREQUENCIES = ("spectrum", "spectrogram", "orders")
 
 
 def plot(options: argparse.Namespace) -> int:
@@ -28,7 +31,8 @@ def plot(options: argparse.Namespace) -> int:
     path: Path = options.out or options.solution.with_name(f"{kind}{OWN_FILE.get(kind, '.png')}")
     sol = fm.Solution.load(options.solution, laws=_laws(options.laws))
     path.parent.mkdir(parents=True, exist_ok=True)
-    _draw(sol, kind, name, path, options)
+    with fm.plot.theme(options.theme):
+        _draw(sol, kind, name, path, options)
     print(path)
     return 0
 
@@ -54,5 +58,11 @@ def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: ar
         sol.plot.view(path)
     else:
         draw: Callable[..., Any] = getattr(sol.plot, kind)
-        figure = draw() if name is None else draw(name.split(",") if kind == "velocities" else name)
+        given: dict[str, Any] = {"t_start": options.t_start, "t_end": options.t_end}
+        if options.hz:
+            if kind not in FREQUENCIES:
+                raise SceneError(f"fricmb plot {kind}: --hz: only {', '.join(FREQUENCIES)} have frequencies")
+            given["hz"] = True
+        names = () if name is None else tuple(name.split(","))
+        figure = draw(names, **given) if kind == "velocities" and names else draw(*names, **given)
         figure.savefig(path, dpi=150)

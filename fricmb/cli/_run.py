@@ -55,7 +55,7 @@ def _run(options: argparse.Namespace) -> int:
     if audit is not None:
         summary["audit"] = {"ok": audit.ok, "rtol": audit.rtol, "checks": [_row(check) for check in audit.checks]}
     text = json.dumps(finite(summary), indent=2, allow_nan=False) + "\n"
-    written = write_all(sol, folder, loaded.units, text, plots=not options.no_plots)
+    written = write_all(sol, folder, text, plots=None if options.no_plots else options.format)
     if options.json:
         print_aside(text)
     else:

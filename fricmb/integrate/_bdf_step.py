@@ -17,6 +17,7 @@ from fricmb.integrate._field import Scratch, normal_force
 from fricmb.integrate._growth import too_long
 from fricmb.integrate._history import History, admissible, rescale
 from fricmb.integrate._instant import State, complete, slip_speed
+from fricmb.integrate._jumps import jump_error
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._laws import break_away
 from fricmb.integrate._onestep import Accuracy, OneStep, add_to_position, newton_tolerances, state_noise, widest
@@ -280,6 +281,7 @@ def bdf_step(
     state_noise(packed, one, acc, hist.h[0])
     error = scaled(packed, y, one, acc, hist, hist.d, 1.0 / (k + 1))
     error = max(error, too_long(packed, s, y, one, hist.h[0], k))
+    error = max(error, jump_error(packed, s, y, y.t[0] + hist.h[0], end.q, end.v, acc, hist.h[0]))
     if not error <= 1.0:
         hist.status[3] += 1
         one.counts[1] += 1

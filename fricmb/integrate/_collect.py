@@ -11,7 +11,6 @@ from fricmb.integrate._band import places_of
 from fricmb.integrate._exact_step import no_exact
 from fricmb.integrate._factor import factor
 from fricmb.integrate._field import scratch
-from fricmb.integrate._hermite import RowTrajectory
 from fricmb.integrate._instant import state
 from fricmb.integrate._integrator import Tolerance
 from fricmb.integrate._modes import rest
@@ -20,6 +19,7 @@ from fricmb.integrate._pack import packed_of
 from fricmb.integrate._port_state import port_state
 from fricmb.integrate._problem import Ints, Problem, Start
 from fricmb.integrate._room import room
+from fricmb.integrate._row_run import RowTrajectory
 from fricmb.integrate._rows import rows, widths
 from fricmb.integrate._stages import stages
 from fricmb.integrate._start import begin, natural_scales

@@ -8,6 +8,7 @@ that is called through the table its place and the layouts it takes, but not its
 
 from __future__ import annotations
 
+import dis
 import hashlib
 import inspect
 import sys
@@ -150,9 +151,9 @@ class _Reader:
                 continue
             is_code = isinstance(constant, CodeType)
             constants.append(self._code(constant, around) if is_code else self._value(constant))
-        names = []
+        names, taken = [], _globals_of(code)
         for name in code.co_names:
-            if name in around:
+            if name in around and name in taken:
                 names.append(f"{name} = {self._global(around[name], code.co_names)}")
             else:
                 names.append(name)
@@ -164,6 +165,11 @@ class _Reader:
             taken = [f"{name} = {self._value(getattr(thing, name))}" for name in names if hasattr(thing, name)]
             return f"module {thing.__name__} {taken}"
         return self._value(thing)
+
+
+def _globals_of(code: CodeType) -> set[str]:
+    """Names that a code takes from its module; an attribute may have the name of something there and be another."""
+    return {str(step.argval) for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
 
 
 def _own(module: str) -> bool:

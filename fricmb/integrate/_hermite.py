@@ -1,22 +1,25 @@
-"""Dense output on rows: quintic Hermite polynomials in q, from values, velocities and accelerations at both ends."""
+"""Between rows: quintic Hermite polynomials in q, from values, velocities and accelerations at both ends."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._field import Scratch, scratch
-from fricmb.integrate._instant import State, complete, kinematics, slip_speed, state
+from fricmb.integrate._field import Scratch
+from fricmb.integrate._instant import State, complete, kinematics, slip_speed
 from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._pack import Packed, packed_of
-from fricmb.integrate._problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Ints, Pivots, Problem, Start
+from fricmb.integrate._pack import Packed
+from fricmb.integrate._problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
 from fricmb.integrate._rows import INSIDE
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
 
 
 @kernel
 def hermite(left: Floats, right: Floats, h: float, x: float, n: int, q: Floats, v: Floats) -> None:
-    """Q and v at fraction x of a step h from rows that hold [., q, v, a] from entry 1 on."""
+    """Q and v at fraction x of a step h from rows that hold [t, q, v, a].
+
+    The mean velocity (q1 - q0)/h has the round-off of the two times over h: where the velocities of both ends and their
+    rates say the same but for that, they are taken.
+    """
+    grain = 2e-15 * max(abs(left[0]), abs(right[0])) / h
     x2, x3 = x * x, x * x * x
     x4, x5 = x2 * x2, x2 * x3
     b1 = 10.0 * x3 - 15.0 * x4 + 6.0 * x5
@@ -34,6 +37,9 @@ def hermite(left: Floats, right: Floats, h: float, x: float, n: int, q: Floats, 
         q1, v1, a1 = right[1 + i], right[1 + n + i], right[1 + 2 * n + i]
         q[i] = q0 + b1 * (q1 - q0) + h * (s0 * v0 + s1 * v1) + h * h * (c0 * a0 + c1 * a1)
         v[i] = d1 * (q1 - q0) / h + e0 * v0 + e1 * v1 + h * (f0 * a0 + f1 * a1)
+        alone = v0 + (3.0 * x2 - 2.0 * x3) * (v1 - v0) + h * ((x - 2.0 * x2 + x3) * a0 + (x3 - x2) * a1)
+        if abs(v[i] - alone) <= grain * max(abs(v0), abs(v1)):
+            v[i] = alone
 
 
 @kernel
@@ -117,113 +123,142 @@ def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
         row[at + 2 * m + nc + i] = y.work[i]
 
 
-@entry
-def sample_rows(
-    packed: Packed, s: Scratch, y: State, values: Floats, modes: Codes, stops: Floats, index: Ints, t: Floats,
-    out: Floats, out_mode: Codes, sizes: Pivots, pivots: Pivots, address: Ints,
+@kernel
+def complete_at(
+    packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, sizes: Pivots,
+    pivots: Pivots, address: Ints,
 ) -> None:  # fmt: skip
-    """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours."""
+    """Make y the state at t between row k and the next one, with its forces and powers; ``work`` stays."""
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
     at_z = 1 + 3 * n
     at_F = at_z + 2 * nz
-    at_N = at_F + m
-    at_w = at_N + nc
+    left, right = values[k], values[k + 1]
+    h = right[0] - left[0]
+    x = (t - left[0]) / h
+    y.t[0] = t
+    hermite(left, right, h, x, n, y.q, y.v)
+    cubic(left, right, at_z, at_z + nz, nz, h, x, y.z)
+    for c in range(nc):
+        y.mode[c] = modes[c]
+        y.N[c] = left[at_F + m + c]
+        force = 0.0
+        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+            force += left[at_F + a] ** 2
+        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+            y.n[a] = -left[at_F + a] / np.sqrt(force) if force > 0.0 else 0.0
+    point_along_slip(packed, s, y)
+    complete(packed, s, y, sizes, pivots, address)
+
+
+@kernel
+def add_powers(
+    packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, out: Floats2,
+    sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Add integrals of the powers (row 0 of ``out``) and of their magnitudes (row 1) from row k to t, by Gauss."""
+    h = t - values[k, 0]
+    for g in range(3):
+        root = (g - 1.0) * np.sqrt(0.6)
+        weight = h * (4.0 / 9.0 if g == 1 else 5.0 / 18.0)
+        complete_at(packed, s, y, values, k, modes, values[k, 0] + 0.5 * h * (1.0 + root), sizes, pivots, address)
+        for i in range(y.rate.shape[0]):
+            out[0, i] += weight * y.rate[i]
+            out[1, i] += weight * abs(y.rate[i])
+
+
+@kernel
+def open_step(
+    packed: Packed, s: Scratch, y: State, values: Floats2, ends: Ints, modes: Codes2, part: Floats3,
+    sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Integrals of the powers from row ``ends[0]``, where a step starts, up to every row of it until ``ends[1]``."""
+    part[0] = 0.0
+    for k in range(ends[0], ends[1]):
+        part[k + 1 - ends[0]] = part[k - ends[0]]
+        add_powers(
+            packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots, address
+        )  # fmt: skip
+
+
+@kernel
+def ends_of_step(values: Floats2, kind: Codes, k: int, ends: Ints) -> bool:
+    """First and last row of the step in which row k is; whether that has changed."""
+    low, high = k, k + 1
+    while low > 0 and kind[low] == INSIDE:
+        low -= 1
+    while high < values.shape[0] - 1 and kind[high] == INSIDE:
+        high += 1
+    if low == ends[0] and high == ends[1]:
+        return False
+    ends[0], ends[1] = low, high
+    return True
+
+
+@kernel
+def work_at(
+    packed: Packed, s: Scratch, y: State, values: Floats2, at_w: int, ends: Ints, part: Floats3, k: int, modes: Codes,
+    t: float, sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Energies at t after row k: those where the step starts and the integral of the powers of the dense output.
+
+    What that misses of the step's own energies at its end (less than the step errs by) is spread along with the
+    magnitude of the power: what is lost never comes back, and where there is no power nothing changes.
+    """
+    since = part[k - ends[0]].copy()
+    add_powers(packed, s, y, values, k, modes, t, since, sizes, pivots, address)
+    whole = part[ends[1] - ends[0]]
+    left, right = values[ends[0]], values[ends[1]]
+    for i in range(y.work.shape[0]):
+        missing = right[at_w + i] - left[at_w + i] - whole[0, i]
+        share = since[1, i] / whole[1, i] if whole[1, i] > 0.0 else (t - left[0]) / (right[0] - left[0])
+        y.work[i] = left[at_w + i] + since[0, i] + missing * share
+
+
+@kernel
+def state_of_row(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes, t: float) -> None:
+    """Make y the state of a row, as it was found."""
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    at_z = 1 + 3 * n
+    at_F = at_z + 2 * nz
+    y.t[0] = t
+    for i in range(n):
+        y.q[i] = row[1 + i]
+        y.v[i] = row[1 + n + i]
+    for i in range(nz):
+        y.z[i] = row[at_z + i]
+    for i in range(nc + 2):
+        y.work[i] = row[at_F + m + nc + i]
+    for c in range(nc):
+        y.mode[c] = modes[c]
+        y.N[c] = row[at_F + m + c]
+    for a in range(m):
+        y.F[a] = row[at_F + a]
+    relative_velocity(packed, s, y)
+
+
+@entry
+def sample_rows(
+    packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, modes: Codes2, stops: Floats, index: Ints,
+    t: Floats, side: Floats, part: Floats3, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots,
+    address: Ints,
+) -> None:  # fmt: skip
+    """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
+
+    ``side``: a time in the interval between breakpoints that each belongs to; ``part``: room for the rows of a step.
+    """
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    at_F = 1 + 3 * n + 2 * nz
+    at_w = at_F + m + nc
+    ends = np.full(2, -1)
     for j in range(t.shape[0]):
         k = index[j]
         left = values[k]
-        right = values[min(k + 1, values.shape[0] - 1)]
-        h = right[0] - left[0]
-        y.t[0] = t[j]
-        if h > 0.0 and t[j] > left[0]:
-            x = (t[j] - left[0]) / h
-            hermite(left, right, h, x, n, y.q, y.v)
-            cubic(left, right, at_z, at_z + nz, nz, h, x, y.z)
-            cubic(left, right, at_w, at_w + nc + 2, nc + 2, h, x, y.work)
+        set_window_around(stops, s, side[j])
+        if t[j] > left[0] and k + 1 < values.shape[0] and values[k + 1, 0] > left[0]:
+            if ends_of_step(values, kind, k, ends):
+                open_step(packed, s, y, values, ends, modes, part, sizes, pivots, address)
+            work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots, address)
+            complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots, address)
         else:
-            for i in range(n):
-                y.q[i] = left[1 + i]
-                y.v[i] = left[1 + n + i]
-            for i in range(nz):
-                y.z[i] = left[at_z + i]
-            for i in range(nc + 2):
-                y.work[i] = left[at_w + i]
-        for c in range(nc):
-            y.mode[c] = modes[k, c]
-            y.N[c] = left[at_N + c]
-            force = 0.0
-            for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-                force += left[at_F + a] ** 2
-            for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-                y.n[a] = -left[at_F + a] / np.sqrt(force) if force > 0.0 else 0.0
-        set_window_around(stops, s, left[0])
-        if t[j] > left[0]:
-            point_along_slip(packed, s, y)
-            complete(packed, s, y, sizes, pivots, address)
-        else:
-            for a in range(m):
-                y.F[a] = left[at_F + a]
-            relative_velocity(packed, s, y)
+            state_of_row(packed, s, y, left, modes[k], t[j])
         write_sample(packed, y, out[j], out_mode[j])
-
-
-class RowTrajectory(Trajectory):
-    """A run kept as rows; ``values`` (n_r, width) as in Rows, ``kind``, ``mode`` (n_r, n_c)."""
-
-    def __init__(
-        self,
-        problem: Problem,
-        values: Floats,
-        kind: Codes,
-        mode: Codes,
-        transitions: Transitions,
-        counters: Counters,
-        end: Start,
-        failure: str | None,
-    ) -> None:
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
-        self._values = values
-        self._mode = mode
-        self._kind = kind
-        self._times = np.ascontiguousarray(values[:, 0])
-        self._steps = np.flatnonzero(kind != INSIDE)
-
-    @property
-    def t(self) -> Floats:
-        """Times of the accepted steps."""
-        return self._times[self._steps]
-
-    def rows(self) -> Samples:
-        """Values at the accepted steps, as they were found."""
-        return self._sample(self.t, self._steps)
-
-    def sample(self, t: Floats) -> Samples:
-        """Dense output."""
-        t = np.ascontiguousarray(t, dtype=float)
-        return self._sample(t, np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0))
-
-    def _sample(self, t: Floats, index: Ints) -> Samples:
-        problem = self.problem
-        n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
-        out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
-        modes = np.zeros((len(t), nc), np.int8)
-        start = Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz))
-        self._fill(state(problem, start), index.astype(np.int64), t, out, modes)
-        ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
-        _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])
-        return Samples(
-            t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T), friction_loss=friction,
-            damping_loss=damping[0], input=supply[0],
-        )  # fmt: skip
-
-    def _fill(self, y: State, index: Ints, t: Floats, out: Floats2, modes: Codes2) -> None:
-        """Rows of values and modes at times within the rows ``index``; ``y`` is room for a state."""
-        packed, problem = packed_of(self.problem), self.problem
-        sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
-        sample_rows(
-            packed, scratch(problem), y, self._values, self._mode, packed.breakpoints, index, t, out, modes, sizes,
-            pivots, addresses("complete"),
-        )  # fmt: skip

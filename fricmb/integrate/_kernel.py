@@ -8,6 +8,7 @@ from typing import Any, TypeVar, cast
 from numba import njit
 
 from fricmb.integrate._kernel_cache import kept
+from fricmb.integrate._linked import LinkedCompiler
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -15,10 +16,10 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 def kernel(function: _Function) -> _Function:
     """Compile ``function`` for calls from other kernels; division by zero gives inf, as in numpy.
 
-    Neither cached by itself nor callable from Python, where it would end the process: wrappers for Python are a quarter
-    of the compilation, and what is cached is the entry or block that calls it.
+    Neither cached by itself nor callable from Python, where it would end the process: what is optimised, made machine
+    code and cached is the entry or block that calls it (:mod:`fricmb.integrate._linked`).
     """
-    inner = njit(error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True)
+    inner = njit(error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=LinkedCompiler)
     return cast(_Function, inner(function))
 
 

@@ -199,7 +199,7 @@ def block(function: _Function) -> _Function:
     def resolve(note: str) -> Any:
         return _SCALARS.get(note) or _array_type(note) or room_type(around[note])
 
-    compiled = kept(njit(error_model="numpy")(function))
+    compiled = kept(njit(error_model="numpy", no_cpython_wrapper=True)(function))
     signature_of = lambda: (tuple(resolve(note) for note in notes.values()), resolve(wanted))  # noqa: E731
     _blocks[function.__name__] = (compiled, signature_of)
 

@@ -7,6 +7,7 @@ import numpy as np
 from fricmb.integrate._field import Scratch
 from fricmb.integrate._growth import too_long
 from fricmb.integrate._instant import State
+from fricmb.integrate._jumps import jump_error
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._law_defect import law_defect
 from fricmb.integrate._onestep import Accuracy, OneStep, state_noise, widest
@@ -87,6 +88,7 @@ def step_error(
         worst = max(worst, abs(e_z) / size_z)
     worst = max(worst, law_defect(packed, s, y, one, acc, h))
     worst = max(worst / acc.rtol[0], too_long(packed, s, y, one, h, n_s))
+    worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     return float(max(worst, unseen_force(packed, y, one, acc, h)))
 
 

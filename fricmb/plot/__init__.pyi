@@ -1,3 +1,4 @@
+from ._law import law as law
 from ._law import law_figure as law_figure
 from ._solution import SolutionPlots as SolutionPlots
 from ._stability import eigenvalues as eigenvalues
@@ -7,7 +8,10 @@ from ._style import COLOURS as COLOURS
 from ._style import DARK as DARK
 from ._style import ORANGE as ORANGE
 from ._style import THIN as THIN
+from ._style import drawn as drawn
 from ._style import finish as finish
+from ._style import theme as theme
+from ._style import use as use
 from ._units import SCENE_UNITS as SCENE_UNITS
 from ._units import Units as Units
 
@@ -20,8 +24,12 @@ __all__ = [
     "THIN",
     "SolutionPlots",
     "Units",
+    "drawn",
     "eigenvalues",
     "finish",
+    "law",
     "law_figure",
     "stability",
+    "theme",
+    "use",
 ]

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
-from fricmb.plot._style import BLUE, COLOURS, DARK, ORANGE, THIN, finish, remark
+from fricmb.plot._style import THIN, finish, paint, remark
 from fricmb.plot._units import Units
 
 if TYPE_CHECKING:
@@ -17,13 +17,19 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 STICK, SLIP, OPEN = 0, 1, 2
-#: How the bar of a mode is drawn.
-_BARS: dict[int, dict[str, Any]] = {
-    STICK: {"facecolor": BLUE, "edgecolor": BLUE, "linewidth": 0.4},
-    OPEN: {"facecolor": "none", "edgecolor": DARK, "hatch": "////", "linewidth": 0.4},
-}
 #: More contacts than this are drawn without their names.
 NAMED = 30
+#: Phases shorter than the shortest hundredth of all by this factor are put on the lower edge.
+_SHORT = 1e-3
+
+
+def _bars() -> dict[int, dict[str, Any]]:
+    """How the bar of a mode is drawn."""
+    stick, ink = paint().stick, paint().ink
+    return {
+        STICK: {"facecolor": stick, "edgecolor": stick, "linewidth": 0.4},
+        OPEN: {"facecolor": "none", "edgecolor": ink, "hatch": "////", "linewidth": 0.4},
+    }
 
 
 def static_limit(sol: Solution, contact: str) -> Floats | None:
@@ -41,11 +47,11 @@ def draw_force_history(sol: Solution, contact: str, ax: Axes, units: Units) -> N
     """Force over time; in one dimension signed, in two its magnitude; the break-away force as bounds."""
     force, limit = sol.force(contact), static_limit(sol, contact)
     planar = len(force) == 2
-    ax.plot(sol.t, np.hypot(*force) if planar else force[0], color=BLUE, linewidth=THIN, label="friction force")
+    ax.plot(sol.t, np.hypot(*force) if planar else force[0], color=paint().stick, linewidth=THIN, label="friction force")
     if limit is not None:
-        ax.plot(sol.t, limit, color=ORANGE, linestyle="--", linewidth=THIN, label="break-away force")
+        ax.plot(sol.t, limit, color=paint().slip, linestyle="--", linewidth=THIN, label="break-away force")
         if not planar:
-            ax.plot(sol.t, -limit, color=ORANGE, linestyle="--", linewidth=THIN)
+            ax.plot(sol.t, -limit, color=paint().slip, linestyle="--", linewidth=THIN)
     name = f"|F| of {contact}" if planar else f"F of {contact}"
     finish(ax, x=f"time [{units.time}]", y=f"{name} [{units.force}]", legend=True)
 
@@ -73,13 +79,13 @@ def _with_margin(values: Floats) -> tuple[float, float]:
 
 def _draw_plane(sol: Solution, contact: str, ax: Axes, units: Units, *, legend: bool = False) -> None:
     force, limit, mode = sol.force(contact), static_limit(sol, contact), sol.mode(contact)
-    ax.plot(*np.where(mode == STICK, force, np.nan), color=COLOURS[6], linewidth=0.7, label="stick")
-    ax.plot(*np.where(mode == SLIP, force, np.nan), color=BLUE, linewidth=1.2, label="slip")
-    ax.plot(*force[:, :1], "o", color=DARK, markersize=3.5, label="start")
+    ax.plot(*np.where(mode == STICK, force, np.nan), color=paint().quiet, linewidth=0.7, label="stick")
+    ax.plot(*np.where(mode == SLIP, force, np.nan), color=paint().stick, linewidth=1.2, label="slip")
+    ax.plot(*force[:, :1], "o", color=paint().ink, markersize=3.5, label="start")
     if limit is not None:
         angle = np.linspace(0, 2 * np.pi, 3601)
         radius = limit.max(initial=0.0)
-        ax.plot(radius * np.cos(angle), radius * np.sin(angle), "--", color=ORANGE, linewidth=THIN, label="cone")
+        ax.plot(radius * np.cos(angle), radius * np.sin(angle), "--", color=paint().slip, linewidth=THIN, label="cone")
     first, second = sol.names.axes(contact)
     finish(ax, x=f"force along {first} [{units.force}]", y=f"along {second} [{units.force}]", legend=legend)
 
@@ -90,21 +96,26 @@ def phases(sol: Solution, contact: str) -> tuple[Floats, NDArray[np.int8]]:
     return bounds, sol.at(0.5 * (bounds[:-1] + bounds[1:])).mode(contact)
 
 
-def draw_modes(sol: Solution, ax: Axes) -> None:
+def draw_modes(sol: Solution, ax: Axes, span: tuple[float, float]) -> None:
     """A bar for each contact: filled where it sticks, hatched where it is open."""
-    names, opens = sol.contact_names, False
+    names, opens, sticks, held = sol.contact_names, False, False, False
     for row, name in enumerate(names):
         bounds, mode = phases(sol, name)
-        opens = opens or bool((mode == OPEN).any())
-        for code, style in _BARS.items():
+        opens, sticks = opens or bool((mode == OPEN).any()), sticks or bool((mode == STICK).any())
+        rest = sol.rest_spans(name)
+        held = held or bool(rest.size)
+        if rest.size:
+            spans = [(a, b - a) for a, b in rest.tolist()]
+            ax.broken_barh(spans, (row - 0.35, 0.7), facecolor=paint().stick, alpha=0.35, linewidth=0.0)
+        for code, style in _bars().items():
             spans = [(bounds[i], bounds[i + 1] - bounds[i]) for i in np.flatnonzero(mode == code)]
             ax.broken_barh(spans, (row - 0.35, 0.7), **style)
     if len(names) <= NAMED:
         ax.set_yticks(range(len(names)), names)
     ax.set_ylim(len(names) - 0.4, -0.6)
-    remark(ax, "filled: stick" + (", hatched: open" if opens else ""))
+    remark(ax, ("filled: stick" if sticks else "no stick") + (", hatched: open" if opens else "") + (", pale: at rest, held by others" if held else ""))
     finish(ax, x="", y="contact")
-    ax.set_xlim(sol.t_start, sol.t_end)
+    ax.set_xlim(span[0] - 0.01 * (span[1] - span[0]), span[1] + 0.01 * (span[1] - span[0]))
 
 
 class _PlainLog(LogFormatter):
@@ -114,20 +125,44 @@ class _PlainLog(LogFormatter):
         return f"{x:g}" if super().__call__(x, pos) else ""
 
 
-def draw_phases(sol: Solution, ax: Axes, units: Units) -> None:
-    """How long each phase lasts, over its beginning: a point for each, by mode."""
-    markers = {STICK: ("stick", "o", BLUE), SLIP: ("slip", "x", ORANGE), OPEN: ("open", "s", DARK)}
-    found: dict[int, list[tuple[float, float]]] = {STICK: [], SLIP: [], OPEN: []}
-    for name in sol.contact_names:
-        bounds, mode = phases(sol, name)
-        for begin, end, code in zip(bounds[:-1], bounds[1:], mode.tolist(), strict=True):
-            found[code].append((begin, end - begin))
-    for code, spans in found.items():
-        if spans:
-            label, marker, colour = markers[code]
-            ax.plot(*np.transpose(spans), marker, color=colour, markersize=3, linestyle="none", label=label)
+def draw_phases(sol: Solution, ax: Axes, units: Units, span: tuple[float, float]) -> None:
+    """How long each phase lasts, over its beginning: a point for each, by mode.
+
+    A few phases that are shorter than all others by orders of magnitude (two transitions at one instant, apart by
+    round-off) stand on the lower edge, so that the axis shows the others.
+    """
+    kinds = {STICK: ("stick", "o", paint().stick), SLIP: ("slip", "x", paint().slip), OPEN: ("open", "s", paint().ink)}
+    begin, length, mode = _spans(sol, span)
+    floor = _floor(length)
+    short = length < floor
+    for code, (label, marker, colour) in kinds.items():
+        style = {"color": colour, "linestyle": "none"}
+        if (here := mode == code).any():
+            ax.plot(begin[here & ~short], length[here & ~short], marker, markersize=3, label=label, **style)
+            ax.plot(begin[here & short], np.full((here & short).sum(), floor), 11, markersize=5, **style)
     ax.set_yscale("log")
+    if short.any():
+        ax.set_ylim(bottom=floor / 1.5)
+        least = f"{length.min():.0e}" if length.min() > 0.0 else "0"
+        remark(ax, f"{short.sum()} shorter than {floor:.0e}, down to {least}: on the lower edge", loc="left")
     # plain numbers: the default sets powers of ten as formulas, which takes as long as the rest of the picture
     ax.yaxis.set_major_formatter(_PlainLog())
     ax.yaxis.set_minor_formatter(_PlainLog(minor_thresholds=(1, 0.4)))
     finish(ax, x=f"time [{units.time}]", y=f"length of phase [{units.time}]", legend=True)
+
+
+def _spans(sol: Solution, span: tuple[float, float]) -> tuple[Floats, Floats, NDArray[np.int8]]:
+    """Beginning, length and mode of all phases that begin in a stretch of the run, or hold at its start."""
+    found = []
+    for name in sol.contact_names:
+        bounds, mode = phases(sol, name)
+        inside = (bounds[1:] > span[0]) & (bounds[:-1] < span[1])
+        found.append((bounds[:-1][inside], np.diff(bounds)[inside], mode[inside]))
+    begin, length, mode = (np.concatenate(column) for column in zip(*found, strict=True))
+    return np.maximum(begin, span[0]), length, mode.astype(np.int8)
+
+
+def _floor(length: Floats) -> float:
+    """The length below which phases stand on the edge: far below the shortest hundredth of those that last."""
+    lasting = length[length > 1e-9 * length.max(initial=0.0)]
+    return float(_SHORT * np.quantile(lasting, 0.01)) if lasting.size else 0.0

@@ -1,21 +1,52 @@
-"""Enough points for a curve: a step of high order may span half a turn."""
+"""Enough points for a curve: a step of high order may span half a turn; and which part of a run shows its swings."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+
+from fricmb.analysis import AnalysisError
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
 
-#: Points of a curve over the whole run, beside those that the solution has.
+Floats = NDArray[np.float64]
+#: What is looked at in a run: arrays (n_t,).
+Signals = Callable[["Solution"], list[Floats]]
+#: Points of a curve over the whole of what is drawn, beside those that the solution has.
 POINTS = 60_000
+#: Steps at the end of a run from which its period is taken, and the samples in them.
+_STEPS, _SAMPLES = 2000, 16_384
+#: A swing that is smaller than this share of the largest is none.
+_SWING = 0.03
+#: Part of the largest swings that a stretch must have to be shown.
+_ALIVE = 0.5
 
 
-def refined(sol: Solution) -> Solution:
+def span_of(sol: Solution, t_start: float | None, t_end: float | None) -> tuple[float, float]:
+    """Ends of the part of a run that is drawn; default: all of it.
+
+    Raises AnalysisError where they are not in the run, in this order.
+    """
+    begin = sol.t_start if t_start is None else float(t_start)
+    end = sol.t_end if t_end is None else float(t_end)
+    margin = 1e-9 * max(abs(sol.t_start), abs(sol.t_end))
+    if not sol.t_start - margin <= begin < end <= sol.t_end + margin:
+        raise AnalysisError(
+            f"t_start, t_end: got {begin:g}, {end:g}; they must rise and lie in {sol.t_start:g} to {sol.t_end:g}"
+        )
+    return max(begin, sol.t_start), min(end, sol.t_end)
+
+
+def refined(sol: Solution, t_start: float | None = None, t_end: float | None = None) -> Solution:
     """The run at more times, from its dense output; left- and right-hand values at each transition."""
     t = np.unique(sol.t)
+    if t_start is not None or t_end is not None:
+        begin, end = span_of(sol, t_start, t_end)
+        t = np.unique(np.concatenate(([begin], t[(t > begin) & (t < end)], [end])))
     if t.size < 2:
         return sol
     gaps = np.diff(t)
@@ -27,3 +58,51 @@ def refined(sol: Solution) -> Solution:
     events = sol.events.t
     events = events[(events > t[0]) & (events < t[-1])]
     return sol.at(np.unique(np.concatenate((inside, t[-1:], events, np.nextafter(events, -np.inf)))))
+
+
+def reversals(x: Floats, least: float) -> int:
+    """How often a signal turns round by more than ``least``."""
+    turns, up = 0, 0
+    top = bottom = float(x[0])
+    for value in x.tolist():
+        top, bottom = max(top, value), min(bottom, value)
+        if up >= 0 and value < top - least:
+            turns, up, bottom = turns + (up > 0), -1, value
+        elif up <= 0 and value > bottom + least:
+            turns, up, top = turns + (up < 0), 1, value
+    return turns
+
+
+def period_of(sol: Solution, signals: Signals, t_start: float, t_end: float) -> float | None:
+    """Mean period of the swings of signals that can be seen beside the largest of them; None where none swings.
+
+    Taken from the last steps of the stretch, which resolve whatever swings.
+    """
+    steps = np.unique(sol.t if sol.has_rows else sol.run.rows().samples.t)
+    steps = steps[(steps >= t_start) & (steps <= t_end)]
+    begin = max(t_start, float(steps[-_STEPS])) if steps.size > _STEPS else t_start
+    for low in (begin, t_start):
+        seen = sol.at(np.linspace(low, t_end, _SAMPLES))
+        values = signals(seen)
+        largest = max((float(np.ptp(x)) for x in values), default=0.0)
+        turns = max((reversals(x, _SWING * largest) for x in values), default=0) if largest > 0.0 else 0
+        if turns >= 3:
+            return 2.0 * (t_end - low) / turns
+    return None
+
+
+def window_of(
+    sol: Solution, signals: Signals, t_start: float, t_end: float, *, swings: float
+) -> tuple[float, float] | None:
+    """A stretch of so many swings: the last in which they are half as large as the largest; None for a few swings."""
+    period = period_of(sol, signals, t_start, t_end)
+    if period is None or swings * period >= t_end - t_start:
+        return None
+    length = swings * period
+    ends = np.linspace(t_end, t_start + length, min(25, max(2, int((t_end - t_start) / length))))
+    sizes = []
+    for end in ends.tolist():
+        seen = sol.at(np.linspace(end - length, end, 200))
+        sizes.append(max(float(np.ptp(x)) for x in signals(seen)))
+    end = float(ends[np.argmax(np.array(sizes) >= _ALIVE * max(sizes))])
+    return end - length, end

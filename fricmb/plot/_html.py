@@ -68,7 +68,7 @@ def plan_html(plan: Any) -> str:
 
 def law_html(law: Any) -> str:
     """A law: its coefficient over the slip speed, and its parameters."""
-    from fricmb.plot._scene import draw_law
+    from fricmb.plot._law import law as draw_law
 
     values = [(name, _short(value)) for name, value in law.numeric_slots().items()]
     return _block(f"<b>{escape(type(law).__name__)}</b><br>", _image(draw_law(law)), _table(values))

@@ -8,17 +8,23 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from fricmb.analysis import cycle, path, pull, settling_distance
 from fricmb.laws import FrictionLaw
-from fricmb.plot._style import ORANGE, finish, line
+from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
 
 Floats = NDArray[np.float64]
+#: A curve whose values differ by less than this share is a straight line.
+_FLAT = 2e-3
 
 
+@drawn
 def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
     """Four panels: coefficient over slip speed, hysteresis loops, break-away, lag behind a varying speed.
+
+    The parameters stand below the name of the law.
 
     Parameters
     ----------
@@ -33,15 +39,63 @@ def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.4), layout="constrained")
-    figure.suptitle(type(law).__name__, x=0.02, ha="left")
+    figure.suptitle("\n".join((type(law).__name__, *parameter_lines(law))), x=0.01, ha="left", fontsize="medium")
     speeds = speed_range(law, normal_force)
     speed = float(np.sqrt(speeds[0] * speeds[-1]))
     length = settling_distance(law, normal_force) if law.states else speed
     draw_coefficient(law, axes[0, 0], speeds, normal_force)
-    draw_loops(law, axes[0, 1], length, speed, normal_force)
+    draw_loops(law, axes[0, 1], loop_length(law, normal_force) if law.states else speed, speed, normal_force)
     draw_break_away(law, axes[1, 0], normal_force)
     draw_lag(law, axes[1, 1], length, speed, normal_force)
+    titles = ("steady slip", "hysteresis in harmonic cycles", "break-away", "lag behind a swinging speed")
+    for ax, title in zip(axes.flat, titles, strict=True):
+        ax.set_title(title, fontsize="medium", loc="left")
     return figure
+
+
+@drawn
+def law(law: FrictionLaw, *, normal_force: float = 1.0, ax: Axes | None = None) -> Figure:
+    """The one panel that tells most of a law: hysteresis loops of a law with memory, else the coefficient over speed.
+
+    Parameters
+    ----------
+    law : FrictionLaw
+    normal_force : float
+        Forces are drawn per unit of it.
+    ax : Axes, optional
+    """
+    (panel,) = panels(1, ax, title=type(law).__name__, height=3.2)
+    speeds = speed_range(law, normal_force)
+    if law.states:
+        draw_loops(law, panel, loop_length(law, normal_force), float(np.sqrt(speeds[0] * speeds[-1])), normal_force)
+    else:
+        draw_coefficient(law, panel, speeds, normal_force)
+    return figure_of([panel])
+
+
+def parameter_lines(law: FrictionLaw, width: int = 100) -> list[str]:
+    """The parameters of a law in lines of text; of arrays their ends."""
+    lines = [""]
+    for name, value in law.numeric_slots().items():
+        values = np.ravel(value)
+        shown = f"{float(values[0]):.4g}" if values.size == 1 else f"{values[0]:.3g} ... {values[-1]:.3g}"
+        word = f"{name} = {shown}"
+        if lines[-1] and len(lines[-1]) + len(word) > width:
+            lines.append("")
+        lines[-1] += (", " if lines[-1] else "") + word
+    return [text for text in lines if text]
+
+
+def loop_length(law: FrictionLaw, normal_force: float = 1.0) -> float:
+    """Displacement by which friction has grown to two thirds of its largest when it is pulled from rest.
+
+    Of a law that gives way at once, the distance over which it settles.
+    """
+    pulled = pull(law, normal_force=normal_force)
+    held = np.abs(pulled.force)
+    reached = int(np.argmax(held >= 0.63 * held.max()))
+    length = float(pulled.displacement[reached])
+    return length if reached > 0 and length > 0.0 else settling_distance(law, normal_force)
 
 
 def speed_range(law: FrictionLaw, normal_force: float = 1.0) -> Floats:
@@ -60,12 +114,22 @@ def speed_range(law: FrictionLaw, normal_force: float = 1.0) -> Floats:
 
 def draw_coefficient(law: FrictionLaw, ax: Axes, speeds: Floats, normal_force: float) -> None:
     """Steady coefficient over slip speed, and what holds at rest."""
-    ax.semilogx(speeds, law.coefficient(speeds, normal_force), **line(0))
+    ax.semilogx(speeds, law.coefficient(speeds, normal_force), label="slip", **line(0))
+    _label_few(ax, speeds)
     if law.kind != "smooth":
         held = law.break_away(normal_force)
-        ax.axhline(held, color=ORANGE, linestyle="--", linewidth=0.9, label="break-away")
+        ax.axhline(held, color=paint().slip, linestyle="--", linewidth=0.9, label="break-away")
     ax.set_ylim(bottom=0.0)
-    finish(ax, x="slip speed", y="coefficient in steady slip", legend=law.kind != "smooth")
+    _finish(ax, x="slip speed", y="coefficient in steady slip", legend=law.kind != "smooth", logarithmic=True)
+
+
+def _label_few(ax: Axes, speeds: Floats) -> None:
+    """Labels of a logarithmic axis that stay apart: powers of ten, over few decades also 2 and 5 of each."""
+    decades = np.log10(speeds[-1] / speeds[0])
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < 2.0 else (1.0,), numticks=8))
+    if decades < 2.0:
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_loops(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_force: float) -> None:
@@ -87,6 +151,7 @@ def draw_break_away(law: FrictionLaw, ax: Axes, normal_force: float) -> None:
     if law.states:
         pulled = pull(law, normal_force=normal_force)
         ax.plot(pulled.displacement, -pulled.force / normal_force, **line(0))
+        ax.set_xlim(right=min(float(pulled.displacement[-1]), 25.0 * loop_length(law, normal_force)))
         _finish(ax, x="displacement, pulled slowly from rest", y="friction / normal force")
         return
     held = law.break_away(normal_force) if law.kind != "smooth" else 0.0
@@ -106,10 +171,17 @@ def draw_lag(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_for
     _finish(ax, x="slip speed", y="friction / normal force", legend=True)
 
 
-def _finish(ax: Axes, x: str, y: str, *, legend: bool = False) -> None:
-    ax.ticklabel_format(axis="x", style="sci", scilimits=(-2, 3))
-    ax.locator_params(axis="x", nbins=6)
-    finish(ax, x=x, y=y, legend=legend)
+def _finish(ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool = False) -> None:
+    if not logarithmic:
+        ax.ticklabel_format(axis="x", style="sci", scilimits=(-2, 3))
+        ax.locator_params(axis="x", nbins=6)
+    finish(ax, x=x, y=y)
+    low, high = ax.get_ylim()
+    middle = 0.5 * (low + high)
+    if high - low < _FLAT * abs(middle):  # what changes by round-off is a constant
+        ax.set_ylim(middle - 0.1 * abs(middle), middle + 0.1 * abs(middle))
+    if legend:
+        ax.legend(loc="best", fontsize="x-small", frameon=True, framealpha=0.7, edgecolor="none")
 
 
 def _swing(speed: float, omega: float) -> Callable[[Any], Any]:

@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 
 from fricmb.plot._animation import canvas, link
 from fricmb.plot._layout import HEIGHT, ROW, WIDTH, layout
-from fricmb.plot._style import BLUE, DARK, ORANGE, THIN, finish
+from fricmb.plot._style import DARK, ORANGE
 
 
 def draw_scene(scene: Any) -> Figure:
@@ -35,20 +35,3 @@ def draw_scene(scene: Any) -> Figure:
     return figure
 
 
-def draw_law(law: Any) -> Figure:
-    """Coefficient over the slip speed, to beyond where it has changed most."""
-    figure = Figure(figsize=(4.2, 2.6), layout="constrained")
-    ax = figure.subplots()
-    speeds = np.concatenate([[0.0], np.geomspace(1e-6, 1e3, 2000)])
-    mu = np.asarray(law.coefficient(speeds))
-    far = np.abs(mu - mu[1]) < 0.95 * np.ptp(mu[1:])
-    top = 3 * float(speeds[far].max()) if np.ptp(mu[1:]) > 1e-12 and far.any() else 1.0
-    if top > 100.0:  # viscous friction has no speed of its own
-        top = 10 * float(law.numeric_slots().get("v_s", 0.1))
-    r = np.linspace(0.0, top, 800)[1:]
-    ax.plot(r, law.coefficient(r), color=BLUE, linewidth=1.2, label="slip")
-    if law.kind != "smooth":
-        ax.plot(0.0, law.break_away(), "o", color=ORANGE, markersize=5, label="break-away", clip_on=False)
-    ax.axhline(0.0, color=DARK, linewidth=THIN)
-    finish(ax, x="slip speed", y="coefficient", legend=True)
-    return figure

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fricmb.plot._style import figure_of, panels
-from fricmb.plot._units import SCENE_UNITS, Units
+from fricmb.plot._style import drawn, figure_of, panels
+from fricmb.plot._units import Units
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -17,35 +17,64 @@ if TYPE_CHECKING:
 class SignalPlots:
     """The part of ``sol.plot`` that is about signals."""
 
-    def __init__(self, sol: Solution, units: Units = SCENE_UNITS) -> None:
+    def __init__(self, sol: Solution, units: Units | None = None) -> None:
         self.sol = sol
-        self.units = units
+        self.units = sol.units if units is None else units
 
-    def spectrum(self, name: str, *, highest: float | None = None, ax: Axes | None = None) -> Figure:
+    @drawn
+    def spectrum(
+        self,
+        name: str,
+        *,
+        highest: float | None = None,
+        hz: bool = False,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
         """Maximum-entropy spectrum of a signal ("pad.y", "lining.force.x", ...) with its peaks.
 
-        ``highest``: largest angular frequency; default: what the sampling allows.
+        Parameters
+        ----------
+        name : str
+        highest : float, optional
+            Largest angular frequency, with ``hz`` frequency; default: what the sampling allows.
+        hz : bool
+            Over frequency (Hz where time is in s) instead of angular frequency.
+        t_start, t_end : float, optional
+            Part of the run.
+        ax : Axes, optional
         """
         from fricmb.analysis import uniform
-        from fricmb.plot._spectra import draw_spectrum
+        from fricmb.plot._spectra import Axis, draw_spectrum
 
         (panel,) = panels(1, ax, title=self._name, height=3.4)
-        draw_spectrum(uniform(self.sol, name), highest, panel, self.units)
+        draw_spectrum(uniform(self.sol, name, t_start=t_start, t_end=t_end), highest, panel, Axis.of(hz, self.units))
         return figure_of([panel])
 
+    @drawn
     def spectrogram(
-        self, name: str, *, highest: float | None = None, segment: int | None = None, ax: Axes | None = None
+        self,
+        name: str,
+        *,
+        highest: float | None = None,
+        segment: int | None = None,
+        hz: bool = False,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        ax: Axes | None = None,
     ) -> Figure:
         """Running spectrum of a signal over time and frequency; ``segment``: samples in each piece of time."""
         from fricmb.analysis import spectrogram, uniform
-        from fricmb.plot._spectra import draw_spectrogram
+        from fricmb.plot._spectra import Axis, draw_spectrogram
 
         (panel,) = panels(1, ax, title=self._name, height=3.8)
-        signal = uniform(self.sol, name)
+        signal = uniform(self.sol, name, t_start=t_start, t_end=t_end)
         running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
-        draw_spectrogram(running, name, highest, panel, self.units)
+        draw_spectrogram(running, name, highest, panel, Axis.of(hz, self.units), f"time [{self.units.time}]")
         return figure_of([panel])
 
+    @drawn
     def orders(
         self,
         name: str,
@@ -53,11 +82,31 @@ class SignalPlots:
         *,
         highest: float | None = None,
         segment: int | None = None,
+        hz: bool = False,
+        t_start: float | None = None,
+        t_end: float | None = None,
         ax: Axes | None = None,
     ) -> Figure:
         """Running spectrum of a signal over orders: angular frequency over the sliding speed of a contact.
 
-        ``contact``: default the first; ``highest``: largest order, default what the sampling shows at the mean speed.
+        An order is the number of radians that a signal swings through for each unit of length slid: what is tied to the
+        surface (a waviness of the disc) stays at its order while the speed falls, what is tied to the structure (a
+        natural frequency) rises to higher orders.
+
+        Parameters
+        ----------
+        name : str
+        contact : str, optional
+            Default the first.
+        highest : float, optional
+            Largest order; default what the sampling shows at the mean speed.
+        segment : int, optional
+            Samples in each piece of time.
+        hz : bool
+            Whole swings for each unit of length instead of radians.
+        t_start, t_end : float, optional
+            Part of the run.
+        ax : Axes, optional
         """
         import numpy as np
 
@@ -65,15 +114,16 @@ class SignalPlots:
         from fricmb.plot._spectra import draw_orders
 
         (panel,) = panels(1, ax, title=self._name, height=3.8)
-        signal = uniform(self.sol, name)
+        signal = uniform(self.sol, name, t_start=t_start, t_end=t_end)
         running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
-        edges = np.append(running.t - np.diff(running.t, prepend=0)[-1] / 2, self.sol.t_end)
+        edges = np.append(running.t - np.diff(running.t, prepend=0)[-1] / 2, signal.t[-1])
         fine = np.linspace(0, 1, 33)[:-1]
         times = np.clip(edges[:-1, None] + fine * np.diff(edges)[:, None], self.sol.t_start, self.sol.t_end)
         speed = sliding_speed(self.sol, contact or self.sol.contact_names[0], times.ravel())
         mean = speed.reshape(times.shape).mean(axis=1)
-        top = running.omega[-1] / max(float(mean.mean()), 1e-300) if highest is None else highest
-        draw_orders(order_map(running, mean, np.linspace(0.0, top, 400)), name, panel, self.units)
+        turn = 2.0 * np.pi if hz else 1.0
+        top = running.omega[-1] / max(float(mean.mean()), 1e-300) if highest is None else highest * turn
+        draw_orders(order_map(running, mean, np.linspace(0.0, top, 400)), name, panel, self.units, hz)
         return figure_of([panel])
 
     def animation(

@@ -6,13 +6,16 @@ from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._contact import draw_cone, draw_force_history, draw_modes, draw_phases, zoom
-from fricmb.plot._fine import refined
+from fricmb.plot._fine import refined, span_of
+from fricmb.plot._planes import draw_path, draw_phase
 from fricmb.plot._signals import SignalPlots
-from fricmb.plot._style import BLUE, DARK, NAMED_CURVES, ORANGE, THIN, figure_of, finish, line, panels, remark
+from fricmb.plot._style import drawn, figure_of, finish, line, name_figure, paint, panels, remark
+from fricmb.plot._velocities import draw_velocities, panels_of
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -21,81 +24,99 @@ if TYPE_CHECKING:
 class SolutionPlots(SignalPlots):
     """Pictures of a solution: ``sol.plot.velocities()`` and so on.
 
-    Each method draws a figure of its own, or into ``ax=``, and returns the figure.  Curves are drawn from the dense
-    output, so that they are smooth between the solution's times.
+    Each method draws a figure of its own, or into ``ax=``, and returns the figure; ``figure.savefig("name.svg")`` or
+    ".pdf" writes it as lines, ".png" as points.  ``t_start=`` and ``t_end=`` draw a part of the run.  Curves are drawn
+    from the dense output, so that they are smooth between the solution's times.
 
     Parameters
     ----------
     sol : Solution
     units : Units, optional
-        For the labels; default: the names of the dimensions.
+        For the labels; default: those of the solution, which are those of its scene.
     """
 
     @cached_property
     def curves(self) -> Solution:
-        """The solution at the times that are drawn."""
+        """The solution at the times that are drawn where all of it is."""
         return refined(self.sol)
 
-    def velocities(self, names: Iterable[str] | None = None, *, ax: Axes | None = None) -> Figure:
-        """Velocities over time, a panel for each direction.
+    @drawn
+    def velocities(
+        self,
+        names: Iterable[str] | None = None,
+        *,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        zoom: bool | tuple[float, float] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Velocities over time: a panel for each direction, for the modes of each body, for contacts.
 
         Parameters
         ----------
         names : iterable of str, optional
-            Dofs or points; default: all dofs.
+            Dofs, points, driven motions, and contacts (their relative velocity); default: all dofs, and where bodies
+            are given by modes also the contacts.
+        t_start, t_end : float, optional
+            Part of the run.
+        zoom : bool or (float, float), optional
+            A few swings, or this stretch of time, enlarged beside each panel; default: where there are more swings than
+            can be told apart.
         ax : Axes, optional
             Takes all of them.
         """
-        wanted = list(self.sol.dof_names if names is None else names)
-        groups: dict[str, list[str]] = {}
-        for name in wanted:
-            groups.setdefault("" if ax is not None else name.rpartition(".")[2], []).append(name)
-        axes = panels(max(1, len(groups)), ax, title=self._name, sharex=True)
-        for panel, members in zip(axes, groups.values(), strict=False):
-            count = len(members)
-            for i, name in enumerate(members):
-                panel.plot(self.curves.t, self.curves.velocity(name), label=name, **line(i, count))
-            finish(panel, x="", y=self._velocity(members), legend=count <= NAMED_CURVES)
-            if count > NAMED_CURVES:
-                remark(panel, f"{members[0]} (dark) to {members[-1]} (light)")
-        axes[-1].set_xlabel(self._time)
-        return figure_of(axes)
+        span = span_of(self.sol, t_start, t_end)
+        if isinstance(zoom, tuple):
+            zoom = span_of(self.sol, *zoom)
+        found = panels_of(self.sol, names, self.units, one=ax is not None)
+        return draw_velocities(self.sol, found, span, zoom, ax, self._name, self._time)
 
-    def phase(self, name: str, *, ax: Axes | None = None) -> Figure:
+    @drawn
+    def phase(
+        self, name: str, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
+    ) -> Figure:
         """Phase plane: velocity over position of a dof or point; of a contact, the plane of its relative velocity.
 
-        For a contact in one dimension the friction force is drawn over the relative velocity.
+        For a contact in one dimension the friction force is drawn over the relative velocity.  Of more swings than can
+        be told apart the last ones stand out.
         """
-        sol, unit = self.curves, self.units
-        is_contact = name in sol.contact_names
-        g = sol.relative_velocity(name) if is_contact else sol[name][None]
+        span = span_of(self.sol, t_start, t_end)
         (panel,) = panels(1, ax, title=self._name, height=5.0)
-        if not is_contact:
-            panel.plot(g[0], sol.velocity(name), color=BLUE, linewidth=0.6)
-            angle = _is_angle(name)
-            x, v = ("rad", unit.angular_velocity) if angle else (unit.length, unit.velocity)
-            finish(panel, x=f"{name} [{x}]", y=f"velocity of {name} [{v}]")
-        elif len(g) == 2:
-            panel.plot(*g, color=BLUE, linewidth=0.6)
-            panel.plot(0, 0, "+", color=ORANGE, markersize=9, markeredgewidth=1.5, label="stick")
-            first, second = sol.names.axes(name)
-            finish(
-                panel,
-                x=f"relative velocity along {first} at {name} [{unit.velocity}]",
-                y=f"along {second} [{unit.velocity}]",
-                legend=True,
-            )
-        else:
-            panel.plot(g[0], sol.force(name)[0], color=BLUE, linewidth=THIN)
-            finish(panel, x=f"relative velocity at {name} [{unit.velocity}]", y=f"friction force [{unit.force}]")
+        draw_phase(self.sol, name, span, panel, self.units)
         return figure_of([panel])
 
-    def force(self, contact: str, *, ax: Axes | None = None) -> Figure:
+    @drawn
+    def path(
+        self,
+        x: str,
+        y: str | None = None,
+        *,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Path: one motion over another.
+
+        Parameters
+        ----------
+        x, y : str
+            Motions, ``path("pad.x", "pad.y")``, or the name of a body or point alone for its x and y: ``path("pad")``.
+        """
+        if y is None:
+            x, y = f"{x}.x", f"{x}.y"
+        (panel,) = panels(1, ax, title=self._name, height=5.0)
+        draw_path(self.sol, x, y, span_of(self.sol, t_start, t_end), panel, self.units)
+        return figure_of([panel])
+
+    @drawn
+    def force(
+        self, contact: str, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
+    ) -> Figure:
         """Friction force of a contact with its cone: over time, and in its plane if there are two directions.
 
         The plane is drawn twice: the whole cone, and enlarged where the force was.  With ``ax`` the whole cone alone.
         """
-        sol = self.curves
+        sol = refined(self.sol, *span_of(self.sol, t_start, t_end))
         planar = len(sol.force(contact)) == 2
         if ax is not None:
             (draw_cone if planar else draw_force_history)(sol, contact, ax, self.units)
@@ -109,28 +130,40 @@ class SolutionPlots(SignalPlots):
         figure, named = plt.subplot_mosaic(
             [["time", "time"], ["plane", "close"]], figsize=(7.0, 6.0), layout="constrained", height_ratios=[1, 1.3]
         )
-        named["time"].set_title(self._name, loc="left", fontsize="medium")
+        name_figure(figure, self._name)
         draw_force_history(sol, contact, named["time"], self.units)
         draw_cone(sol, contact, named["plane"], self.units)
         zoom(sol, contact, named["close"], self.units)
         return figure
 
-    def transitions(self, *, ax: Axes | None = None) -> Figure:
+    @drawn
+    def transitions(
+        self, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
+    ) -> Figure:
         """When each contact sticks, slips or is open, and how long each of these phases lasts.
 
         With ``ax`` the first alone.
         """
+        span = span_of(self.sol, t_start, t_end)
         height = 3.2 + min(0.35 * len(self.sol.contact_names), 6.0)
         axes = panels(2, ax, title=self._name, height=height, sharex=True)
-        draw_modes(self.sol, axes[0])
+        draw_modes(self.sol, axes[0], span)
         if ax is None:
-            draw_phases(self.sol, axes[1], self.units)
+            draw_phases(self.sol, axes[1], self.units, span)
         axes[-1].set_xlabel(self._time)
         return figure_of(axes)
 
-    def energy(self, *, ax: Axes | None = None) -> Figure:
-        """Where the energy is and where it went; the ledger's residual below, unless ``ax`` is given."""
-        energy, t = self.curves.energy, self.curves.t
+    @drawn
+    def energy(
+        self, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
+    ) -> Figure:
+        """Where the energy is and where it went; the ledger's residual below, unless ``ax`` is given.
+
+        The residual is drawn from the dense output: between the steps it can be larger than at them, and both are said.
+        """
+        span = span_of(self.sol, t_start, t_end)
+        seen = refined(self.sol, *span)
+        energy, t = seen.energy, seen.t
         axes = panels(2, ax, title=self._name, height=5.2, sharex=True, height_ratios=[3, 1])
         terms = {
             "kinetic": energy.kinetic,
@@ -144,22 +177,19 @@ class SolutionPlots(SignalPlots):
             axes[0].plot(t, values, label=name, **line(i))
         finish(axes[0], x="", y=f"energy [{self.units.energy}]", legend=bool(shown))
         if ax is None:
-            axes[1].plot(t, energy.residual, color=DARK, linewidth=0.7)
+            axes[1].plot(t, energy.residual, color=paint().ink, linewidth=0.7)
             finish(axes[1], x="", y="residual, relative")
+            remark(axes[1], _residuals(self.sol, energy.residual, span))
         axes[-1].set_xlabel(self._time)
         return figure_of(axes)
-
-    def _velocity(self, names: list[str]) -> str:
-        """Label of an axis that the velocities of these share."""
-        if all(map(_is_angle, names)):
-            return f"angular velocity [{self.units.angular_velocity}]"
-        return f"velocity [{self.units.velocity}]"
 
     @property
     def _time(self) -> str:
         return f"time [{self.units.time}]"
 
 
-def _is_angle(name: str) -> bool:
-    """Whether a dof or a relative motion is a rotation."""
-    return name.endswith(".angle")
+def _residuals(sol: Solution, drawn_ones: np.ndarray, span: tuple[float, float]) -> str:
+    """The largest residual at the solution's times, which the summary tells, and that of the curve."""
+    inside = (sol.t >= span[0]) & (sol.t <= span[1])
+    own = np.abs(sol.energy.residual[inside]).max(initial=0.0)
+    return f"largest {own:.1e} at the solution's times (as in its summary), {np.abs(drawn_ones).max():.1e} in the curve"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,44 +10,75 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
 from fricmb.analysis import OrderMap, Peaks, Samples, Spectrogram, maximum_entropy_spectrum, spectral_peaks
-from fricmb.plot._style import BLUE, ORANGE, THIN, finish
+from fricmb.plot._style import THIN, finish, paint, remark
 from fricmb.plot._units import Units
 
 #: Decades of power that a map shows.
 _DECADES = 8
+#: Peaks that are marked at most, those of most power, and those whose frequency is told.
+_PEAKS, _TOLD = 20, 3
+#: Frequencies that are told lie at least this share of the axis apart.
+_APART = 0.1
 
 
-def draw_spectrum(signal: Samples, highest: float | None, ax: Axes, units: Units) -> Peaks:
-    """Maximum-entropy density up to a frequency; peaks marked, with their standard errors as bars."""
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """A frequency axis: what angular frequency is divided by, and what it is called."""
+
+    divisor: float
+    label: str
+
+    @classmethod
+    def of(cls, hz: bool, units: Units) -> Axis:
+        """Frequency in turns, or angular frequency."""
+        if hz:
+            return cls(divisor=2.0 * np.pi, label=f"frequency [{units.frequency}]")
+        return cls(divisor=1.0, label=f"angular frequency [{units.angular_frequency}]")
+
+
+def draw_spectrum(signal: Samples, highest: float | None, ax: Axes, axis: Axis) -> Peaks:
+    """Maximum-entropy density up to a frequency; peaks marked, with their standard errors as bars.
+
+    ``highest`` is a frequency of that axis.
+    """
     omega, power = maximum_entropy_spectrum(signal.x, signal.dt)
     peaks = spectral_peaks(signal.x, signal.dt)
-    top = np.pi / signal.dt if highest is None else highest
-    shown, named = omega <= top, peaks.omega <= top
-    ax.semilogy(omega[shown], power[shown], color=BLUE, linewidth=THIN)
-    bars = np.where(np.isfinite(peaks.uncertainty), peaks.uncertainty, 0.0)[named]
-    ax.errorbar(peaks.omega[named], peaks.height[named], xerr=bars, fmt=".", color=ORANGE, markersize=4, label="peaks")
-    finish(
-        ax,
-        x=f"angular frequency [1/{units.time}]",
-        y=f"power density of {signal.name}",
-        legend=bool(named.any()),
-    )
+    top = np.pi / signal.dt if highest is None else highest * axis.divisor
+    shown = omega <= top
+    ax.semilogy(omega[shown] / axis.divisor, power[shown] * axis.divisor, color=paint().stick, linewidth=THIN)
+    named = np.flatnonzero(peaks.omega <= top)
+    named = named[np.argsort(-peaks.power[named], kind="stable")[:_PEAKS]]
+    bars = np.where(np.isfinite(peaks.uncertainty), peaks.uncertainty, 0.0)[named] / axis.divisor
+    at, height = peaks.omega[named] / axis.divisor, peaks.height[named] * axis.divisor
+    ax.errorbar(at, height, xerr=bars, fmt=".", color=paint().slip, markersize=4, label="peaks")
+    told: list[float] = []
+    for x, y in zip(at.tolist(), height.tolist(), strict=True):
+        if len(told) == _TOLD or min((abs(x - other) for other in told), default=np.inf) < _APART * top / axis.divisor:
+            continue
+        told.append(x)
+        ax.annotate(f"{x:.4g}", (x, y), xytext=(4, 3), textcoords="offset points", fontsize="x-small")
+    finish(ax, x=axis.label, y=f"power density of {signal.name}", legend=bool(named.size))
+    ax.margins(y=0.08)
     return peaks
 
 
-def draw_spectrogram(running: Spectrogram, name: str, highest: float | None, ax: Axes, units: Units) -> None:
-    """Density over time and frequency."""
-    shown = running.omega <= (running.omega[-1] if highest is None else highest)
-    _map(ax, running.t, running.omega[shown], running.power[shown], f"power density of {name}")
-    ax.set_xlabel(f"time [{units.time}]")
-    ax.set_ylabel(f"angular frequency [1/{units.time}]")
+def draw_spectrogram(running: Spectrogram, name: str, highest: float | None, ax: Axes, axis: Axis, time: str) -> None:
+    """Density over time and frequency; ``highest`` is a frequency of that axis."""
+    shown = running.omega <= (running.omega[-1] if highest is None else highest * axis.divisor)
+    power = running.power[shown] * axis.divisor
+    _map(ax, running.t, running.omega[shown] / axis.divisor, power, f"power density of {name}")
+    ax.set_xlabel(time)
+    ax.set_ylabel(axis.label)
 
 
-def draw_orders(found: OrderMap, name: str, ax: Axes, units: Units) -> None:
+def draw_orders(found: OrderMap, name: str, ax: Axes, units: Units, hz: bool) -> None:
     """Density over time and order."""
-    _map(ax, found.t, found.order, found.power, f"power density of {name}")
+    divisor = 2.0 * np.pi if hz else 1.0
+    _map(ax, found.t, found.order / divisor, found.power * divisor, f"power density of {name}")
     ax.set_xlabel(f"time [{units.time}]")
-    ax.set_ylabel(f"order [1/{units.length}]")
+    per = "1" if units.dimensionless else f"1/{units.length}"
+    ax.set_ylabel(f"order: swings per length slid [{per}]" if hz else f"order [{'1' if per == '1' else 'rad' + per[1:]}]")
+    remark(ax, ("order = frequency / sliding speed" if hz else "order = angular frequency / sliding speed"))
 
 
 def _map(ax: Axes, x: Any, y: Any, power: Any, label: str) -> None:
@@ -60,4 +92,5 @@ def _map(ax: Axes, x: Any, y: Any, power: Any, label: str) -> None:
         shading="nearest",
         rasterized=True,
     )
+    ax.grid(False)
     ax.figure.colorbar(mesh, ax=ax, label=label)

@@ -1,32 +1,158 @@
-"""Colours, line styles and figures that all pictures share."""
+"""Colours, line styles, themes and figures that all pictures share.
+
+What a picture looks like stands in two style sheets, ``light.mplstyle`` and ``dark.mplstyle``, which differ in colours
+alone; everything that is drawn takes its colours from the sheet in use.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import functools
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import matplotlib as mpl
 import matplotlib.style
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-_PALETTE = [entry["color"] for entry in mpl.style.library["tableau-colorblind10"]["axes.prop_cycle"]]
-#: Matplotlib's palette for colour-blind readers, those first that are dark enough for print.
-COLOURS: tuple[str, ...] = tuple(_PALETTE[i] for i in (0, 1, 3, 5, 4, 7, 2, 6, 8, 9))
+from fricmb.errors import unknown_name
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+THEMES = ("light", "dark")
+_SHEETS = {
+    name: dict(mpl.rc_params_from_file(Path(__file__).with_name(f"{name}.mplstyle"), use_default_template=False))
+    for name in THEMES
+}
+#: The colours of the light sheet: those first that are dark enough for print.
+COLOURS: tuple[str, ...] = tuple(f"#{c.lstrip('#')}" for c in _SHEETS["light"]["axes.prop_cycle"].by_key()["color"])
 BLUE, ORANGE, DARK = COLOURS[:3]
 #: Told apart without colour as well.
 DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (6, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2, 1)))
 THIN = 0.9
-
-
 #: More curves than this are shaded from first to last instead of named one by one.
 NAMED_CURVES = 8
 
 
+@dataclass(frozen=True, kw_only=True)
+class Paint:
+    """Colours of a theme.
+
+    Attributes
+    ----------
+    colours : tuple of str
+        Of curves, in their order.
+    stick, slip : str
+        What tells stick from slip; also first and second colour.
+    ink, quiet : str
+        Lines that are no curves, and those that stand back.
+    body, moved, paper : str
+        Faces of bodies, of those whose motion is prescribed, and the background.
+    shades : (float, float)
+        Part of the colour map that is told from the background.
+    """
+
+    colours: tuple[str, ...]
+    stick: str
+    slip: str
+    ink: str
+    quiet: str
+    body: str
+    moved: str
+    paper: str
+    shades: tuple[float, float]
+
+
+_PAINTS = {
+    "light": Paint(
+        colours=COLOURS,
+        stick=BLUE, slip=ORANGE, ink=DARK, quiet="#9a9a9a", body="#d9dee4", moved="#f1ece2", paper="white",
+        shades=(0.0, 0.9),
+    ),
+    "dark": Paint(
+        colours=tuple(f"#{c.lstrip('#')}" for c in _SHEETS["dark"]["axes.prop_cycle"].by_key()["color"]),
+        stick="#6DB3E6", slip="#FF9A3C", ink="#C8CDD4", quiet="#77808c", body="#333d49", moved="#403a2e",
+        paper="#14181e", shades=(0.2, 1.0),
+    ),
+}  # fmt: skip
+
+_chosen: str | None = None
+#: The theme of the picture that is being drawn.
+_drawing: list[str] = []
+
+
+def use(name: str | None) -> None:
+    """Draw all further pictures for a light or for a dark page.
+
+    Parameters
+    ----------
+    name : {"light", "dark", None}
+        None, as at the start: dark where matplotlib's own figures are dark (``plt.style.use("dark_background")``).
+    """
+    global _chosen
+    if name is not None and name not in THEMES:
+        raise unknown_name("theme", name, THEMES)
+    _chosen = name
+
+
+@contextmanager
+def theme(name: str | None) -> Iterator[None]:
+    """The same for what is drawn inside: ``with fm.plot.theme("dark"): sol.plot.velocities()``."""
+    before = _chosen
+    use(name)
+    try:
+        yield
+    finally:
+        use(before)
+
+
+def _is_dark(colour: Any) -> bool:
+    red, green, blue = to_rgb(colour)
+    return 0.3 * red + 0.6 * green + 0.1 * blue < 0.4
+
+
+def theme_in_use(ax: Axes | None = None) -> str:
+    """The theme chosen, or that which suits the axes, or new figures of matplotlib."""
+    if _chosen is not None:
+        return _chosen
+    face: Any = ax.get_facecolor() if ax is not None else mpl.rcParams["figure.facecolor"]
+    return "dark" if _is_dark(face) else "light"
+
+
+def drawn(method: Callable[_P, _R]) -> Callable[_P, _R]:
+    """Let a function draw with the style sheet of the theme in use."""
+
+    @functools.wraps(method)
+    def draws(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+        ax: Any = kwargs.get("ax")
+        name = theme_in_use(ax)
+        _drawing.append(name)
+        try:
+            with mpl.rc_context(_SHEETS[name]):
+                return method(*args, **kwargs)
+        finally:
+            _drawing.pop()
+
+    return draws
+
+
+def paint() -> Paint:
+    """Colours of the picture that is being drawn."""
+    return _PAINTS[_drawing[-1] if _drawing else theme_in_use()]
+
+
 def line(i: int, count: int = 1) -> dict[str, Any]:
     """Style of the i-th of ``count`` curves of a picture."""
+    colours = paint().colours
     if count > NAMED_CURVES:
-        return {"color": mpl.colormaps["cividis"](0.9 * i / (count - 1)), "linewidth": 0.5}
-    return {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[i % len(DASHES)], "linewidth": THIN}
+        low, high = paint().shades
+        return {"color": mpl.colormaps["cividis"](low + (high - low) * i / (count - 1)), "linewidth": 0.5}
+    return {"color": colours[i % len(colours)], "linestyle": DASHES[i % len(DASHES)], "linewidth": THIN}
 
 
 def panels(count: int, ax: Axes | None, *, title: str = "", **options: Any) -> list[Axes]:
@@ -38,16 +164,22 @@ def panels(count: int, ax: Axes | None, *, title: str = "", **options: Any) -> l
     height = options.pop("height", 2.4 * count + 0.8)
     figure, axes = plt.subplots(count, 1, figsize=(7.0, height), layout="constrained", squeeze=False, **options)
     assert isinstance(figure, Figure)
-    axes[0, 0].set_title(title, loc="left", fontsize="medium")
+    name_figure(figure, title)
     return list(axes[:, 0])
 
 
-def remark(ax: Axes, text: str) -> None:
-    """What has to be said about a panel, above it at the right."""
-    ax.set_title(text, loc="right", fontsize="small")
+def name_figure(figure: Figure, title: str) -> None:
+    """A title above all panels and their legends, at the left."""
+    if title:
+        figure.suptitle(title, x=0.01, ha="left", fontsize="medium")
 
 
-def finish(ax: Axes, *, x: str, y: str, legend: bool = False) -> None:
+def remark(ax: Axes, text: str, *, loc: Literal["left", "right"] = "right") -> None:
+    """What has to be said about a panel, above it; at the left where there is a legend."""
+    ax.set_title(text, loc=loc, fontsize="small")
+
+
+def finish(ax: Axes, *, x: str, y: str, legend: bool = False, columns: int = 4) -> None:
     """Labels, a quiet grid, and a legend above the panel, where no curve is."""
     ax.set_xlabel(x)
     ax.set_ylabel(y)
@@ -57,7 +189,7 @@ def finish(ax: Axes, *, x: str, y: str, legend: bool = False) -> None:
         ax.legend(
             loc="lower right",
             bbox_to_anchor=(1.0, 1.0),
-            ncols=min(len(ax.get_legend_handles_labels()[0]), 4),
+            ncols=min(len(ax.get_legend_handles_labels()[0]), columns),
             fontsize="small",
             frameon=False,
             borderaxespad=0.1,

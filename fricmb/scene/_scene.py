@@ -21,7 +21,7 @@ from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
-from fricmb.values import value_of
+from fricmb.values import DIMENSIONS, Units, value_of
 from fricmb.values._pause import no_collection
 
 #: Parts with degrees of freedom.
@@ -36,6 +36,8 @@ class Scene:
     name : str
     parts : iterable of parts
         In the order of the degrees of freedom; every body that a part refers to must be among them.
+    units : Units, optional
+        What the numbers are in, for labels: ``units=fm.Units("s", "m", "N")``; default: the names of the dimensions.
 
     Raises
     ------
@@ -47,16 +49,20 @@ class Scene:
     name : str
     parts : tuple of parts
     dof_names : tuple of str
+    units : Units
     """
 
-    __slots__ = ("_by_name", "_cache", "_motions", "_shared", "dof_names", "name", "parts")
+    __slots__ = ("_by_name", "_cache", "_motions", "_shared", "dof_names", "name", "parts", "units")
 
     #: Arguments from which a file makes it again.
-    _stored: ClassVar[tuple[str, ...]] = ("name", "parts")
+    _stored: ClassVar[tuple[str, ...]] = ("name", "parts", "units")
+    #: Those that older files do not have.
+    _stored_later: ClassVar[tuple[str, ...]] = ("units",)
 
     name: str
     parts: tuple[Part, ...]
     dof_names: tuple[str, ...]
+    units: Units
     _by_name: dict[str, Part]
     _motions: dict[str, LinearForm] | None
     #: What other layers keep with this very scene; left out of pickles and comparisons.
@@ -64,16 +70,19 @@ class Scene:
     #: The same, shared by all scenes that replace() and with_parameters() made of one another.
     _shared: dict[Any, Any]
 
-    def __init__(self, name: str, parts: Iterable[Part]) -> None:
-        self._fill(name, parts, {})
+    def __init__(self, name: str, parts: Iterable[Part], *, units: Units = DIMENSIONS) -> None:
+        self._fill(name, parts, units, {})
 
-    def _fill(self, name: Any, parts: Any, shared: dict[Any, Any]) -> None:
+    def _fill(self, name: Any, parts: Any, units: Any, shared: dict[Any, Any]) -> None:
         if not isinstance(name, str) or not name:
             raise SceneError(f"Scene: name must be a non-empty string, got {name!r}")
         if isinstance(parts, Part | str) or not isinstance(parts, Iterable):
             raise SceneError(f"Scene {name!r}: parts must be a list of parts, got {parts!r}")
+        if not isinstance(units, Units):
+            raise SceneError(f'Scene {name!r}: units must be a Units, such as fm.Units("s", "m", "N"), got {units!r}')
         put = object.__setattr__
         put(self, "name", name)
+        put(self, "units", units)
         put(self, "parts", tuple(parts))
         put(self, "_by_name", {part.name: part for part in self.parts if isinstance(part, Part)})
         bodies = [part for part in self.parts if isinstance(part, BODIES)]
@@ -299,7 +308,13 @@ class Scene:
             return self
         replaced = [changed.get(part.name, part) for part in self.parts]
         scene = object.__new__(type(self))
-        scene._fill(self.name, [part.with_ends(changed) for part in replaced], self._shared)
+        scene._fill(self.name, [part.with_ends(changed) for part in replaced], self.units, self._shared)
+        return scene
+
+    def with_units(self, units: Units) -> Scene:
+        """The same scene with other names for the units of its numbers, which stay as they are."""
+        scene = object.__new__(type(self))
+        scene._fill(self.name, self.parts, units, self._shared)
         return scene
 
     # -- facades ------------------------------------------------------------------------------------------------
@@ -329,13 +344,18 @@ class Scene:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
             return NotImplemented
-        return self is other or (self.name == other.name and self.parts == other.parts)
+        return self is other or (self.name == other.name and self.parts == other.parts and self.units == other.units)
 
     def __hash__(self) -> int:
         return hash((self.name, self.parts))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Scene, (self.name, self.parts)
+        return _scene, (self.name, self.parts, self.units)
 
     def __repr__(self) -> str:
         return f"Scene({self.name!r}, {len(self.parts)} parts, {len(self.dof_names)} degrees of freedom)"
+
+
+def _scene(name: str, parts: tuple[Part, ...], units: Units) -> Scene:
+    """A scene from what pickles hold."""
+    return Scene(name, parts, units=units)

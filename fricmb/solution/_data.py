@@ -187,7 +187,8 @@ class Reader:
             made = object.__new__(kind)
             made.__dict__.update(_attributes(self.read(state)))
             return made
-        if names != _names(kind):
+        later = getattr(kind, "_stored_later", ())
+        if names != _names(kind) and names != tuple([name for name in _names(kind) if name not in later]):
             raise ValueError(f"{kind.__qualname__} has the fields {_names(kind)}; the file has {names}")
         return kind(**dict(zip(names, map(self.read, values), strict=True)))
 

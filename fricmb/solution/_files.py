@@ -34,6 +34,7 @@ from fricmb.solution._run import Record
 from fricmb.solution._solution import Solution, restore
 from fricmb.solution._stats import IslandStats, Stats
 from fricmb.solution._stored import Stored, store
+from fricmb.values import Units
 
 FORMAT = 2
 #: What the run of a file of format 1 is, and what to do about it.
@@ -81,6 +82,7 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
             energies=(held["kinetic"], held["potential"]),
             reference=Reference(**about["energy"]),
             run=_stored(source, held, about, laws),
+            units=Units(**about.get("units", {})),
         )
     except FricmbError as error:
         raise FricmbError(f"{source}: {error}") from error
@@ -155,6 +157,7 @@ def _words(sol: Solution) -> dict[str, Any]:
         "t_end": sol.t_end,
         "has_rows": sol.has_rows,
         "energy": asdict(sol.energy.reference),
+        "units": asdict(sol.units),
     }
 
 

@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fricmb.errors import IntegrationError, unknown_name
-from fricmb.integrate import Start
+from fricmb.integrate import Samples, Start
 from fricmb.integrate._problem import Codes, Floats
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Events
 from fricmb.solution._names import Names
+from fricmb.solution._rest import rest_spans
 from fricmb.solution._run import Record, Run, first_bad, is_finite
 from fricmb.solution._stats import Stats
 from fricmb.solution._stored import Stored
 from fricmb.solution._summary import describe, summarise
+from fricmb.values import Units
 
 if TYPE_CHECKING:
     import pandas
@@ -53,6 +55,7 @@ class Solution:
         self._span = run.t_start, run.t_end
         self.has_rows = times is None
         self._energies: tuple[Floats, Floats] | None = None
+        self._units: Units | None = None
         self.record = _finite(run.rows() if times is None else run.sample(times))
 
     # ---- motion
@@ -134,17 +137,18 @@ class Solution:
         run = self.run
         other = Solution(names=self.names, run=run, stats=self.stats, events=self.events, times=run.inside(t))
         other.__dict__["_reference"] = self._reference
+        other._units = self._units
         return other
 
     # ---- contacts
 
     def force(self, contact: str) -> Floats:
         """Friction force on the contact's first end (d, n_t)."""
-        return self._rows(self.record.samples.F, contact, 1)
+        return self._rows_of(self.record.samples.F, contact, 1)
 
     def relative_velocity(self, contact: str) -> Floats:
         """Velocity of the first end relative to the second, with the slide (d, n_t)."""
-        return self._rows(self.record.samples.g, contact, -1)
+        return self._rows_of(self.record.samples.g, contact, -1)
 
     def normal_force(self, contact: str) -> Floats:
         """Normal force (n_t,), at least 0."""
@@ -167,7 +171,7 @@ class Solution:
         """
         return self.run.reaction(joint, self.record)
 
-    def _rows(self, values: Floats, contact: str, power: int) -> Floats:
+    def _rows_of(self, values: Floats, contact: str, power: int) -> Floats:
         k, row = self.names.contact(contact), self.names.row
         own = slice(row[k], row[k + 1])
         scale = self.names.row_scale[own]
@@ -221,9 +225,21 @@ class Solution:
             return np.zeros(len(self.names.contacts))
         return np.asarray((modes == mode) @ spans / spans.sum(), dtype=float)
 
+    def rest_spans(self, contact: str) -> Floats:
+        """Stretches (n, 2) in which a contact is at rest without sticking, from the accepted steps.
+
+        That is so of joints of a mechanism which others hold: what sticks there is enough to stop them all.
+        """
+        k, row = self.names.contact(contact), self.names.row
+        return rest_spans(self._rows, slice(row[k], row[k + 1]), k)
+
+    @property
+    def _rows(self) -> Samples:
+        return (self.record if self.has_rows else self.run.rows()).samples
+
     @cached_property
     def _rows_of_modes(self) -> tuple[Codes, Floats]:
-        samples = (self.record if self.has_rows else self.run.rows()).samples
+        samples = self._rows
         return samples.mode[:, :-1], np.diff(samples.t)
 
     @property
@@ -239,6 +255,13 @@ class Solution:
     def scene(self) -> Any:
         """The scene that was run, with the values it was run with (of joined runs the last)."""
         return self.run.scene
+
+    @property
+    def units(self) -> Units:
+        """Names of the units, those of the scene (of a loaded file without opening it)."""
+        if self._units is None:
+            self._units = getattr(self.scene, "units", None) or Units()
+        return self._units
 
     @property
     def end(self) -> Start:
@@ -364,10 +387,12 @@ def restore(
     energies: tuple[Floats, Floats],
     reference: Reference,
     run: Stored,
+    units: Units,
 ) -> Solution:
     """A solution from what a file holds; ``run`` is left closed until it is needed."""
     sol = Solution.__new__(Solution)
     sol.names, sol.stats, sol.record, sol.has_rows = names, stats, record, has_rows
     sol._events, sol._span, sol._energies, sol._run = events, span, energies, run
+    sol._units = units
     sol.__dict__["_reference"] = reference
     return sol

@@ -6,13 +6,18 @@ from fricmb.values._in_symbols import in_symbols
 from fricmb.values._numbers import Number, is_expression, is_plain, is_sparse, parameters_in, value_of
 from fricmb.values._parameter import Parameter, parameter
 from fricmb.values._standin import Symbolic, symbolic
+from fricmb.values._units import DIMENSIONLESS, DIMENSIONS, SI, Units
 
 __all__ = [
+    "DIMENSIONLESS",
+    "DIMENSIONS",
+    "SI",
     "Declaration",
     "Held",
     "Number",
     "Parameter",
     "Symbolic",
+    "Units",
     "held",
     "in_symbols",
     "is_expression",

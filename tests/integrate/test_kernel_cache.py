@@ -87,3 +87,30 @@ def test_a_folder_that_cannot_be_made_falls_back(run):
     assert (value, misses) == (7.0, 1)
     assert said.count("\n") == 1
     assert "cannot be kept" in said
+
+
+def test_an_attribute_is_no_global_of_the_same_name():
+    """What the module keeps under that name while it runs is not in the kernel, and does not make it a new one."""
+    from fricmb.integrate._content import _Reader
+
+    def lines(kept):
+        around = {"kept": kept, "factor": 3.0}
+        exec("def sum_up(room):\n    return factor * room.kept\n", around)
+        around["sum_up"].__module__ = "fricmb.made_up"
+        reader = _Reader()
+        reader.read(around["sum_up"])
+        return reader.lines
+
+    assert lines({}) == lines({id(lines): object()})
+    assert "factor = float 3.0" in "\n".join(lines({}))
+
+
+def test_a_run_by_bdf_compiles_nothing_the_second_time():
+    program = (
+        "import fricmb as fm, sys; fm.simulate(fm.models.belt_oscillator(), t_end=1.0, method='bdf');"
+        "kernels = [m for n, m in sys.modules.items() if n == 'fricmb.integrate._bdf'];"
+        "print(sum(kernels[0].drive_bdf.stats.cache_misses.values()))"
+    )
+    run = [sys.executable, "-c", program]
+    misses = [subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()[-1] for _ in range(2)]
+    assert misses[1] == "0", misses

@@ -1,4 +1,4 @@
-"""``python -m tests.oracle``: scenes from seeds, or the whole table of laws, against the oracle."""
+"""``python -m tests.oracle``: scenes from seeds, or the whole table of laws, against the oracle; audits."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
+from .audits import audit_all
 from .campaign import gathered, tried
 from .random_scenes import KINDS
 from .shrink import BAD
@@ -25,7 +26,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--limit", type=float, default=20.0, help="seconds of the processor for a run (default 20)")
     parser.add_argument("--processes", type=int, default=1, help="so many scenes at once")
     parser.add_argument("--table", action="store_true", help="every law in every situation in place of random scenes")
-    parser.add_argument("--laws", default="", help="with --table: these alone")
+    parser.add_argument("--audits", action="store_true", help="audits of the table's runs, and of wrong ones")
+    parser.add_argument("--laws", default="", help="with --table or --audits: these alone")
     parser.add_argument("--shrink", action="store_true", help="look for a smaller scene that fails")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     return parser.parse_args()
@@ -34,6 +36,8 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     """Try scenes until the time is over; exit status 1 where a run was wrong."""
     options = arguments()
+    if options.audits:
+        return audit_all(options.rtol, options.laws.split(",") if options.laws else (), options.minutes, options.json)
     tally, start = Tally(options.rtol, options.seed), time.monotonic()
     found = tried(options, 0, start) if options.processes == 1 else gathered(options, start)
     for kind, where, outcome, verdicts in found:

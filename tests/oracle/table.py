@@ -100,15 +100,25 @@ def case(name: str, situation: str) -> Case:
     """The scene and the numbers of one cell row."""
     law, s, d = LAWS[name], SITUATIONS[situation], dimension(name)
     N0 = 1.0 / float(law.coefficient(0.3, 1.0))
+    made = parts(s, d)
+    return Case(
+        name=f"{name}, {situation}", scene=scene(law, s, N0, *made), problem=numbers(law, s, N0, *made),
+        signals=tuple(f"m.mode{i + 1}" for i in range(d)),
+    )  # fmt: skip
+
+
+def parts(s: Situation, d: int) -> tuple[Any, ...]:
+    """Shares of the loads, start, masses and springs of d directions."""
     # beside the first direction a little of the others, so that directions turn
     share = np.array([1.0, 0.2, 0.1])[:d]
     q, v = s.q * share, s.v * np.eye(d)[0] + (0.05 * np.eye(d)[-1] if d > 1 else 0.0)
-    masses = np.array([1.0, 1.0, 0.5])[:d]
-    k = s.k * np.array([1.0, 1.3, 0.8])[:d]
-    return Case(
-        name=f"{name}, {situation}", scene=scene(law, s, N0, share, q, v, masses, k),
-        problem=numbers(law, s, N0, share, q, v, masses, k), signals=tuple(f"m.mode{i + 1}" for i in range(d)),
-    )  # fmt: skip
+    return share, q, v, np.array([1.0, 1.0, 0.5])[:d], s.k * np.array([1.0, 1.3, 0.8])[:d]
+
+
+def scaled(name: str, situation: str, by: float) -> Any:
+    """The scene of a cell under another normal force."""
+    law, s, d = LAWS[name], SITUATIONS[situation], dimension(name)
+    return scene(law, s, by / float(law.coefficient(0.3, 1.0)), *parts(s, d))
 
 
 def scene(law: Any, s: Situation, N0: float, share: Any, q: Any, v: Any, masses: Any, k: Any) -> Any:

@@ -13,7 +13,6 @@ from fricmb.integrate._drive import drive
 from fricmb.integrate._exact_step import Exact
 from fricmb.integrate._factor import Factor
 from fricmb.integrate._field import scratch
-from fricmb.integrate._hermite import RowTrajectory
 from fricmb.integrate._instant import State
 from fricmb.integrate._integrator import Tolerance
 from fricmb.integrate._lapack import addresses
@@ -24,6 +23,7 @@ from fricmb.integrate._plain_ports import plain_ports
 from fricmb.integrate._port_state import port_state
 from fricmb.integrate._problem import LAW_CONSTANT, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate._room import room
+from fricmb.integrate._row_run import RowTrajectory
 from fricmb.integrate._stages import Stages
 from fricmb.integrate._tableau import radau
 from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
@@ -92,13 +92,13 @@ class ExactRun(RowTrajectory):
         super().__init__(problem, values, kind, mode, transitions, counters, end, failure)
         self._nodes, self._exact_up_to = exact
 
-    def _fill(self, y: State, index: Ints, t: Floats, out: Floats2, modes: Codes2) -> None:
+    def _fill(self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2) -> None:
         packed, problem = packed_of(self.problem), self.problem
         exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         sample_exact(
-            packed, scratch(problem), y, exact, self._values, self._mode, packed.breakpoints, index, t, out, modes,
-            sizes, pivots, addresses("complete"),
+            packed, scratch(problem), y, exact, self._values, self._mode, packed.breakpoints, index, t, side, out,
+            modes, sizes, pivots, addresses("complete"),
         )  # fmt: skip
 
 

@@ -105,9 +105,12 @@ def force_directions(packed: Packed, y: State) -> None:
 @entry
 def sample_exact(
     packed: Packed, s: Scratch, y: State, ex: Exact, values: Floats2, modes: Codes2, stops: Floats, index: Ints,
-    t: Floats, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots, address: Ints,
+    t: Floats, side: Floats, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots, address: Ints,
 ) -> None:  # fmt: skip
-    """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours."""
+    """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
+
+    ``side``: a time in the interval between breakpoints that each belongs to.
+    """
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
     width = nc + 2
     at = 1 + 3 * n + 2 * nz + m + nc + 2 * width
@@ -124,8 +127,7 @@ def sample_exact(
         right = values[min(k + 1, values.shape[0] - 1)]
         tau = t[j] - left[0]
         inside = tau > 0.0 and right[0] > left[0]
-        if k != opened:
-            set_window_around(stops, s, left[0])
+        set_window_around(stops, s, side[j])
         for c in range(nc):
             y.mode[c] = modes[k, c]
             y.N[c] = left[at_F + m + c]

@@ -10,6 +10,7 @@ from fricmb.integrate._exact_step import CAP, FASTEST_BLOCK, INPUTS, LEDGER, SAF
 from fricmb.integrate._field import Scratch, powers, set_state, set_time
 from fricmb.integrate._growth import too_long
 from fricmb.integrate._instant import State, complete, slip_speed
+from fricmb.integrate._jumps import jump_error
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._law_defect import law_defect
 from fricmb.integrate._onestep import Accuracy, OneStep, state_noise, widest
@@ -158,6 +159,8 @@ def exact_error(
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
     off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
     error = max(error, off / acc.rtol[0], too_long(packed, s, y, one, h, one.tab.c.shape[0]))
+    end = one.exact.end
+    error = max(error, jump_error(packed, s, y, y.t[0] + h, y.q + end[0], y.v + end[1], acc, h))
     return float(max(error, search_error(packed, y, one, acc, h)))
 
 

@@ -1,9 +1,10 @@
-"""
-A pendulum on a dry pin
-=======================
+r"""
+Where does a pendulum on a dry pin come to rest?
+================================================
 
-Friction in the pin follows the reaction of the pin, which follows the swing.  The pendulum loses the same angle, more
-or less, at every swing, and rests askew.
+Friction in the pin, of radius r, follows its reaction R and so the swing. It takes about the same angle from every
+swing, and holds the pendulum askew in the end: weight on its lever is friction on its own,
+:math:`m g l \sin\varphi = F r` with :math:`F \le \mu R`.
 """
 
 import matplotlib.pyplot as plt

@@ -2,14 +2,14 @@
 The catalogue of friction laws
 ==============================
 
-The coefficient of every law in steady slip, for the values of its ``example()``.
+Every law for the values of its ``example()``: of laws with memory the loops of friction over displacement in harmonic
+cycles of three amplitudes, of all others the coefficient over the slip speed, and what holds at rest (dashed).
 """
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import fricmb as fm
-from fricmb.plot._law import speed_range
 
 names = [name for name in fm.laws.names if not name.startswith("Contensou")]
 figure, axes = plt.subplots(7, 5, figsize=(11, 13), layout="constrained")
@@ -17,14 +17,15 @@ for ax in axes.flat:
     ax.set_visible(False)
 for ax, name in zip(axes.flat, names, strict=False):
     law = getattr(fm.laws, name).example()
-    r = speed_range(law)
+    fm.plot.law(law, ax=ax)
     ax.set_visible(True)
-    ax.semilogx(r, law.coefficient(r))
-    ax.set_ylim(bottom=0)
+    ax.get_legend() and ax.get_legend().remove()
+    ax.set(xlabel="displacement" if law.states else "slip speed", ylabel="")
+    ax.xaxis.label.set_size("x-small")
     ax.set_title(name, fontsize="small")
     ax.tick_params(labelsize="x-small")
-figure.supxlabel("slip speed")
-figure.supylabel("coefficient in steady slip")
+    ax.xaxis.get_offset_text().set_size("x-small")
+figure.supylabel("friction / normal force")
 
 # %%
 # A disc that slides and spins loses its sliding friction to the spin: exact, and in Pade's form.

@@ -1,8 +1,8 @@
 """
-Blocks on a moving table
-========================
+In which order does a moving table catch blocks on it?
+======================================================
 
-Three blocks lie on each other on a table that moves off at 1 m/s.  The joints are coupled through the blocks between
+Three blocks lie on each other on a table that moves off at 1 m/s. The joints are coupled through the blocks between
 them, and are caught one after the other.
 """
 

@@ -1,0 +1,39 @@
+"""Small scenes run with one thread of BLAS: on matrices of a few rows, threads cost more than they bring.
+
+OpenBLAS wakes a thread a core for a triangular system of eight rows, and the threads then spin for work; where the
+cores have other work to do, such as a sweep's other processes, a call of some microseconds takes milliseconds.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fricmb.scene import Scene
+
+#: Degrees of freedom from which on BLAS keeps its threads.
+MANY = 200
+
+
+@lru_cache(maxsize=1)
+def _controller() -> Any:
+    """What sets the threads of the libraries of numpy and scipy; both have to be loaded to be found."""
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController().select(user_api="blas")
+
+
+def blas_threads(scene: Scene) -> AbstractContextManager[Any]:
+    """One thread where no matrix of a scene gains from more; as many as there are otherwise.
+
+    The setting belongs to the process: of several threads the first that asks has it (so does threadpoolctl), and has
+    given it back when its run ends.
+    """
+    parts = getattr(scene, "parts", ())  # what is no scene is told so further on
+    if len(parts) > MANY or sum(len(getattr(part, "dof_names", ())) for part in parts) > MANY:
+        return nullcontext()
+    context: AbstractContextManager[Any] = _controller().limit(limits=1)
+    return context

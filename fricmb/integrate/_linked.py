@@ -1,0 +1,64 @@
+"""Compilation of kernels that only other kernels call: to LLVM's intermediate code, and no further.
+
+Numba makes machine code of every function that it compiles, also of those that are only ever linked into others, and
+optimises each of them again inside each of its callers.  Here such a function is lowered and handed on; what is
+optimised, and becomes machine code, is the entry or block at the top, once.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import _dynfunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder, _LowerResult
+from numba.core.compiler_machinery import register_pass
+from numba.core.typed_passes import NativeLowering
+
+
+class _LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The code of one kernel with that of the kernels it calls, to be linked into callers."""
+
+    def finalize(self) -> None:
+        """Gather the code; leave it as it is, since the caller's is optimised with it."""
+        self._raise_if_finalized()
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerForLinking(NativeLowering):  # type: ignore[misc]
+    """Numba's lowering without the machine code at its end."""
+
+    _name = "lower_for_linking"
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower, and make the kernel known to callers under a function that Python cannot call."""
+        state.library = _LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        state.flags.no_compile = True
+        super().run_pass(state)
+        made = state["cr"]
+        known = made.fndesc
+        name = known.qualname.split(".")[-1]
+        handle = _dynfunc.make_function(known.lookup_module(), name, "kernel", 0, made.env, (state.library,))
+        state.targetctx.insert_user_function(handle, known, [state.library])
+        state.reload_init.extend(state.library._reload_init)
+        state["cr"] = _LowerResult(known, made.call_helper, cfunc=handle, env=made.env)
+        return True
+
+
+class LinkedCompiler(CompilerBase):  # type: ignore[misc]
+    """Numba's passes, with :class:`_LowerForLinking` in the place of its lowering."""
+
+    def define_pipelines(self) -> list[Any]:
+        """The passes, in their order."""
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [
+            (_LowerForLinking if made is NativeLowering else made, about) for made, about in passes.passes
+        ]
+        passes.finalize()
+        return [passes]
