@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.equations import function, law_template, numbers
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.laws import FrictionLaw
 
 
