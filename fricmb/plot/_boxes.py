@@ -58,7 +58,7 @@ class _Boxes:
         room = 0.75 if self.layout.above else 1.2
         largest = max((float(np.ptp(x, axis=1).max()) for n, x in moved.items() if n not in bands), default=0.0)
         self.scale = (room / largest if largest > 0.0 else 1.0) if magnify is None else magnify
-        places = []
+        places: list[Floats] = []
         for name in self.layout.order:
             x, y = self.layout.places[name]
             here = np.zeros((3, self.n))

@@ -125,7 +125,7 @@ class Sketch:
 
     def where(self, spot: Spot, i: int) -> Floats:
         """A spot in picture i."""
-        return self.turned(spot[0], np.array([spot[1:]]), i)[0]
+        return np.asarray(self.turned(spot[0], np.array([spot[1:]]), i)[0])
 
     def angle(self, spot: Spot, i: int) -> float:
         """The angle of the shape that a spot is on, in picture i."""
@@ -186,7 +186,7 @@ def _at_zero(value: Any) -> float:
 
 def box(width: float, height: float) -> Floats:
     """A rectangle about the origin."""
-    return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([width, height]) / 2
+    return np.asarray(np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([width, height]) / 2)
 
 
 def disc(radius: float, points: int = 40) -> Floats:
