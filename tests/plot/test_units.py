@@ -114,5 +114,6 @@ def test_command_writes_lines_and_hertz_on_dark_pages(scene, tmp_path, capsys):
     assert "#14181e" in text  # the page
     assert main(["plot", str(tmp_path / "run.npz"), "energy", "--hz"]) == 2
     assert "--hz: only spectrum, spectrogram, orders have frequencies" in capsys.readouterr().err
-    assert main(["plot", str(tmp_path / "run.npz"), "path", "--of", "mass.x,mass.x", "--out", str(tmp_path / "p.pdf")]) == 0
+    path = ["path", "--of", "mass.x,mass.x", "--out", str(tmp_path / "p.pdf")]
+    assert main(["plot", str(tmp_path / "run.npz"), *path]) == 0
     assert (tmp_path / "p.pdf").read_bytes()[:4] == b"%PDF"
