@@ -107,7 +107,9 @@ class _Boxes:
             width, height = self.layout.sizes[a]
             for k, part in enumerate(parts):
                 share = (k + 0.5) / len(parts) - 0.5
-                spot = (share * 0.9 * width, -0.12 * height if self.layout.above else -height / 2 - 0.1)
+                # from above: below the name of the body, of a plate beside what lies on it
+                low = -0.38 if a in self.layout.under.values() else -0.12
+                spot = (share * 0.9 * width, low * height if self.layout.above else -height / 2 - 0.1)
                 ends = [self._point(part.a, a, spot, b), self._point(part.b, b, spot, a)]
                 # of a modal body the contact is at its point, of others somewhere on the body
                 at: Spot = (self.number[a], *spot) if ends[0] == self.number[a] else (ends[0], 0.0, 0.0)

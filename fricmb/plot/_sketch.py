@@ -144,6 +144,9 @@ class Sketch:
         """Fit the view to all shapes in all pictures, and to what stands at the ground."""
         corners = [np.array([mark.at[1:]]) for mark in self.marks if mark.at[0] == GROUND_SHAPE]
         corners += [np.array([end[1:]]) for link in self.links for end in (link.a, link.b) if end[0] == GROUND_SHAPE]
+        for mark in self.marks:
+            if mark.kind == "circle" and mark.at[0] == GROUND_SHAPE:
+                corners.append(np.array(mark.at[1:]) + box(2 * mark.size, 2 * mark.size))
         n = self.places.shape[2]
         for k, shape in enumerate(self.shapes):
             corners += [self.turned(k, shape.outline, i) for i in np.unique(np.linspace(0, n - 1, 60).astype(int))]
