@@ -3,8 +3,9 @@
 The problem is one of accelerations: with a = a0 + D F, a stuck contact has a = 0 and |F| <= mu_s N, a slipping one
 F = -mu(0) N n and a = rho n, rho >= 0 the initial growth of its slip speed.  It is the port problem of a step with D
 for G and accelerations for velocities, so the same Newton solves it.  All are tried stuck; the worst beyond its cone is
-released, one at a time (for mu_s > mu_k a joint solution need not be unique); a cone is never split into axes.  Where
-these trials turn in a circle, ``_release`` finds a set that holds.
+released, one at a time.  For mu_s > mu_k more than one set may hold: what comes to rest is released before what has
+rested, which lets go only where it has to.  A cone is never split into axes.  Where these trials turn in a circle,
+``disc_projection.release`` finds a set that holds.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ class Rest(NamedTuple):
     """Room for the problem of accelerations: constant-law ports, their state, modes, and who takes part.
 
     ``part`` (n_c,): 1 a contact at rest, 2 one that is just released (its direction n is a hint, and F is on the cone).
+    ``rested`` (n_c,): 1 where one at rest has been so before this instant, 0 where it comes to rest now.
     ``small`` (n_c,): relative velocities that are round-off beside what the scene's forces bring.
     """
 
@@ -53,6 +55,7 @@ class Rest(NamedTuple):
     laws: Table
     mode: Codes
     part: Codes
+    rested: Codes
     tol: Floats
     hA: Floats2
     small: Floats
@@ -76,8 +79,8 @@ def rest(problem: Problem, packed: Packed) -> Rest:
         acts=np.zeros(nc, np.int8),
         z_start=np.zeros(nc + 1, np.int64),
     )
-    mode, part = np.zeros(nc, np.int8), np.zeros(nc, np.int8)
-    return room(Rest(ports, w, packed.laws, mode, part, np.zeros(nc), np.zeros((1, 1)), np.zeros(nc)))
+    mode, part, rested = (np.zeros(nc, np.int8) for _ in range(3))
+    return room(Rest(ports, w, packed.laws, mode, part, rested, np.zeros(nc), np.zeros((1, 1)), np.zeros(nc)))
 
 
 @kernel
@@ -123,7 +126,10 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
                 size = slip_speed(w.F[0], row0, d)
                 limit = ports.mu_s[k] * y.N[k]
                 ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
-                if ratio > excess:
+                # what comes to rest lets go before what has rested
+                first = worst >= 0 and r.rested[k] < r.rested[worst]
+                later = worst >= 0 and r.rested[k] > r.rested[worst]
+                if ratio > 1.0 + MARGIN and (first or (ratio > excess and not later)):
                     excess, worst = ratio, k
             elif r.mode[k] == SLIP and w.r[0, k] < least * big and r.part[k] == 1:
                 back = k
@@ -180,6 +186,7 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
     sizes, pivots = r.w.sizes, r.w.pivots
     some = False
     for k in range(y.mode.shape[0]):
+        r.rested[k] = 1 if y.mode[k] == STICK else 0
         r.tol[k] = y.size[packed.ports.row[k]]
     for k in range(y.mode.shape[0]):
         if r.part[k] != 0:
