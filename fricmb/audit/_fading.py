@@ -12,7 +12,7 @@ import numpy as np
 
 from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate._problem import Floats
 from fricmb.integrate._trajectory import Samples
 
 #: Steps through which an error is followed, and times within each; at most so many errors.
@@ -67,7 +67,7 @@ class Fading:
     def _times(self, start: float) -> Floats:
         """Times from ``start`` on, some in each of the steps that follow."""
         rows = self.rows.t
-        first: Ints = np.searchsorted(rows, start, side="right")
+        first = int(np.searchsorted(rows, start, side="right"))
         knots = np.concatenate([[start], rows[first : first + _STEPS]])
         knots = np.concatenate([knots, np.full(_STEPS + 1 - knots.size, knots[-1])])
         parts = knots[:-1, None] + np.diff(knots)[:, None] * np.arange(_WITHIN) / _WITHIN

@@ -264,5 +264,5 @@ def _add_plot(commands: _Commands) -> None:
     sub.add_argument("--out", type=Path, metavar="FILE", help=kinds)
     sub.add_argument("--t-start", type=float, metavar="T", help="start of the part shown; default: that of the run")
     sub.add_argument("--t-end", type=float, metavar="T", help="end of the part shown; default: that of the run")
-    sub.add_argument("--frames", type=int, default=120, metavar="N", help="animation: pictures (default: %(default)s)")
+    sub.add_argument("--frames", type=int, metavar="N", help="animation: pictures (default: 32 for each swing)")
     sub.add_argument("--seconds", type=float, default=3.0, metavar="S", help="sound: length (default: %(default)g)")

@@ -55,7 +55,7 @@ def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: ar
     elif kind == "sound":
         sol.plot.sound(str(name), path, seconds=options.seconds)
     elif kind == "view":
-        sol.plot.view(path)
+        sol.plot.view(path, t_start=options.t_start, t_end=options.t_end)
     else:
         draw: Callable[..., Any] = getattr(sol.plot, kind)
         given: dict[str, Any] = {"t_start": options.t_start, "t_end": options.t_end}

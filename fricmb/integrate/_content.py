@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
-_COMPILER = ("_room", "_call", "_kernel")
+_COMPILER = ("_room", "_call", "_kernel", "_linked")
 
 
 @lru_cache(maxsize=1)

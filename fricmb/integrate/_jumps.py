@@ -95,4 +95,4 @@ def jump_error(
                 i = spread.dof[j]
                 push = abs(spread.coefficient[j] * jump) * packed.structure.mobility[i]
                 worst = max(worst, h * push / max(acc.v[i], abs(y.v[i]), acc.floor_v[i], 1e-290))
-    return worst / acc.rtol[0]
+    return float(worst / acc.rtol[0])

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import weakref
 from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate._kept import kept
 from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
 from fricmb.integrate._room import room
 from fricmb.integrate._sparse import Csr
@@ -92,15 +92,7 @@ def _table(templates: Templates) -> Table:
 
 def packed_of(problem: Problem) -> Packed:
     """The problem as the kernels take it, made once per problem object."""
-    kept = _kept.get(id(problem))
-    if kept is None:
-        kept = _pack(problem)
-        _kept[id(problem)] = kept
-        weakref.finalize(problem, _kept.pop, id(problem), None)
-    return kept
-
-
-_kept: dict[int, Packed] = {}
+    return kept(problem, "packed", lambda: _pack(problem))
 
 
 def _pack(problem: Problem) -> Packed:

@@ -210,14 +210,20 @@ def speed_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
 
 @kernel
 def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
-    """How far the port inputs have moved from ``gbuf``, as velocities in units of tol; inf where not finite."""
+    """How far the port inputs have moved from ``gbuf``, as velocities in units of tol; inf where not finite.
+
+    Of redundant contacts that stick only sums are determined: see :func:`creep`.
+    """
     G, Fin, last = w.G, w.Fin, w.gbuf
     mi = Fin.shape[1]
     change = 0.0
     for i in range(w.F.shape[0]):
         for k in range(mode.shape[0]):
+            shared = ports.soft[0] > 0.0 and mode[k] == STICK
             for a in range(ports.row[k], ports.row[k + 1]):
                 moved = abs((Fin[i, a] - last[i, a]) * G[i * mi + a, i * mi + a])
+                if shared and moved < np.inf:
+                    continue
                 if not moved < np.inf:
                     return np.inf
                 change = max(change, moved / max(tol[k], round_off(w, i, mi, a, w.g[i, a])))
@@ -226,6 +232,28 @@ def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
                 push = abs(G[i * mi + ports.row[k], i * mi + ports.row[k]])
                 change = max(change, abs(Fin[i, a] - last[i, a]) * push / tol[k])
     return change
+
+
+@kernel
+def creep(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
+    """Largest slip velocity left, in units of its tolerance, where redundant contacts stick; rhs holds residuals.
+
+    The shares of a load that they hold together are known to round-off over the softening alone, and move from one
+    iteration to the next without an end; what they must not do is creep.
+    """
+    mi = w.Fin.shape[1]
+    u1 = mi + w.z.shape[1]
+    worst = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            if mode[k] != STICK:
+                continue
+            for a in range(ports.row[k], ports.row[k + 1]):
+                behind = abs(w.gb[i, a])
+                for b in range(mi):
+                    behind += abs(w.G[i * mi + a, i * mi + b] * w.Fin[i, b])
+                worst = max(worst, abs(w.rhs[i * u1 + a]) / max(tol[k], 4e-15 * behind))
+    return worst
 
 
 @kernel
@@ -306,6 +334,9 @@ def solve_ports(
                 w.gbuf[i, c] = w.Fin[i, c]
         evaluate_ports(ports, laws, s, w, mode)
         change = max(change, force_change(ports, w, mode, tol))
+        if ports.soft[0] > 0.0:
+            port_residual(ports, w, hA, mode)
+            change = max(change, creep(ports, w, mode, tol))
         if not change < np.inf:
             return -1
         # softening leaves a part of itself behind, which a second iteration takes away

@@ -8,7 +8,6 @@ from ._style import COLOURS as COLOURS
 from ._style import DARK as DARK
 from ._style import ORANGE as ORANGE
 from ._style import THIN as THIN
-from ._style import drawn as drawn
 from ._style import finish as finish
 from ._style import theme as theme
 from ._style import use as use
@@ -24,7 +23,6 @@ __all__ = [
     "THIN",
     "SolutionPlots",
     "Units",
-    "drawn",
     "eigenvalues",
     "finish",
     "law",

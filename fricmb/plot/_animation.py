@@ -1,4 +1,4 @@
-"""A run as moving pictures: bodies, springs, contact forces with their cones, stick in another colour."""
+"""Drawings of scenes and runs as moving pictures, by matplotlib."""
 
 from __future__ import annotations
 
@@ -11,192 +11,280 @@ from matplotlib import animation
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse, Rectangle
-from numpy.typing import NDArray
+from matplotlib.patches import Circle, Polygon
 
 from fricmb.analysis import AnalysisError
-from fricmb.plot._contact import OPEN, STICK, static_limit
-from fricmb.plot._layout import HEIGHT, ROW, WIDTH, Layout, layout
-from fricmb.plot._style import BLUE, DARK, ORANGE
+from fricmb.plot._contact import OPEN, SLIP, STICK
+from fricmb.plot._make_sketch import shown_span, sketch_of_run, sketch_of_scene
+from fricmb.plot._sketch import Floats, Link, Mark, Shape, Sketch, Touch, coil, pot
+from fricmb.plot._style import Paint, drawn, name_figure, paint
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
 
-Floats = NDArray[np.float64]
-#: A body that travels this many times farther than the one that travels least, nearly all in one direction, is drawn
-#: as a band.
-_BAND, _ONE_WAY = 3.0, 0.9
-_REACH = 0.45
-_MODES = {STICK: ("stick", BLUE), 1: ("slip", ORANGE), OPEN: ("open", "white")}
+#: How far apart running strokes are.
+STROKES = 0.5
 
 
-class Animation:
-    """The drawing of one run, and what changes in it from picture to picture."""
+class Drawing:
+    """A sketch on axes; :meth:`show` puts it into picture i."""
 
-    def __init__(self, sol: Solution, times: Floats, magnify: float | None) -> None:
-        self.sol, self.seen, self.layout = sol, sol.at(times), layout(sol.scene)
-        self.offsets, self.bands = _displacements(self.seen, self.layout, magnify)
-        self.figure, self.ax = canvas(self.layout, str(sol.scene.name))
-        self.boxes = {name: self._box(name) for name in self.layout.places}
-        self.names = {name: self.ax.text(0, 0, name, ha="center", va="center", fontsize=8) for name in self.boxes}
-        self.ticks = {name: self._ticks() for name in self.bands}
-        self.links = [self.ax.plot([], [], color=DARK, linewidth=0.9)[0] for _ in self.layout.links]
-        self.marks = [self._contact(name) for name, _, _ in self.layout.contacts]
-        self.clock = self.ax.text(0.01, 0.98, "", transform=self.ax.transAxes, va="top", fontsize=9)
-        self.limits = {name: _largest(sol, self.seen, name) for name, _, _ in self.layout.contacts}
+    def __init__(self, sketch: Sketch, ax: Axes) -> None:
+        self.sketch, self.ax, self.paint = sketch, ax, paint()
+        self.unit = sketch.unit
+        left, right, _, _ = sketch.view
+        points = 72.0 * ax.get_position().width * ax.get_figure(root=True).get_figwidth() / (right - left)
+        self.font = float(np.clip(0.36 * points * sketch.letters, 4.0, 8.0))
+        self.floor()
+        self.marks = [self._mark(mark) for mark in sketch.marks]
+        self.links = [self._line(1.1, zorder=3) for _ in sketch.links]
+        self.shapes = [self._shape(shape) for shape in sketch.shapes]
+        self.touches = [self._touch(touch) for touch in sketch.touches]
+        self.clock = ax.set_title("", loc="left", fontsize=9)
+        self.show(0)
 
-    def _box(self, name: str) -> Rectangle:
-        moves = name in self.bands
-        box = Rectangle(
-            (0, 0),
-            self.layout.widths[name],
-            HEIGHT,
-            facecolor="0.93" if moves else "0.8",
-            edgecolor=DARK,
+    def floor(self) -> None:
+        """The ground that bodies stand on."""
+        left, right, bottom, top = self.sketch.view
+        self.ax.set_xlim(left, right)
+        self.ax.set_ylim(bottom, top)
+        self.ax.set_aspect("equal")
+        self.ax.axis("off")
+        if self.sketch.floor is not None:
+            level = self.sketch.floor
+            self.ax.set_ylim(min(bottom, level - 0.35), top)
+            self.ax.plot([left, right], [level, level], color=self.paint.ink, linewidth=1.0)
+            self._hatch([left, right], level - 0.25, level)
+
+    def _hatch(self, x: Any, low: float, high: float) -> None:
+        self.ax.fill_between(x, low, high, facecolor="none", edgecolor=self.paint.quiet, hatch="////", linewidth=0.0)
+
+    def _line(self, width: float, **options: Any) -> Any:
+        (line,) = self.ax.plot([], [], color=options.pop("color", self.paint.ink), linewidth=width, **options)
+        return line
+
+    # ---- what is there
+
+    def _shape(self, shape: Shape) -> tuple[Any, Any, Any]:
+        faces = {"body": self.paint.body, "moved": self.paint.moved, "plate": self.paint.body, "dot": self.paint.ink}
+        small = shape.face in ("dot", "ring")
+        patch = Polygon(
+            shape.outline,
+            closed=True,
+            facecolor=faces.get(shape.face, "none"),
+            edgecolor=self.paint.ink,
             linewidth=1.0,
+            alpha=0.75 if shape.face == "plate" else 1.0,
+            zorder=5 if small else 2,
         )
-        self.ax.add_patch(box)
-        return box
+        self.ax.add_patch(patch)
+        marks = self._line(0.8, zorder=2.5)
+        ha, va = ("left", "center") if shape.face == "plate" else ("center", "center")
+        name = self.ax.text(0, 0, shape.name, ha=ha, va=va, fontsize=self.font, zorder=8)
+        return patch, marks, name
 
-    def _ticks(self) -> Any:
-        return self.ax.plot([], [], color=DARK, linewidth=0.7)[0]
+    def _mark(self, mark: Mark) -> Any:
+        if mark.kind == "pin":
+            circle = Circle((0, 0), 0.32 * self.unit, facecolor=self.paint.paper, edgecolor=self.paint.ink, zorder=6)
+            return self.ax.add_patch(circle)
+        if mark.kind == "weld":
+            return self.ax.add_patch(Circle((0, 0), 0.3 * self.unit, facecolor=self.paint.ink, zorder=6))
+        line = self._line(1.0, zorder=1.5 if mark.kind in ("support", "wall") else 4)
+        if mark.kind in ("line", "circle"):
+            line.set_zorder(1)
+            line.set_color(self.paint.quiet)
+        return line
 
-    def _contact(self, name: str) -> tuple[Any, Any, Any]:
-        (dot,) = self.ax.plot([], [], "o", markersize=11, markeredgecolor=DARK, zorder=5)
-        (arrow,) = self.ax.plot([], [], color="black", linewidth=2.2, zorder=6)
-        planar = len(self.sol.names.axes(name)) == 2
-        cone = Ellipse((0, 0), 2 * _REACH, 2 * _REACH if planar else 0.12, fill=False, edgecolor=ORANGE, linestyle="--")
-        self.ax.add_patch(cone)
-        return dot, arrow, cone
+    def _touch(self, touch: Touch) -> tuple[Any, Any, Any]:
+        dot = Circle((0, 0), 0.3 * self.unit if touch.turns else 0.16 * self.unit, zorder=9, linewidth=0.8)
+        dot.set_edgecolor(self.paint.ink)
+        self.ax.add_patch(dot)
+        cone = self._line(0.9, color=self.paint.quiet, linestyle="--", zorder=7)
+        arrow = self._line(2.0, color=self.paint.ink, zorder=10, solid_capstyle="butt")
+        return dot, cone, arrow
 
-    def centre(self, name: str, i: int) -> Floats:
-        """Where a body is drawn in picture i."""
-        if name == "ground":
-            return np.array([0.0, 0.0])
-        x = self.offsets[name][:, i] if name not in self.bands else np.zeros(2)
-        return np.asarray(np.array(self.layout.places[name]) + x)
+    # ---- where it is in picture i
 
     def show(self, i: int) -> list[Artist]:
         """Draw picture i."""
-        for name, box in self.boxes.items():
-            x, y = self.centre(name, i)
-            box.set_xy((x - self.layout.widths[name] / 2, y - HEIGHT / 2))
-            self.names[name].set_position((x, y))
-        for name, line in self.ticks.items():
-            line.set_data(*_tick_lines(self.centre(name, i), float(self.bands[name][i]), self.layout.widths[name]))
-        for line, (kind, _, a, b) in zip(self.links, self.layout.links, strict=True):
-            line.set_data(*link(kind, self.centre(a, i), self._anchor(a, b, i), b != "ground"))
-        for marks, (name, a, b) in zip(self.marks, self.layout.contacts, strict=True):
-            self._show_contact(marks, name, a, b, i)
-        self.clock.set_text(f"t = {self.seen.t[i]:.4g}")
-        return [*self.boxes.values(), *self.links, self.clock]
+        sketch = self.sketch
+        for k, (shape, (patch, marks, name)) in enumerate(zip(sketch.shapes, self.shapes, strict=True)):
+            patch.set_xy(sketch.turned(k, shape.outline, i))
+            lines = [sketch.turned(k, line, i) for line in (*shape.marks, *strokes(sketch, k, i))]
+            marks.set_data(*_joined(lines))
+            if shape.marks:  # a wheel turns under its name
+                name.set_position(sketch.places[k, :2, i] + shape.label)
+            else:
+                name.set_position(sketch.turned(k, np.array([shape.label]), i)[0])
+        for line, link in zip(self.links, sketch.links, strict=True):
+            line.set_data(*_joined(link_lines(sketch, link, i)))
+        for artist, mark in zip(self.marks, sketch.marks, strict=True):
+            if isinstance(artist, Circle):
+                artist.set_center(tuple(sketch.where(mark.at, i)))
+            else:
+                artist.set_data(*_joined(mark_lines(sketch, mark, i)))
+        for artists, touch in zip(self.touches, sketch.touches, strict=True):
+            self._show_touch(artists, touch, i)
+        if sketch.t.size > 1:
+            self.clock.set_text(f"t = {sketch.t[i]:.6g}")
+        return [*self.links, self.clock]
 
-    def _anchor(self, a: str, b: str, i: int) -> Floats:
-        """The far end of a link; of one to the ground a place at the body's left."""
-        if b != "ground":
-            return self.centre(b, i)
-        x, y = self.layout.places[a]
-        return np.array([x - WIDTH / 2 - 0.8, y])
-
-    def _show_contact(self, marks: tuple[Any, Any, Any], name: str, a: str, b: str, i: int) -> None:
-        dot, arrow, cone = marks
-        x, y = self.centre(a, i)
-        y -= 0.5 * ROW if b != a else 0.0
-        mode = int(self.seen.mode(name)[i])
-        dot.set_data([x], [y])
-        dot.set_markerfacecolor(_MODES[mode][1])
-        force = self.seen.force(name)[:, i] / self.limits[name] * _REACH
-        across = float(force[1]) if len(force) == 2 else 0.0
-        arrow.set_data([x, x + float(force[0])], [y, y + across])
-        cone.center = (x, y)
-
-
-def canvas(found: Layout, title: str, *, legend: bool = True) -> tuple[Figure, Axes]:
-    """An empty figure with room for the parts of a layout, and the ground."""
-    places = np.array(list(found.places.values())) if found.places else np.zeros((1, 2))
-    left, right = places[:, 0].min() - WIDTH - 1.2, places[:, 0].max() + WIDTH + 0.6
-    top = places[:, 1].max() + HEIGHT + 0.5
-    width = min(10.0, max(5.0, 1.1 * (right - left)))
-    figure = Figure(figsize=(width, width * (top + 0.3) / (right - left) + 0.7), layout="constrained")
-    ax = figure.subplots()
-    ax.set_xlim(left, right)
-    ax.set_ylim(-0.3, top)
-    ax.set_aspect("equal")
-    ax.axis("off")
-    ax.axhline(0.0, color=DARK, linewidth=1.0)
-    ax.fill_between([left, right], -0.25, 0.0, facecolor="none", edgecolor="0.6", hatch="////", linewidth=0.0)
-    for mode, (label, colour) in _MODES.items():
-        ax.plot([], [], "o", color=colour, markeredgecolor=DARK, label=label) if mode != OPEN else None
-    ax.plot([], [], color="black", linewidth=2.2, label="friction force")
-    ax.plot([], [], "--", color=ORANGE, label="break-away")
-    if legend:
-        ax.legend(loc="upper right", ncols=4, fontsize=7, frameon=False)
-    ax.set_title(title, loc="left", fontsize="medium")
-    return figure, ax
+    def _show_touch(self, artists: tuple[Any, Any, Any], touch: Touch, i: int) -> None:
+        dot, cone, arrow = artists
+        at = self.sketch.where(touch.at, i)
+        dot.set_center(tuple(at))
+        colours = {STICK: self.paint.stick, SLIP: self.paint.slip, OPEN: self.paint.paper}
+        dot.set_facecolor(self.paint.quiet if touch.mode is None else colours[int(touch.mode[i])])
+        if touch.force is None:
+            return
+        reach = self.sketch.reach
+        cone.set_data(*_joined(cone_lines(touch, at, reach, i)))
+        arrow.set_data(*_joined(arrow_lines(touch, at, reach, i, self.unit)))
 
 
-def _displacements(seen: Solution, found: Layout, magnify: float | None) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Drawn displacement (2, n) of each body, and along x of those drawn as bands."""
-    offsets = {name: np.array([_motion(seen, name, c) for c in "xy"]) for name in found.places}
-    travel = {name: float(np.ptp(x, axis=1).max()) for name, x in offsets.items() if np.ptp(x) > 0.0}
-    free = {name: way for name, way in travel.items() if not found.moving[name]}
-    least = min(free.values(), default=1.0)
-    one_way = {name: bool((np.abs(x[:, -1] - x[:, 0]) > _ONE_WAY * np.ptp(x)).any()) for name, x in offsets.items()}
-    bands = {n for n in found.places if found.moving[n] or (one_way[n] and travel.get(n, 0.0) > _BAND * least)}
-    largest = max((way for name, way in free.items() if name not in bands), default=1.0)
-    scale = 1.2 / largest if magnify is None else magnify
-    means = {name: x.mean(axis=1, keepdims=True) for name, x in offsets.items()}
-    return (
-        {name: scale * (x - means[name]) for name, x in offsets.items()},
-        {name: scale * offsets[name][0] for name in bands},
-    )
-
-
-def _motion(seen: Solution, body: str, letter: str) -> Floats:
-    name = f"{body}.{letter}"
-    return seen[name] if name in seen.names.known_motions() else np.zeros(seen.t.size)
-
-
-def _largest(sol: Solution, seen: Solution, contact: str) -> float:
-    """The force that an arrow of full length stands for."""
-    limit = static_limit(seen, contact)
-    values = np.linalg.norm(seen.force(contact), axis=0) if limit is None else limit
-    return float(values.max(initial=0.0)) or 1.0
-
-
-def _tick_lines(centre: Floats, shift: float, width: float) -> tuple[list[float], list[float]]:
-    """Strokes on a band that run with it."""
-    x, y = [], []
-    for at in (np.arange(0.0, width - 1e-9, WIDTH / 8) + shift) % width - width / 2 + centre[0]:
-        x += [float(at), float(at), np.nan]
-        y += [centre[1] - 0.3 * HEIGHT, centre[1] + 0.3 * HEIGHT, np.nan]
+def _joined(lines: list[Floats]) -> tuple[list[float], list[float]]:
+    """Lines as one, with gaps."""
+    x: list[float] = []
+    y: list[float] = []
+    for line in lines:
+        x += [*line[:, 0].tolist(), np.nan]
+        y += [*line[:, 1].tolist(), np.nan]
     return x, y
 
 
-def link(kind: str, a: Floats, b: Floats, between: bool) -> tuple[Floats, Floats]:
-    """A zigzag from b to the rim of a, or for a damper a straight line beside it."""
-    along = a - b
-    length = max(float(np.linalg.norm(along)), 1e-9)
-    unit = along / length
-    start = b + unit * (WIDTH / 2 if between else 0.0)
-    end = a - unit * min(WIDTH / 2, 0.9 * length)
-    normal = np.array([-unit[1], unit[0]])
-    if kind == "damper":
-        points = np.array([start - 0.18 * normal, end - 0.18 * normal])
-        return points[:, 0], points[:, 1]
-    s = np.concatenate([[0.0], np.linspace(0.15, 0.85, 12), [1.0]])
-    side = np.concatenate([[0.0, 0.0], 0.1 * (-1.0) ** np.arange(10), [0.0, 0.0]])
-    points = start + s[:, None] * (end - start) + side[:, None] * normal + 0.12 * normal
-    return points[:, 0], points[:, 1]
+def strokes(sketch: Sketch, shape: int, i: int) -> list[Floats]:
+    """Strokes on a band that run with it, in its own axes."""
+    shift = sketch.strokes.get(shape)
+    if shift is None:
+        return []
+    width = sketch.shapes[shape].band
+    half = 0.5 * float(np.ptp(sketch.shapes[shape].outline[:, 1]))
+    step = width / max(1, round(width / STROKES))
+    at = (np.arange(0.0, width - 1e-9, step) + float(shift[i])) % width - width / 2
+    return [np.array([[x, -half], [x, -0.55 * half]]) for x in at]
 
 
+def link_lines(sketch: Sketch, link: Link, i: int) -> list[Floats]:
+    """A spring as a coil, a damper as a pot, a rod as a line."""
+    a, b = sketch.where(link.a, i), sketch.where(link.b, i)
+    if link.kind == "rod":
+        return [np.array([a, b])]
+    if link.kind == "damper":
+        return pot(a, b, sketch.unit, link.side)
+    return [coil(a, b, sketch.unit, link.side, link.coils)]
+
+
+def mark_lines(sketch: Sketch, mark: Mark, i: int) -> list[Floats]:
+    """The strokes of a sign."""
+    at, unit, turn = sketch.where(mark.at, i), sketch.unit, sketch.angle(mark.at, i) + mark.angle
+    e = np.array([np.cos(turn), np.sin(turn)])
+    n = np.array([-e[1], e[0]])
+    if mark.kind == "support":
+        foot = at + unit * np.array([[-0.8, -1.1], [0.0, 0.0], [0.8, -1.1], [-0.8, -1.1]])
+        return [foot, *(at + unit * np.array([[x, -1.1], [x - 0.3, -1.5]]) for x in (-0.6, 0.0, 0.6))]
+    if mark.kind == "wall":
+        strokes = (unit * np.array([x * n, (x - 0.15) * n + 0.2 * e]) for x in (-0.2, 0.05, 0.3))
+        return [np.array([at - 0.35 * unit * n, at + 0.35 * unit * n]), *(at + stroke for stroke in strokes)]
+    if mark.kind == "line":
+        return [np.array([at - mark.size * e, at + mark.size * e])]
+    if mark.kind == "circle":
+        angle = np.linspace(0, 2 * np.pi, 73)
+        return [at + mark.size * np.column_stack((np.cos(angle), np.sin(angle)))]
+    if mark.kind == "spiral":
+        angle = np.linspace(0, 5 * np.pi, 60)
+        radius = unit * np.linspace(0.3, 1.2, 60)
+        return [at + radius[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))]
+    if mark.kind == "turn":
+        angle = np.linspace(0.6, 2.4, 20)
+        arc = at + 1.5 * unit * np.column_stack((np.cos(angle), np.sin(angle)))
+        tip, back = arc[-1], np.array([np.sin(2.4), -np.cos(2.4)])
+        out = np.array([np.cos(2.4), np.sin(2.4)])
+        head = np.array([tip + 0.35 * unit * (back + 0.6 * out), tip, tip + 0.35 * unit * (back - 0.6 * out)])
+        return [arc, head]
+    return []
+
+
+def cone_lines(touch: Touch, at: Floats, reach: float, i: int) -> list[Floats]:
+    """Break-away force: a circle in the plane, in one direction a bar on both sides."""
+    if touch.limit is None or touch.turns or touch.force is None:
+        return []
+    radius = reach * float(touch.limit[i])
+    if np.ptp(touch.force[1]) > 0.0 and np.ptp(touch.force[0]) > 0.0:
+        angle = np.linspace(0, 2 * np.pi, 49)
+        return [at + radius * np.column_stack((np.cos(angle), np.sin(angle)))]
+    along = touch.force[:, np.argmax(np.hypot(*touch.force))]
+    size = float(np.hypot(*along))
+    e = along / size if size > 0.0 else np.array([1.0, 0.0])
+    n = 0.12 * reach * np.array([-e[1], e[0]])
+    return [np.array([at + s * radius * e - n, at + s * radius * e + n]) for s in (-1.0, 1.0)]
+
+
+def arrow_lines(touch: Touch, at: Floats, reach: float, i: int, unit: float) -> list[Floats]:
+    """The friction force as an arrow; of a pin its moment as an arc."""
+    assert touch.force is not None
+    force = touch.force[:, i]
+    if touch.turns:
+        share = float(touch.force[0, i]) if abs(touch.force[0]).max() >= abs(touch.force[1]).max() else 0.0
+        angle = np.pi / 2 + np.linspace(0.0, 0.75 * 2 * np.pi * share, 24)
+        return [at + 0.62 * unit * np.column_stack((np.cos(angle), np.sin(angle)))]
+    length = reach * float(np.hypot(*force))
+    if length < 0.02 * reach:
+        return []
+    e = force / np.hypot(*force)
+    n, tip = np.array([-e[1], e[0]]), at + length * e
+    head = 0.25 * min(reach, 2 * length)
+    return [np.array([at, tip]), np.array([tip - head * (e + 0.5 * n), tip, tip - head * (e - 0.5 * n)])]
+
+
+def canvas(sketch: Sketch, ax: Axes | None = None) -> tuple[Figure, Axes]:
+    """Axes that a sketch fits into."""
+    if ax is not None:
+        figure = ax.figure
+        assert isinstance(figure, Figure)
+        return figure, ax
+    left, right, bottom, top = sketch.view
+    width = min(9.0, max(5.0, 0.9 * (right - left) / sketch.unit))
+    height = min(8.0, max(2.2, width * (top - bottom) / (right - left) + 0.9))
+    figure = Figure(figsize=(width, height), layout="constrained")
+    name_figure(figure, sketch.title)
+    return figure, figure.subplots()
+
+
+@drawn
+def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
+    """A scene at its start: bodies with their names, springs and dampers, joints, contacts."""
+    sketch = sketch_of_scene(scene)
+    figure, panel = canvas(sketch, ax)
+    drawing = Drawing(sketch, panel)
+    for touch in sketch.touches:
+        at = sketch.where(touch.at, 0)
+        panel.annotate(touch.name, at, xytext=(6, -9), textcoords="offset points", fontsize=drawing.font - 1, zorder=11)
+    return figure
+
+
+def legend(ax: Axes, colours: Paint, touches: list[Touch]) -> None:
+    """What the colours of contacts mean."""
+    if not touches:
+        return
+    modes = {int(m) for touch in touches if touch.mode is not None for m in np.unique(touch.mode)}
+    named = {STICK: ("stick", colours.stick), SLIP: ("slip", colours.slip), OPEN: ("open", colours.paper)}
+    for mode, (label, colour) in named.items():
+        if mode in modes:
+            ax.plot([], [], "o", color=colour, markeredgecolor=colours.ink, label=label)
+    ax.plot([], [], color=colours.ink, linewidth=2.0, label="friction")
+    if any(touch.limit is not None and not touch.turns for touch in touches):
+        ax.plot([], [], "--", color=colours.quiet, label="break-away")
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, fontsize="x-small", borderaxespad=0.0)
+
+
+@drawn
 def animate(
     sol: Solution,
     path: str | PathLike[str] | None,
     *,
     t_start: float | None,
     t_end: float | None,
-    frames: int,
+    frames: int | None,
     fps: float,
     magnify: float | None,
 ) -> animation.FuncAnimation | Path:
@@ -204,16 +292,23 @@ def animate(
     file = None if path is None else Path(path)
     if file is not None:
         _check_kind(file)
-    times = np.linspace(sol.t_start if t_start is None else t_start, sol.t_end if t_end is None else t_end, frames)
-    drawing = Animation(sol, times, magnify)
-    moving = animation.FuncAnimation(drawing.figure, drawing.show, frames=frames, interval=1000 / fps, blit=False)
+    if file is not None and file.suffix.lower() in (".html", ".htm"):
+        from fricmb.plot._view import solution_page
+
+        page = solution_page(sol, t_start=t_start, t_end=t_end, magnify=magnify)
+        file.write_text(page, encoding="utf-8")
+        return file
+    begin, end, count = shown_span(sol, t_start, t_end)
+    frames = count if frames is None else frames
+    sketch = sketch_of_run(sol, np.linspace(begin, end, frames), magnify)
+    figure, ax = canvas(sketch)
+    drawing = Drawing(sketch, ax)
+    legend(ax, paint(), sketch.touches)
+    moving = animation.FuncAnimation(figure, drawing.show, frames=frames, interval=1000 / fps, blit=False)
     if file is None:
         return moving
-    kind = file.suffix.lower()
-    if kind == ".gif":
+    if file.suffix.lower() == ".gif":
         moving.save(file, writer=animation.PillowWriter(fps=round(fps)), dpi=80)
-    elif kind in (".html", ".htm"):
-        file.write_text(moving.to_jshtml(fps=round(fps), default_mode="loop"), encoding="utf-8")
     else:
         moving.save(file, writer=animation.FFMpegWriter(fps=round(fps)), dpi=120)
     return file

@@ -47,7 +47,8 @@ def draw_force_history(sol: Solution, contact: str, ax: Axes, units: Units) -> N
     """Force over time; in one dimension signed, in two its magnitude; the break-away force as bounds."""
     force, limit = sol.force(contact), static_limit(sol, contact)
     planar = len(force) == 2
-    ax.plot(sol.t, np.hypot(*force) if planar else force[0], color=paint().stick, linewidth=THIN, label="friction force")
+    shown = np.hypot(*force) if planar else force[0]
+    ax.plot(sol.t, shown, color=paint().stick, linewidth=THIN, label="friction force")
     if limit is not None:
         ax.plot(sol.t, limit, color=paint().slip, linestyle="--", linewidth=THIN, label="break-away force")
         if not planar:
@@ -113,7 +114,8 @@ def draw_modes(sol: Solution, ax: Axes, span: tuple[float, float]) -> None:
     if len(names) <= NAMED:
         ax.set_yticks(range(len(names)), names)
     ax.set_ylim(len(names) - 0.4, -0.6)
-    remark(ax, ("filled: stick" if sticks else "no stick") + (", hatched: open" if opens else "") + (", pale: at rest, held by others" if held else ""))
+    words = [(True, "filled: stick" if sticks else "no stick"), (opens, "hatched: open")]
+    remark(ax, ", ".join(word for so, word in (*words, (held, "pale: at rest, held by others")) if so))
     finish(ax, x="", y="contact")
     ax.set_xlim(span[0] - 0.01 * (span[1] - span[0]), span[1] + 0.01 * (span[1] - span[0]))
 

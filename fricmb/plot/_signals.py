@@ -132,20 +132,25 @@ class SignalPlots:
         *,
         t_start: float | None = None,
         t_end: float | None = None,
-        frames: int = 120,
+        frames: int | None = None,
         fps: float = 25.0,
         magnify: float | None = None,
     ) -> Any:
-        """The scene as moving pictures: bodies, springs, contact forces with their cones, stick in another colour.
+        """The scene as moving pictures: bodies, springs, joints, contact forces with their cones; stick is coloured.
+
+        Mechanisms are drawn to scale; of other scenes displacements are magnified, and what has a contact with two
+        tangential directions is seen from above.
 
         Parameters
         ----------
         path : path, optional
-            File to write, ".mp4" (needs ffmpeg), ".gif" or ".html" (plays without a network); returned.  Default: the
-            matplotlib animation itself is returned.
+            File to write, ".mp4" (needs ffmpeg), ".gif" or ".html" (the interactive view of :meth:`view`); returned.
+            Default: the matplotlib animation itself is returned.
         t_start, t_end : float, optional
-            Part of the run; default: all of it.
-        frames : int
+            Part of the run; default: a few swings, the last in which the motion is half as large as ever, or all of a
+            run without so many.
+        frames : int, optional
+            Default: 32 for each swing.
         fps : float
             Pictures a second.
         magnify : float, optional
@@ -162,14 +167,19 @@ class SignalPlots:
 
         return write_sound(self.sol, name, path, seconds=seconds, speed=speed)
 
-    def view(self, path: Any) -> Any:
-        """Write an interactive view of the run: one HTML file that needs no network; returns its path."""
+    def view(self, path: Any, *, t_start: float | None = None, t_end: float | None = None) -> Any:
+        """Write an interactive view of the run: one HTML file that needs no network; returns its path.
+
+        The scene in motion with a time slider, any signal over time with stick shaded, any signal over any other, all
+        at one time; it follows the reader's light or dark theme.  ``t_start``, ``t_end``: the stretch shown first,
+        default a few swings as in :meth:`animation`; the whole run is in the file.
+        """
         from pathlib import Path
 
-        from fricmb.plot._html import solution_page
+        from fricmb.plot._view import solution_page
 
         file = Path(path)
-        file.write_text(solution_page(self.sol), encoding="utf-8")
+        file.write_text(solution_page(self.sol, t_start=t_start, t_end=t_end), encoding="utf-8")
         return file
 
     @property

@@ -77,7 +77,8 @@ def draw_orders(found: OrderMap, name: str, ax: Axes, units: Units, hz: bool) ->
     _map(ax, found.t, found.order / divisor, found.power * divisor, f"power density of {name}")
     ax.set_xlabel(f"time [{units.time}]")
     per = "1" if units.dimensionless else f"1/{units.length}"
-    ax.set_ylabel(f"order: swings per length slid [{per}]" if hz else f"order [{'1' if per == '1' else 'rad' + per[1:]}]")
+    radians = "1" if per == "1" else f"rad{per[1:]}"
+    ax.set_ylabel(f"order: swings per length slid [{per}]" if hz else f"order [{radians}]")
     remark(ax, ("order = frequency / sliding speed" if hz else "order = angular frequency / sliding speed"))
 
 

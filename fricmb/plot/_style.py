@@ -197,6 +197,14 @@ def finish(ax: Axes, *, x: str, y: str, legend: bool = False, columns: int = 4) 
         )
 
 
+def unseen(figure: Figure) -> Figure:
+    """Take a figure off the list of those that plt.show() shows."""
+    import matplotlib.pyplot as plt
+
+    plt.close(figure)
+    return figure
+
+
 def figure_of(axes: list[Axes]) -> Figure:
     """The figure that panels are in."""
     figure = axes[0].figure

@@ -329,6 +329,16 @@ class Scene:
 
         return scene_equations(self, joint_coordinates=joint_coordinates)
 
+    def draw(self, *, ax: Any = None) -> Any:
+        """The scene as a matplotlib figure: bodies, springs and dampers along their directions, joints, contacts.
+
+        Rigid bodies stand as they do at the start, to scale; of other scenes the drawing shows what hangs on what, from
+        above where a contact has two tangential directions.  ``ax``: axes to draw into.
+        """
+        from fricmb.plot._animation import draw_scene
+
+        return draw_scene(self, ax=ax)
+
     def plan(self) -> Any:
         """What will be built and what is left out, with counts; printable."""
         from fricmb.plan import make_plan

@@ -275,6 +275,13 @@ class Solution:
 
         return SolutionPlots(self)
 
+    def animate(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+        """The run as moving pictures, or in a browser with a time slider; options of ``sol.plot.animation``.
+
+        ``sol.animate("run.html")`` writes the interactive view, ".gif" and ".mp4" moving pictures.
+        """
+        return self.plot.animation(path, **options)
+
     def audit(self, *, rtol: float | None = None, atol: Any = None, seed: int = 0) -> Audit:
         """Check the run against the equations of its scene, on a path that shares nothing with the compiled kernels.
 
@@ -354,7 +361,7 @@ class Solution:
         return summarise(self)
 
     def _repr_html_(self) -> str:
-        from fricmb.plot._html import solution_notebook
+        from fricmb.plot._view import solution_notebook
 
         return solution_notebook(self)
 

@@ -162,9 +162,6 @@ LAWS = {
 #: Ends of runs and a least number of transitions in them.
 SCENES = {two_blocks: (10.0, 10), bricks: (8.0, 2), plates: (4.0, 5)}
 
-#: Right to round-off at every tolerance, but in steps far shorter than they need be: 34 000 for 1e-6.
-TOLERANCES = {(plates, "stribeck"): (1e-4,)}
-
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("build", SCENES)
@@ -174,10 +171,12 @@ def test_loops_of_contacts_against_all_modes(build, law):
     until, least = SCENES[build]
     exact, times = line.run(until)
     assert len(times) >= least
-    for method, rtol in itertools.product(("radau", "bdf", "auto"), TOLERANCES.get((build, law), (1e-4, 1e-6, 1e-9))):
+    for method, rtol in itertools.product(("radau", "bdf", "auto"), (1e-4, 1e-6, 1e-9)):
         sol = fm.simulate(line.scene(own), t_end=until, rtol=rtol, method=method)
         np.testing.assert_allclose(sol.q[:, -1], exact, rtol=0, atol=max(30 * rtol, 1e-8), err_msg=f"{method} {rtol}")
         assert any("redundant" in note for note in sol.stats.notes)
+        # shares of redundant contacts are not determined: steps must not wait for them
+        assert sol.stats.n_steps + sol.stats.n_rejected < 2000
         for k, N in enumerate(line.N):
             assert (np.abs(sol.force(f"c{k}")) <= mu_s * N * (1 + 1e-9)).all()
         for t in times:

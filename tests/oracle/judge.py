@@ -254,7 +254,7 @@ def uncertain(true: Truth, delta: float) -> bool:
         p, expected = true.case.problem, sequence(true.events)
         try:
             true.hangs[delta] = any(
-                kinds(solve(perturbed(p, change), 1e-2 * delta)) != expected for change in (delta, -delta)
+                kinds(solve(perturbed(p, change), 10.0 * RTOL)) != expected for change in (delta, -delta)
             )
         except OracleError:
             true.hangs[delta] = True

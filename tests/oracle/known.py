@@ -5,13 +5,7 @@
 
 from __future__ import annotations
 
-_VARYING = "time stepping under a varying normal force: pairs of stick and slip without end"
-
-CELLS: dict[tuple[str, str, str], str] = {
-    ("Coulomb", "reversal under a varying load", "timestepping"): _VARYING,
-    ("Elliptic", "reversal under a varying load", "timestepping"): _VARYING,
-    ("LoadDependent", "reversal under a varying load", "timestepping"): _VARYING,
-}
+CELLS: dict[tuple[str, str, str], str] = {}
 
 #: Element or joint and method.
 PARTS: dict[tuple[str, str], str] = {}

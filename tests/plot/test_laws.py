@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 mpl.use("Agg")
+import itertools
+
 import matplotlib.pyplot as plt
 
 import fricmb as fm
@@ -33,7 +35,7 @@ def test_parameters_and_titles(theme):
 
 
 def test_loops_of_a_law_with_memory():
-    """Dahl: dF/dx = stiffness (1 - F/mu) sign(v) on the way up, so pulled from rest F = mu (1 - exp(-x stiffness/mu))."""
+    """Dahl: dF/dx = sigma0 (1 - F/mu) on the way up, so pulled from rest F = mu (1 - exp(-sigma0 x/mu))."""
     law = fm.laws.Dahl(mu=0.3, sigma0=2e4)
     assert loop_length(law) == pytest.approx(0.3 / 2e4, rel=0.05)
     (ax,) = fm.plot.law(law).axes
@@ -58,4 +60,4 @@ def test_labels_of_a_narrow_axis_stay_apart():
     boxes = [label.get_window_extent() for label in ax.get_xticklabels(which="both") if label.get_text()]
     shown = sorted((b for b in boxes if ax.bbox.x0 <= b.x0 + b.width / 2 <= ax.bbox.x1), key=lambda b: b.x0)
     assert len(shown) >= 2
-    assert all(a.x1 < b.x0 for a, b in zip(shown[:-1], shown[1:], strict=True))
+    assert all(a.x1 < b.x0 for a, b in itertools.pairwise(shown))

@@ -14,9 +14,7 @@ from scipy.io import wavfile
 
 import fricmb as fm
 from fricmb.cli import main
-from fricmb.plot._animation import Animation
 from fricmb.plot._layout import layout
-from fricmb.plot._style import BLUE, ORANGE
 from fricmb.solution._stored import Stored
 
 
@@ -49,31 +47,6 @@ def test_maps(belt):
         assert "mass.x" in bar.get_ylabel()
 
 
-def test_pictures_show_where_things_are(belt):
-    t = np.linspace(0, 60, 61)
-    drawing = Animation(belt, t, 2.0)
-    x = belt.at(t)["mass.x"]
-    for i in (0, 20, 40):
-        drawing.show(i)
-        place = drawing.boxes["mass"].get_x() - drawing.boxes["mass"].get_width() / 2
-        if i == 0:
-            first = place
-        assert place - first == pytest.approx(2 * (x[i] - x[0]), abs=1e-12)
-        dot, arrow, _ = drawing.marks[0]
-        stuck = belt.at(t).mode("sole")[i] == 0
-        assert dot.get_markerfacecolor() == (BLUE if stuck else ORANGE)
-        reach = np.diff(arrow.get_xdata())[0]
-        assert reach == pytest.approx(0.45 * belt.at(t).force("sole")[0, i] / 1.5, rel=1e-6, abs=1e-9)
-    assert set(drawing.bands) == {"belt"}
-
-
-def test_bodies_stand_on_what_they_touch():
-    places = layout(fm.models.block_stack(3)).places
-    heights = [places[name][1] for name in ("table", "block1", "block2", "block3")]
-    assert heights == sorted(heights)
-    assert len({x for x, _ in places.values()}) == 1
-
-
 def test_stability_pictures():
     law = fm.laws.Stribeck(mu_s=0.5, mu_k=0.3, v_s=0.2, exponent=1.0)
     scene = fm.models.belt_oscillator(damping=0.05, law=law)
@@ -100,8 +73,8 @@ def test_stability_pictures():
 def test_animation_files(belt, tmp_path):
     gif = belt.plot.animation(tmp_path / "a.gif", frames=4)
     assert Image.open(gif).n_frames == 4
-    page = belt.plot.animation(tmp_path / "a.html", frames=3, t_end=20.0).read_text()
-    assert page.count("data:image/png;base64") == 3
+    page = belt.animate(tmp_path / "a.html", t_start=10.0, t_end=20.0).read_text()
+    assert data_of(page)["span"] == [10.0, 20.0]
     with pytest.raises(fm.FricmbError, match=r"\.mp4, \.gif or \.html"):
         belt.plot.animation(tmp_path / "a.avi")
 
@@ -125,13 +98,37 @@ def test_sound_has_the_pitch_of_the_signal(tmp_path):
         sol.plot.sound("mass.x", tmp_path / "b.wav", speed=1e-3)
 
 
+def data_of(page):
+    return json.loads(re.search(r"const data = (\{.*?\}), root", page, re.DOTALL)[1])
+
+
 def test_view_holds_the_run_and_asks_no_network(belt, tmp_path):
     page = belt.plot.view(tmp_path / "view.html").read_text()
     assert not re.search(r"""(src|href)\s*=\s*["']?(https?:)?//|fetch\(|import\s""", page)
-    data = json.loads(re.search(r"const data = (\{.*?\}), root", page, re.DOTALL)[1])
+    data = data_of(page)
     assert data["signals"]["mass.x"] == pytest.approx(belt.at(data["t"])["mass.x"], rel=1e-5, abs=1e-5)
     stuck = sum(b - a for a, b in data["stick"]["sole"])
     assert stuck == pytest.approx(60 * belt.time_share("sole", 0), rel=1e-6)
+    assert (data["t"][0], data["t"][-1], data["span"]) == (0.0, 60.0, [0.0, 60.0])
+    assert data["bounds"] is None  # a few swings: the times show them all
+    names = ("mass.x", "mass.x.velocity", "sole.force.x", "sole.mode")
+    assert [data["labels"][name] for name in names] == ["1", "1", "1", "0 stick, 1 slip, 2 open"]
+
+
+def test_view_of_many_swings(tmp_path):
+    """The file shows a few swings first, and bounds of the whole, between which every value lies."""
+    sol = fm.simulate(fm.models.friction_oscillator(friction=0.0, stiffness=100.0), t_end=200.0, rtol=1e-6)
+    data = data_of(sol.plot.view(tmp_path / "view.html").read_text())
+    begin, end = data["span"]
+    assert end - begin == pytest.approx(6 * 2 * np.pi / 10, rel=1e-2)
+    assert data["seconds"] == pytest.approx(6 * 1.3)
+    low, high = (np.array(row) for row in data["bounds"]["values"]["mass.x"])
+    seen = sol.at(data["bounds"]["t"])["mass.x"]
+    missed = 0.5 * (0.5 * 10 * 200 / (500 * 24)) ** 2  # how far the tip of a swing rises above samples beside it
+    assert (seen > low - missed).all()
+    assert (seen < high + missed).all()
+    inside = (np.array(data["t"]) >= begin) & (np.array(data["t"]) <= end)
+    assert inside.sum() > 6 * 100
 
 
 def test_notebooks_show_scene_plan_run_and_law(belt):

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate._exact_step import RUNGS, UNIT_RUNG, Exact
+from fricmb.integrate._kept import kept
 from fricmb.integrate._problem import Floats, Problem, Templates
 from fricmb.integrate._room import room
 from fricmb.integrate.collocation._nodes import TERMS, Z_EXACT, nodes
-from fricmb.integrate.collocation._prepare import kept
 from fricmb.integrate.collocation._structure import Blocks, blocks
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-import weakref
-from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from fricmb.integrate._kept import kept
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate._room import room
@@ -18,21 +17,6 @@ from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._signals import linear_signals
 from fricmb.integrate.collocation._single import BLOCKS
 from fricmb.integrate.collocation._structure import blocks
-
-_T = TypeVar("_T")
-_kept: dict[int, dict[Any, Any]] = {}
-
-
-def kept(problem: Problem, key: Any, make: Callable[[], _T]) -> _T:
-    """What was made for this very problem object under ``key``; forgotten with the object."""
-    store = _kept.get(id(problem))
-    if store is None:
-        store = _kept[id(problem)] = {}
-        weakref.finalize(problem, _kept.pop, id(problem), None)
-    if key not in store:
-        store[key] = make()
-    value: _T = store[key]
-    return value
 
 
 def is_single(problem: Problem) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import weakref
 from typing import NamedTuple
 
 import numpy as np
 
 from fricmb.integrate._field import Scratch
+from fricmb.integrate._kept import kept
 from fricmb.integrate._lapack import addresses
 from fricmb.integrate._mechanism import Mechanism
 from fricmb.integrate._pack import Spread, Table, _table
@@ -116,16 +116,9 @@ class Mech(NamedTuple):
     address: Ints
 
 
-_kept: dict[int, Mech] = {}
-
-
 def mech_of(problem: Problem) -> Mech:
     """The problem as the kernels take it, made once per problem object."""
-    kept = _kept.get(id(problem))
-    if kept is None:
-        kept = _kept[id(problem)] = _pack(problem)
-        weakref.finalize(problem, _kept.pop, id(problem), None)
-    return kept
+    return kept(problem, "mechanism", lambda: _pack(problem))
 
 
 def mechanism_of(problem: Problem) -> Mechanism:

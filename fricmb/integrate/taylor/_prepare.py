@@ -49,9 +49,11 @@ def _refusal(problem: Problem) -> str | None:
         return "coefficients of friction that depend on slip speed must be formulas"
     if problem.m != problem.n_c:
         return "every contact must slide along one direction"
-    on_belts = contacts.csr("Wu").rows
-    if len(problem.signals.breakpoints) and (contacts.law[on_belts] != LAW_CONSTANT).any():
-        return "where functions of time have breakpoints, contacts with driven bodies need a constant coefficient"
+    if len(problem.signals.breakpoints) and len(contacts.csr("Wu").rows) and is_coupled(problem):
+        return (
+            "where functions of time have breakpoints and bodies are driven, contacts need a constant coefficient "
+            "each, and bodies of their own"
+        )
     if not linear.csr("M").is_diagonal():
         return "the mass matrix must be diagonal"
     if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():

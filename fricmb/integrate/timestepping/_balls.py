@@ -6,7 +6,7 @@ import math
 
 from fricmb.integrate._kernel import kernel
 from fricmb.integrate._problem import Floats
-from fricmb.integrate.timestepping._layout import CAUGHT, HELD, RESIDUAL
+from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, HELD, RESIDUAL
 from fricmb.integrate.timestepping._run import Run
 
 #: R of the proximal steps times the local compliance.
@@ -114,7 +114,7 @@ def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
             distance = math.hypot(distance, F[a] - run.delta[a])
         inside = run.H[3 * c] == STIFF / run.soft[c] and (d == 1 or run.H[3 * c + 2] == run.H[3 * c])
         held = inside and distance <= run.rho[c]
-        if run.status[c] == HELD or run.status[c] == CAUGHT:
+        if run.status[c] in (HELD, CAUGHT, BROKEN):
             size = 0.0
             for a in range(row0, row0 + d):
                 size = math.hypot(size, g[a])

@@ -1,0 +1,58 @@
+"""The view of a run in a browser: no network, no complaints, nothing wider than the screen, and time goes on."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+
+playwright = pytest.importorskip("playwright.sync_api")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+
+
+@pytest.fixture(scope="module")
+def page_of_a_run(tmp_path_factory):
+    sol = fm.simulate(fm.models.belt_oscillator(), t_end=60.0, rtol=1e-6)
+    return sol.plot.view(tmp_path_factory.mktemp("view") / "view.html")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desktop", "phone"])
+def test_view(page_of_a_run, size, theme):
+    with playwright.sync_playwright() as start:
+        browser = start.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        screen = {"width": size[0], "height": size[1]}
+        page = browser.new_context(viewport=screen, color_scheme=theme, offline=True).new_page()
+        complaints = []
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.goto(page_of_a_run.as_uri())
+        paper = page.evaluate("getComputedStyle(document.querySelector('.fricmb')).backgroundColor")
+        assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 24, 30)"}[theme]
+        assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+        for name in ("scene", "plane", "time"):  # something is drawn on each: more than one colour
+            colours = page.evaluate(
+                f"""() => {{ const c = document.querySelector('canvas.{name}'), d = c.getContext('2d')
+                .getImageData(0, 0, c.width, c.height).data, found = new Set();
+                for (let i = 0; i < d.length; i += 4) found.add(d[i] + 256 * d[i + 1] + 65536 * d[i + 2]);
+                return found.size; }}"""
+            )
+            assert colours > 5, name
+        before = float(page.text_content("output").split()[2])
+        page.click("button.play")
+        page.wait_for_timeout(400)
+        page.click("button.play")
+        after = float(page.text_content("output").split()[2])
+        assert after > before
+        page.fill("input[type=range]", "500")
+        assert float(page.text_content("output").split()[2]) == pytest.approx(30.0)
+        page.click("button.nearer")
+        page.click("button.whole")
+        page.select_option("select.first", "mass.x")
+        assert page.text_content(".told").startswith("mass.x [1] = ")
+        told = float(page.text_content(".told").split("=")[1].split()[0])
+        assert np.isfinite(told)
+        browser.close()
+    assert complaints == []
