@@ -42,7 +42,7 @@ def _mechanism(parts: str, shown: str, t_end: float = 2.0, *, before: str = _PEN
 
 def _swing(joint: str, t_end: float = 2.0, before: str = _PENDULUM) -> str:
     code = _mechanism(f"arm, weight,\n    {joint}", 'sol["arm.angle"]', t_end, before=before)
-    return code + 'figure = sol.plot.velocities(["arm.angle"])\n'
+    return code + "figure = scene.draw()\n"
 
 
 EXAMPLES = {
@@ -140,16 +140,17 @@ print(sol.events[0])  # at rest after sqrt(2)
     "Revolute": _swing('fm.Revolute("pin", arm.point("pin"), radius=0.05, friction=fm.laws.Coulomb(mu_s=0.4))', 8.0),
     "TorsionSpring": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
         'disc, pin, fm.TorsionSpring("spring", disc, stiffness=2.0),\n    fm.TorsionDamper("loss", disc, damping=0.01)',
-        'sol["disc.angle"]', before="") + 'figure = sol.plot.velocities(["disc.angle"])\n',
+        'sol["disc.angle"]', before="") + 'figure = scene.draw()\n',
     "Torque": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
         'disc, pin, fm.Torque("motor", disc, value=0.1)', 'sol.velocity("disc.angle")', before=""),
     "Prismatic": """
 slider = fm.RigidBody("slider", mass=1.0, inertia=0.1, velocity=(1.0, 0.0))
 guide = fm.Prismatic("guide", slider, friction=fm.laws.Coulomb(mu_s=0.2))
 weight = fm.Gravity("weight", acceleration={"y": -9.81})
-sol = fm.simulate(fm.Scene("slider", [slider, guide, weight]), t_end=1.0)
+scene = fm.Scene("slider", [slider, guide, weight])
+sol = fm.simulate(scene, t_end=1.0)
 print(sol.events[0])  # at rest after 1/(0.2 9.81)
-figure = sol.plot.velocities(["slider.x"])
+figure = scene.draw()
 """,
     "Fixed": """
 plate = fm.RigidBody("plate", mass=1.0, inertia=0.1)
@@ -157,9 +158,10 @@ bracket = fm.RigidBody("bracket", mass=0.5, inertia=0.05, position=(1.0, 0.0))
 weld = fm.Fixed("weld", plate, bracket)
 pin = fm.Revolute("pin", plate)
 weight = fm.Gravity("weight", acceleration={"y": -9.81})
-sol = fm.simulate(fm.Scene("welded", [plate, bracket, weld, pin, weight]), t_end=1.0)
+scene = fm.Scene("welded", [plate, bracket, weld, pin, weight])
+sol = fm.simulate(scene, t_end=1.0)
 print(sol["plate.angle"][-1] - sol["bracket.angle"][-1])
-figure = sol.plot.velocities(["plate.angle"])
+figure = scene.draw()
 """,
     "Rod": _swing('fm.Rod("rod", arm.point("pin"), fm.ground_point(0.0, 0.3), length=0.3)'),
     "RollerOnLine": _swing('fm.RollerOnLine("roller", arm.point("pin"), friction=fm.laws.Coulomb(mu_s=0.1)),\n'
@@ -172,20 +174,22 @@ small = fm.RigidBody("small", mass=1.0, inertia=0.01, angular_velocity=10.0)
 large = fm.RigidBody("large", mass=4.0, inertia=0.16, position=(3.0, 0.0), angular_velocity=-5.0)
 mesh = fm.Gear("mesh", small, large, ratio=2.0)  # teeth outside: they turn against each other
 pins = [fm.Revolute("pin1", small), fm.Revolute("pin2", large, fm.ground_point(3.0, 0.0))]
-sol = fm.simulate(fm.Scene("gears", [small, large, mesh, *pins]), t_end=1.0)
+scene = fm.Scene("gears", [small, large, mesh, *pins])
+sol = fm.simulate(scene, t_end=1.0)
 print(sol.velocity("small.angle")[-1], sol.velocity("large.angle")[-1])
-figure = sol.plot.velocities(["small.angle", "large.angle"])
+figure = scene.draw()
 """,
     "DrivenAngle": _DISC.replace("20.0", "5.0") + _mechanism(
         'disc, fm.Revolute("pin", disc), fm.DrivenAngle("motor", disc, speed=5.0)', 'sol["disc.angle"]', before="")
-        + 'figure = sol.plot.velocities(["disc.angle"])\n',
+        + 'figure = scene.draw()\n',
     "DrivenSlide": """
 slider = fm.RigidBody("slider", mass=1.0, inertia=0.1, velocity=(0.5, 0.0))
 guide = fm.Prismatic("guide", slider)
 piston = fm.DrivenSlide("piston", slider, speed=0.5)
-sol = fm.simulate(fm.Scene("piston", [slider, guide, piston]), t_end=2.0)
+scene = fm.Scene("piston", [slider, guide, piston])
+sol = fm.simulate(scene, t_end=2.0)
 print(sol["slider.x"][-1])
-figure = sol.plot.velocities(["slider.x"])
+figure = scene.draw()
 """,
     "parameter": """
 load = fm.parameter("load", 1.0)  # one number in several places
