@@ -5,13 +5,16 @@ import re
 import sys
 import warnings
 from importlib.metadata import version as installed_version
+from pathlib import Path
 
 project = "fricmb"
 author = "The fricmb developers"
 copyright = "2026, The fricmb developers"
 release = version = installed_version("fricmb")
 
-sys.path.insert(0, os.path.dirname(__file__))  # what the pages are made with: _pages, _pictures
+sys.path.insert(0, os.path.dirname(__file__))  # what the pages are made with: _api, _examples, _pages, _pictures
+
+import _api  # noqa: E402
 
 extensions = [
     "myst_nb",
@@ -37,6 +40,8 @@ nb_merge_streams = True
 os.environ.pop("MPLBACKEND", None)  # pictures go into the pages
 
 autosummary_generate = True
+templates_path = ["_templates"]
+autosummary_context = {"shown": _api.shown}  # members that a page shows
 autodoc_typehints = "none"  # types stand in the numpydoc sections
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
@@ -132,3 +137,5 @@ def setup(app):
     app.connect("builder-inited", reference_pages)
     app.connect("builder-inited", benchmark_pages)
     app.connect("autodoc-process-docstring", keep_bars, priority=400)
+    # after numpydoc, so that an example stands below the sections that it makes
+    app.connect("autodoc-process-docstring", _api.add_example(_api.Shown(Path(app.srcdir) / MADE)), priority=900)

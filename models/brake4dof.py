@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from types import MappingProxyType
 
 import fricmb as fm
@@ -72,7 +73,7 @@ def brake4dof(
         raise fm.SceneError(f"brake4dof: case must be one of {', '.join(CASES)}; got {case!r}")
     if law is not None and mu_s_N is not None:
         raise fm.SceneError("brake4dof: mu_s_N belongs to the built-in Coulomb law; with law= leave it out")
-    if not 0.0 < mass_ratio < math.inf:
+    if not isinstance(mass_ratio, numbers.Real) or not 0.0 < mass_ratio < math.inf:
         raise fm.SceneError(f"brake4dof: mass_ratio must be a finite number > 0, got {mass_ratio!r}")
     Omega1, Omega2, delta = (
         given if given is not None else default

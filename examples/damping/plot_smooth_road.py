@@ -26,7 +26,7 @@ figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 ax.plot(rise * sol.t, 1e3 * sol["road.x"], color="0.7", label="wheel")
 ax.plot(rise * sol.t, 1e3 * sol["body.x"], label="body")
 ax.set(xlabel="frequency of the waves (rad/s)", ylabel="height (mm)")
-ax.legend(loc="lower left", framealpha=1.0)
+ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
 plt.show()
 t = sol.events.of(kind="slip").t[0]
 needed = m * a * (rise * np.cos(rise * t**2 / 2) - (rise * t) ** 2 * np.sin(rise * t**2 / 2))

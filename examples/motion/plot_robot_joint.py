@@ -31,5 +31,5 @@ for gain in (10.0, 40.0):
     print(f"gain {gain:g}: trails {trail[-1]:.6f} rad at the turn, closed form {closed:.6f} rad")
     assert np.abs(trail / closed - 1).max() < 2e-4
 ax.set(xlabel="time (s)", ylabel="error (rad)")
-ax.legend(loc="lower right", framealpha=1.0)
+ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
 plt.show()

@@ -27,7 +27,7 @@ figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 ax.plot(sol.t, sol.velocity("bit.x"), label="bit")
 ax.axhline(table_speed, color="tab:orange", linestyle="--", label="table")
 ax.set(xlabel="time (s)", ylabel="speed (rad/s)")
-ax.legend(loc="upper left", framealpha=1.0)
+ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
 plt.show()
 
 D, omega = (static - kinetic) / pipe, math.sqrt(pipe / inertia)

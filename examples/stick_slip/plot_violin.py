@@ -27,7 +27,7 @@ figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 ax.plot(late.t / 2.0, late.velocity("string.bow.x"), linewidth=1.0)
 ax.axhline(-0.1 * (1 - beta) / beta, color="0.6", linestyle="--", label="Helmholtz: slips back at $v(1-\\beta)/\\beta$")
 ax.set(xlabel="time in periods of the free string", ylabel="speed of the string under the bow")
-ax.legend(loc="center right", framealpha=1.0)
+ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
 plt.show()
 
 slips = sol.events.of(kind="slip").t

@@ -22,13 +22,13 @@ scene = fm.Scene("wiper", [
     lip, glass, fm.Spring("rubber", lip, axis="x", stiffness=k),
     fm.Contact("edge", lip, glass, law=fm.laws.Coulomb(mu_s=mu), normal_force=N),
 ])  # fmt: skip
-sol = fm.simulate(scene, t_end=2.0, rtol=1e-9, t_eval=np.linspace(0.0, 2.0, 4001))
+sol = fm.simulate(scene, t_end=0.44, rtol=1e-9, t_eval=np.linspace(0.0, 0.44, 1761))
 
 figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 ax.plot(sol.t, 1e3 * sol["lip.x"], label="lip leans (mm)")
 ax.plot(sol.t, 10 * sol["glass.x"], "--", color="0.6", label="glass (dm)")
 ax.set_xlabel("time (s)")
-ax.legend(loc="center")
+ax.legend()
 plt.show()
 
 stick = next(event.t for event in sol.events if event.kind == "stick" and event.t > 0.2)

@@ -47,6 +47,8 @@ class Peaks:
         return len(self.omega)
 
     def __str__(self) -> str:
+        if not len(self):
+            return "no peaks: none is so high over the minima beside it as prominence= asks (dB)"
         rows = [f"{'omega':>12} {'+-':>9} {'power':>11} {'+-':>9} {'width':>9} {'dB':>6}"]
         columns = (self.omega, self.uncertainty, self.power, self.power_uncertainty, self.width, self.prominence)
         shown = np.sort(np.argsort(-self.power, kind="stable")[:_SHOWN])
@@ -57,7 +59,7 @@ class Peaks:
         if len(self) > _SHOWN:
             rows.append(f"and {len(self) - _SHOWN} of less power")
         if np.isinf(self.uncertainty[shown]).any():
-            rows.append("inf: found in fewer than two parts of the record, so its spread is not known")
+            rows.append("inf: found again in fewer than two parts of the record, so its spread is not known")
         return "\n".join(rows)
 
     def near(self, omega: float) -> int:

@@ -49,7 +49,7 @@ def _paper(folder: Path, cases: list[str], options: argparse.Namespace) -> Itera
     mpl.use("Agg")
     import matplotlib.pyplot as plt
 
-    lines = []
+    lines: list[str] = []
     for number, figure in FIGURES.items():
         if figure.case not in cases:
             continue
@@ -58,8 +58,10 @@ def _paper(folder: Path, cases: list[str], options: argparse.Namespace) -> Itera
         drawn = figure.draw(sol)
         drawn.savefig(path, dpi=150)
         plt.close(drawn)
-        lines += [figure.title, f"  {figure.shows}", *(f"  {finding}" for finding in figure.check(sol)), ""]
+        findings = [f"  {finding}" for finding in figure.check(sol)]
+        lines += [figure.title, f"  {figure.shows}", *findings, ""]
         yield path
+        print("\n".join(findings))
     text = folder / "findings.txt"
     text.write_text("\n".join(lines), encoding="utf-8")
     yield text

@@ -58,6 +58,8 @@ def _cure(raised: Exception) -> str | None:
         return None
     line = _source(raised.__traceback__) or ""
     called = re.search(r"\b(math|np|numpy)\.(\w+)", line)
+    if called is None and function is None and re.search(r"\b(float|int|round)\(", line):
+        return "float() takes numbers alone: leave the expression as it is"
     name = function.group(1) if function else (called.group(2) if called else "exp")
     shown = called.group(0) if called else ("a function of numpy" if function else "a function of math")
     return f"{shown} takes numbers alone: write sympy.{_OTHERWISE.get(name, name)}"

@@ -136,3 +136,16 @@ def test_bad_input_names_the_argument(call, named):
     with pytest.raises(fm.FricmbError) as caught:
         call()
     assert named in str(caught.value)
+
+
+def test_peaks_say_in_print_why_there_is_no_spread_and_that_there_are_none():
+    """A burst in the last eighth of a record: no more than one of its overlapping quarters holds it."""
+    t = np.arange(8000) * 0.05
+    x = np.random.default_rng(3).normal(size=t.size) + np.where(t > 350.0, 40.0 * np.sin(5.0 * t), 0.0)
+    peaks = spectral_peaks(x, 0.05, estimate=partial(welch_spectrum, segment=800), prominence=25.0)
+    assert abs(peaks.omega[peaks.near(5.0)] - 5.0) < 0.1
+    assert np.isinf(peaks.uncertainty[peaks.near(5.0)])
+    assert "found again in fewer than two parts of the record" in str(peaks)
+    none = spectral_peaks(np.random.default_rng(3).normal(size=4000), 0.1, prominence=60.0)
+    assert len(none) == 0
+    assert str(none).startswith("no peaks")

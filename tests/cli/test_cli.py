@@ -229,7 +229,7 @@ def test_figures(capsys, tmp_path):
 
 @pytest.mark.slow
 def test_figures_of_the_source(capsys, tmp_path):
-    status, _, _ = run(capsys, "figures", "brake4dof", "--case", "1", "--out", tmp_path)
+    status, said, _ = run(capsys, "figures", "brake4dof", "--case", "1", "--out", tmp_path)
     assert status == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "brake4dof-case1.png",
@@ -240,6 +240,8 @@ def test_figures_of_the_source(capsys, tmp_path):
     findings = (tmp_path / "findings.txt").read_text()
     assert "[agrees] the rotor is braked almost linearly" in findings
     assert "[DIFFERS] slip goes on first" in findings
+    verdicts = [line for line in findings.splitlines() if line.startswith("  [")]
+    assert [line for line in said.splitlines() if line.startswith("  [")] == verdicts
 
 
 @pytest.mark.parametrize("arguments", [[], ["run"], ["runn", "x"], ["run", "m", "--t-end", "abc"], ["list", "-x"]])

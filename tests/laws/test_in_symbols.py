@@ -83,3 +83,15 @@ def test_a_misspelt_law_suggests_the_right_one():
     with pytest.raises(AttributeError, match=r"did you mean Spring\?"):
         fm.Spirng  # noqa: B018
     assert not hasattr(fm.laws, "nothing_like_it")
+
+
+def test_a_conversion_to_a_number_is_not_taken_for_a_function():
+    @dataclass(frozen=True, kw_only=True)
+    class WithFloat(fm.FrictionLaw):
+        mu: float = 0.5
+
+        def define_coefficient(self, r):
+            return self.mu + float(r)
+
+    with pytest.raises(fm.LawError, match=r"float\(\) takes numbers alone: leave the expression as it is"):
+        WithFloat().coefficient(0.1)

@@ -146,7 +146,7 @@ def test_wrong_arguments_of_rotor_doublet(arguments):
         fm.models.rotor_doublet(**arguments)
 
 
-@pytest.mark.parametrize("wrong", [-1.0, 0.0, float("nan"), float("inf")])
+@pytest.mark.parametrize("wrong", [-1.0, 0.0, float("nan"), float("inf"), "a hundred", None])
 def test_a_wrong_mass_ratio_is_named_as_given(wrong):
-    with pytest.raises(fm.SceneError, match="mass_ratio must be a finite number > 0"):
+    with pytest.raises(fm.SceneError, match=rf"mass_ratio must be a finite number > 0, got {wrong!r}"):
         fm.models.brake4dof(mass_ratio=wrong)

@@ -1,0 +1,361 @@
+"""An example of every public name of the Python interface; the tests run each, the pages show what it prints.
+
+What an example leaves in ``figure`` is its picture.  Names that belong together share one.
+"""
+
+import fricmb as fm
+from fricmb.models import catalogue
+
+_BELT = """
+block = fm.Body("block", mass=1.0)
+belt = fm.Driven("belt", velocity={"x": 0.2})
+spring = fm.Spring("spring", block, axis="x", stiffness=1.0)
+sole = fm.Contact("sole", block, belt, law=fm.laws.Coulomb(mu_s=1.0, mu_k=0.5), normal_force=1.0)
+scene = fm.Scene("block on a belt", [block, belt, spring, sole])
+"""
+_RUN = "sol = fm.simulate(fm.models.belt_oscillator(), t_end=40.0, rtol=1e-8)\n"
+_BRAKE = 'sol = fm.simulate(fm.models.brake4dof("2"), t_end=100.0, rtol=1e-6)\n'
+_SPECTRUM = _BRAKE + 'signal = fm.analysis.uniform(sol, "pad.y", dt=0.05)\n'
+_FALLING = """
+law = fm.laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.1, viscous=0.2)
+scene = fm.models.belt_oscillator(law=law, belt=0.2)
+"""
+_MODES = _FALLING + """
+modes = fm.analysis.complex_eigenvalues(scene, over="belt.velocity.x", values=[0.05, 0.1, 0.2, 0.4, 0.8])
+"""
+_PENDULUM = """
+ends = {"pin": (-0.5, 0.0), "tip": (0.5, 0.0)}
+arm = fm.RigidBody("arm", mass=1.0, inertia=0.1, position=(0.5, 0.0), points=ends)
+weight = fm.Gravity("weight", acceleration={"y": -9.81})
+"""
+_DISC = 'disc = fm.RigidBody("disc", mass=1.0, inertia=0.02, angular_velocity=20.0)\n'
+
+
+def _mechanism(parts: str, shown: str, t_end: float = 2.0, *, before: str = _PENDULUM, name: str = "mechanism") -> str:
+    """A mechanism that runs, and a picture of one motion of it."""
+    return before + (
+        f'scene = fm.Scene("{name}", [{parts}])\n'
+        f"sol = fm.simulate(scene, t_end={t_end}, rtol=1e-6)\n"
+        f"print({shown}[-1])\n"
+    )
+
+
+def _swing(joint: str, t_end: float = 2.0, before: str = _PENDULUM) -> str:
+    code = _mechanism(f"arm, weight,\n    {joint}", 'sol["arm.angle"]', t_end, before=before)
+    return code + "figure = scene.draw()\n"
+
+
+EXAMPLES = {
+    "Scene": _BELT + 'print(scene.parameters)\nprint(scene.with_parameters({"spring.stiffness": 2.0}).plan())\n',
+    "Body": 'puck = fm.Body("puck", mass=0.2, axes="xy", velocity={"x": 1.5, "y": 0.5})\n'
+            "floor = fm.Contact(\"floor\", puck, law=fm.laws.Coulomb(mu_s=0.2), normal_force=0.2 * 9.81)\n"
+            'sol = fm.simulate(fm.Scene("puck", [puck, floor]), t_end=1.0)\n'
+            'print(sol.events[0], sol["puck.x"][-1])\n',
+    "ModalBody": """
+string = fm.ModalBody("string", frequencies=[3.0, 6.0], damping_ratios=0.01, shapes={"bow": [[0.6, 1.0]]})
+bow = fm.Driven("bow", velocity={"x": 0.3})
+law = fm.laws.HyperbolicStribeck(mu_s=0.8, mu_k=0.3, delta=5.0)
+hair = fm.Contact("hair", string.point("bow"), bow, law=law, normal_force=1.0)
+sol = fm.simulate(fm.Scene("string", [string, bow, hair]), t_end=20.0)
+print(len(sol.events), sol["string.bow.x"][-1])
+figure = sol.plot.velocities(["string.mode1", "string.mode2"])
+""",
+    "Driven": """
+import sympy
+
+block = fm.Body("block", mass=1.0)
+table = fm.Driven("table", velocity={"x": sympy.cos(1.5 * fm.t)})
+sole = fm.Contact("sole", block, table, law=fm.laws.Coulomb(mu_s=1.0), normal_force=1.0)
+sol = fm.simulate(fm.Scene("shaken", [block, table, sole]), t_end=10.0)
+print(sol.time_share("sole", 0))  # how much of it the block sticks
+figure = sol.plot.velocities(["block.x"])
+""",
+    "Spring": _BELT + "sol = fm.simulate(scene, t_end=20.0)\nprint(sol.events.of(kind='slip')[0])  # torn off\n",
+    "Damper": 'cart = fm.Body("cart", mass=1.0, velocity={"x": 1.0})\n'
+              'brake = fm.Damper("brake", cart, axis="x", damping=0.5)\n'
+              'sol = fm.simulate(fm.Scene("cart", [cart, brake]), t_end=2.0)\n'
+              'print(sol.velocity("cart.x")[-1])  # exp(-1)\n',
+    "PointSpring": 'bob = fm.Body("bob", mass=1.0, axes="xy", position={"x": 1.2})\n'
+                   'cord = fm.PointSpring("cord", bob, stiffness=50.0, length=1.0)\n'
+                   'loss = fm.PointDamper("loss", bob, damping=0.5)\n'
+                   'sol = fm.simulate(fm.Scene("bob", [bob, cord, loss]), t_end=5.0)\n'
+                   'print(sol["bob.x"][-1])\n',
+    "Force": 'block = fm.Body("block", mass=1.0)\n'
+             'push = fm.Force("push", block, axis="x", value=0.5 * fm.t - 0.1 * fm.speed("block.x"))\n'
+             'floor = fm.Contact("floor", block, law=fm.laws.Coulomb(mu_s=1.0), normal_force=1.0)\n'
+             'sol = fm.simulate(fm.Scene("pushed", [block, push, floor]), t_end=4.0)\n'
+             "print(sol.events[0])  # at 2, where the push is 1\n",
+    "MatrixElement": 'a, b = fm.Body("a", mass=1.0, velocity={"x": 1.0}), fm.Body("b", mass=1.0)\n'
+                     'link = fm.MatrixElement("link", ["a.x", "b.x"], K=[[2.0, -1.0], [-1.0, 2.0]])\n'
+                     'sol = fm.simulate(fm.Scene("two", [a, b, link]), t_end=5.0)\n'
+                     'print(sol["a.x"][-1], sol["b.x"][-1])\n',
+    "Element": """
+from dataclasses import dataclass
+
+from fricmb.scene import direction
+
+
+@dataclass(frozen=True, kw_only=True)
+class Magnet(fm.Element):
+    a: fm.Body
+    b: object = fm.GROUND
+    strength: float
+
+    def local_coordinates(self):
+        return (direction(self, "axis", "x", self.a, self.b).form,)
+
+    def define_potential(self, x):
+        return -self.strength / (1 + x[0] ** 2)
+
+
+block = fm.Body("block", mass=1.0, position={"x": 0.5})
+sol = fm.simulate(fm.Scene("magnet", [block, Magnet("magnet", a=block, strength=1.0)]), t_end=5.0)
+print(sol["block.x"].min(), sol["block.x"].max())
+""",
+    "Contact": _BELT + "sol = fm.simulate(scene, t_end=40.0)\nprint(sol.force('sole')[0, -1], sol.mode('sole')[-1])\n"
+               'figure = sol.plot.force("sole")\n',
+    "normal.NormalLaw": """
+pad = fm.Body("pad", mass=1.0, axes="xy", velocity={"y": 0.5})
+belt = fm.Driven("belt", velocity={"x": 1.0})
+press = fm.normal.Spring(axis="y", stiffness=10.0, damping=0.1, preload=2.0)
+lining = fm.Contact("lining", pad, belt, law=fm.laws.Coulomb(mu_s=0.3), normal_force=press)
+hold = fm.Spring("hold", pad, axis="x", stiffness=1.0)
+sol = fm.simulate(fm.Scene("pressed", [pad, belt, hold, lining]), t_end=10.0)
+print(sol.normal_force("lining").min(), sol.normal_force("lining").max())
+""",
+    "normal.Hertz": """
+ball = fm.Body("ball", mass=1.0, axes="xy", velocity={"x": 1.0})
+press = fm.normal.Hertz(axis="y", stiffness=1e4, preload=10.0)
+floor = fm.Contact("floor", ball, law=fm.laws.Coulomb(mu_s=0.3), normal_force=press)
+sol = fm.simulate(fm.Scene("ball", [ball, floor]), t_end=0.5)
+print(sol.events[0])  # at rest after 1/(0.3 10)
+""",
+    "normal.Prescribed": """
+block = fm.Body("block", mass=1.0, velocity={"x": 1.0})
+floor = fm.Contact("floor", block, law=fm.laws.Coulomb(mu_s=1.0), normal_force=fm.t)
+sol = fm.simulate(fm.Scene("pressed harder", [block, floor]), t_end=2.0)
+print(sol.events[0])  # at rest after sqrt(2)
+""",
+    "RigidBody": _swing('fm.Revolute("pin", arm.point("pin"))'),
+    "Revolute": _swing('fm.Revolute("pin", arm.point("pin"), radius=0.05, friction=fm.laws.Coulomb(mu_s=0.4))', 8.0),
+    "TorsionSpring": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
+        'disc, pin, fm.TorsionSpring("spring", disc, stiffness=2.0),\n    fm.TorsionDamper("loss", disc, damping=0.01)',
+        'sol["disc.angle"]', before="") + 'figure = scene.draw()\n',
+    "Torque": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
+        'disc, pin, fm.Torque("motor", disc, value=0.1)', 'sol.velocity("disc.angle")', before=""),
+    "Prismatic": """
+slider = fm.RigidBody("slider", mass=1.0, inertia=0.1, velocity=(1.0, 0.0))
+guide = fm.Prismatic("guide", slider, friction=fm.laws.Coulomb(mu_s=0.2))
+weight = fm.Gravity("weight", acceleration={"y": -9.81})
+scene = fm.Scene("slider", [slider, guide, weight])
+sol = fm.simulate(scene, t_end=1.0)
+print(sol.events[0])  # at rest after 1/(0.2 9.81)
+figure = scene.draw()
+""",
+    "Fixed": """
+plate = fm.RigidBody("plate", mass=1.0, inertia=0.1)
+bracket = fm.RigidBody("bracket", mass=0.5, inertia=0.05, position=(1.0, 0.0))
+weld = fm.Fixed("weld", plate, bracket)
+pin = fm.Revolute("pin", plate)
+weight = fm.Gravity("weight", acceleration={"y": -9.81})
+scene = fm.Scene("welded", [plate, bracket, weld, pin, weight])
+sol = fm.simulate(scene, t_end=1.0)
+print(sol["plate.angle"][-1] - sol["bracket.angle"][-1])
+figure = scene.draw()
+""",
+    "Rod": _swing('fm.Rod("rod", arm.point("pin"), fm.ground_point(0.0, 0.3), length=0.3)'),
+    "RollerOnLine": _swing('fm.RollerOnLine("roller", arm.point("pin"), friction=fm.laws.Coulomb(mu_s=0.1)),\n'
+                           '    fm.RollerOnLine("other", arm.point("tip"))', 1.0,
+                           _PENDULUM.replace("inertia=0.1", "inertia=0.1, velocity=(1.0, 0.0)")).replace(
+                               '"arm.angle"', '"arm.x"'),
+    "RollerOnCircle": _swing('fm.RollerOnCircle("roller", arm.point("pin"), fm.ground_point(0.0, 1.0), radius=1.0)'),
+    "Gear": """
+small = fm.RigidBody("small", mass=1.0, inertia=0.01, angular_velocity=10.0)
+large = fm.RigidBody("large", mass=4.0, inertia=0.16, position=(3.0, 0.0), angular_velocity=-5.0)
+mesh = fm.Gear("mesh", small, large, ratio=2.0)  # teeth outside: they turn against each other
+pins = [fm.Revolute("pin1", small), fm.Revolute("pin2", large, fm.ground_point(3.0, 0.0))]
+scene = fm.Scene("gears", [small, large, mesh, *pins])
+sol = fm.simulate(scene, t_end=1.0)
+print(sol.velocity("small.angle")[-1], sol.velocity("large.angle")[-1])
+figure = scene.draw()
+""",
+    "DrivenAngle": _DISC.replace("20.0", "5.0") + _mechanism(
+        'disc, fm.Revolute("pin", disc), fm.DrivenAngle("motor", disc, speed=5.0)', 'sol["disc.angle"]', before="")
+        + 'figure = scene.draw()\n',
+    "DrivenSlide": """
+slider = fm.RigidBody("slider", mass=1.0, inertia=0.1, velocity=(0.5, 0.0))
+guide = fm.Prismatic("guide", slider)
+piston = fm.DrivenSlide("piston", slider, speed=0.5)
+scene = fm.Scene("piston", [slider, guide, piston])
+sol = fm.simulate(scene, t_end=2.0)
+print(sol["slider.x"][-1])
+figure = scene.draw()
+""",
+    "parameter": """
+load = fm.parameter("load", 1.0)  # one number in several places
+blocks = [fm.Body(name, mass=1.0, velocity={"x": 1.0}) for name in ("a", "b")]
+soles = [fm.Contact(f"sole of {b.name}", b, law=fm.laws.Coulomb(mu_s=0.5), normal_force=load) for b in blocks]
+scene = fm.Scene("two blocks", [*blocks, *soles]).with_parameters({"load": 2.0})
+sol = fm.simulate(scene, t_end=2.0)
+print([event.t for event in sol.events])
+""",
+    "Units": 'scene = fm.models.belt_oscillator().with_units(fm.Units("s", "m", "N"))\n'
+             "sol = fm.simulate(scene, t_end=20.0)\n"
+             "figure = sol.plot.velocities()\nprint(scene.units)\n",
+    "FrictionLaw": """
+from dataclasses import dataclass
+
+import sympy
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogWeakening(fm.FrictionLaw):
+    mu_s: float
+    slope: float
+
+    def define_coefficient(self, r):
+        return self.mu_s / (1 + self.slope * sympy.log(1 + r))
+
+
+law = LogWeakening(mu_s=1.0, slope=0.2)
+print(law.coefficient([0.0, 1.0]), law.derivative([0.0, 1.0]))
+figure = fm.plot.law_figure(law)
+""",
+    "laws.published": 'laws, told = fm.laws.published("fricmb.laws")\nprint(sorted(laws), told)\n',
+    "laws.Creep": "law = fm.laws.TanhRegularised.example()\nprint(law.creep(0.5))\n",
+    "laws.norm": "import sympy\n\nvx, vy = sympy.symbols('vx vy')\nprint(fm.laws.norm((vx, vy)))\n",
+    "analysis.compare_regimes": """
+scene = fm.models.belt_oscillator(law=fm.laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.05))
+regimes = fm.analysis.compare_regimes(scene, "sole", v_reg=1e-3, stiffness=1e3, t_end=30.0)
+for regime in regimes:
+    print(regime)
+figure = regimes[1].solution.plot.velocities()
+""",
+    "analysis.path": """
+import matplotlib.pyplot as plt
+import numpy as np
+
+law = fm.laws.Dahl(sigma0=1e4, mu=0.3)
+pulled = fm.analysis.path(law, lambda t: np.full_like(t, 1e-3), np.linspace(0.0, 0.2, 401))
+loop = fm.analysis.cycle(law, amplitude=1e-4, period=1.0)
+print(pulled.force[-1], loop.work)
+figure, ax = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
+ax.plot(pulled.displacement, pulled.force, loop.displacement, loop.force)
+ax.set(xlabel="displacement", ylabel="friction force")
+""",
+    "analysis.pull": """
+law = fm.laws.LuGre.example()
+print(fm.analysis.pull(law).force[-1], fm.analysis.settling_distance(law))
+""",
+    "testing.check_law": "fm.testing.check_law(fm.laws.Coulomb(mu_s=0.5, mu_k=0.4))  # or an error\nprint('kept')\n",
+    "testing.check_element": 'block = fm.Body("block", mass=1.0)\n'
+        'fm.testing.check_element(fm.Spring("spring", block, axis="x", stiffness=2.0), parts=[block])\nprint("kept")\n',
+    "testing.check_model": "fm.testing.check_model(fm.models.belt_oscillator)\nprint('kept')\n",
+    "simulate": _RUN + "print(sol.summary())\nfigure = sol.plot.velocities()\n",
+    "sweep": 'scene = fm.models.belt_oscillator()\n'
+             'runs = [{"belt.velocity.x": v} for v in (0.1, 0.2, 0.4)]\n'
+             "count = lambda sol: len(sol.events)\n"
+             "print(fm.sweep(scene, runs, t_end=50.0, workers=1, progress=False, reduce=count))\n",
+    "Solution": _RUN + 'print(sol["mass.x"][-1], sol.at([1.0, 2.0])["mass.x"])\n'
+                "print(sol.events[0], sol.energy.residual[-1])\n",
+    "solve_dae": """
+import numpy as np
+
+
+def circle(t, y, yp):
+    x, v = y
+    return np.array([yp[0] - v, x**2 + v**2 - 1.0])
+
+
+result = fm.solve_dae(circle, (0.0, 1.0), [0.0, 1.0], rtol=1e-8, atol=1e-10)
+print(result.y[0, -1])  # sin(1)
+""",
+    "audit.Audit": _RUN + "print(sol.audit())\n",
+    "plot.SolutionPlots": _BRAKE + 'figure = sol.plot.transitions()\n',
+    "plot.law_figure": 'figure = fm.plot.law_figure(fm.laws.Stribeck.example())\n',
+    "plot.law": 'figure = fm.plot.law(fm.laws.Dahl.example())\n',
+    "plot.use": 'fm.plot.use("light")\nwith fm.plot.theme("dark"):\n'
+                "    figure = fm.plot.law_figure(fm.laws.Stribeck.example())\n",
+    "plot.eigenvalues": _MODES + "figure = fm.plot.eigenvalues(modes)\n",
+    "analysis.uniform": _SPECTRUM + "print(signal.dt, len(signal.x), signal.folded)\n",
+    "analysis.maximum_entropy_spectrum": _SPECTRUM + """
+import matplotlib.pyplot as plt
+
+figure, ax = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
+for estimate in (fm.analysis.maximum_entropy_spectrum, fm.analysis.welch_spectrum):
+    omega, power = estimate(signal.x, signal.dt)
+    ax.semilogy(omega[omega < 20], power[omega < 20], label=estimate.__name__)
+ax.set(xlabel="angular frequency", ylabel="power density")
+ax.legend()
+""",
+    "analysis.spectrogram": _SPECTRUM + """
+running = fm.analysis.spectrogram(signal.x, signal.dt, segment=400)
+orders = fm.analysis.order_map(running, fm.analysis.sliding_speed(sol, "lining", running.t), [0.5, 1.0, 2.0])
+print(running.power.shape, orders.power.shape)
+""",
+    "analysis.spectral_peaks": _SPECTRUM
+        + "print(fm.analysis.spectral_peaks(signal.x, signal.dt, between=(3.0, 9.0)))\n",
+    "analysis.AliasingWarning": """
+import warnings
+
+sol = fm.simulate(fm.models.brake4dof("2"), t_end=100.0)
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    fm.analysis.uniform(sol, "pad.y.velocity", dt=1.0)
+print(said[0].category.__name__)
+""",
+    "analysis.steady_sliding": _FALLING + "print(fm.analysis.steady_sliding(scene))\n",
+    "analysis.complex_eigenvalues": _MODES + "print(modes)\nfigure = fm.plot.eigenvalues(modes)\n",
+    "analysis.stability_map": _FALLING + """
+found = fm.analysis.stability_map(
+    scene, over=("belt.velocity.x", "spring.stiffness"), values=([0.05, 0.1, 0.2, 0.4], [0.5, 1.0, 2.0]),
+)
+print(found.unstable)
+figure = fm.plot.stability(found)
+""",
+    "analysis.energy_ledger": _RUN + "ledger = fm.analysis.energy_ledger(sol)\nprint(ledger.phases(\"sole\")[:2])\n"
+        "figure = sol.plot.energy()\n",
+    "analysis.modal_energy": _BRAKE + "print(fm.analysis.modal_energy(sol).omega)\n",
+}
+SHARED = {
+    "Parameter": "parameter", "coordinate": "Force", "speed": "Force", "PointDamper": "PointSpring",
+    "normal.Spring": "normal.NormalLaw", "normal.Constant": "Contact", "ground_point": "Rod", "Gravity": "RigidBody",
+    "TorsionDamper": "TorsionSpring", "Joint": "Revolute", "audit.Check": "audit.Audit",
+    "plot.stability": "analysis.stability_map", "plot.theme": "plot.use", "analysis.Regime": "analysis.compare_regimes",
+    "analysis.cycle": "analysis.path", "analysis.Path": "analysis.path", "analysis.settling_distance": "analysis.pull",
+    "analysis.welch_spectrum": "analysis.maximum_entropy_spectrum", "analysis.Samples": "analysis.uniform",
+    "analysis.order_map": "analysis.spectrogram", "analysis.sliding_speed": "analysis.spectrogram",
+    "analysis.Spectrogram": "analysis.spectrogram", "analysis.OrderMap": "analysis.spectrogram",
+    "analysis.Peaks": "analysis.spectral_peaks", "analysis.SteadySliding": "analysis.steady_sliding",
+    "analysis.Eigenvalues": "analysis.complex_eigenvalues", "analysis.Crossing": "analysis.complex_eigenvalues",
+    "analysis.StabilityMap": "analysis.stability_map", "analysis.EnergyLedger": "analysis.energy_ledger",
+    "analysis.Phase": "analysis.energy_ledger", "analysis.ModalEnergy": "analysis.modal_energy",
+}  # fmt: skip
+
+
+def example(name: str) -> str | None:
+    """Code of the example of a public name, as it is called in ``fm``; None where there is none."""
+    kind, _, rest = name.partition(".")
+    if kind == "laws" and rest in fm.laws.names:
+        body = f"law = fm.laws.{rest}.example()\nprint(law)\nfigure = fm.plot.law_figure(law)\n"
+    elif kind == "models" and rest in catalogue:
+        body = f"scene = fm.models.{rest}()\nsol = fm.simulate(scene, t_end={catalogue[rest].t_end:g})\n"
+        body += "print(len(sol.events), sol.stats.n_steps)\n"
+    else:
+        found = EXAMPLES.get(SHARED.get(name, name))
+        if found is None:
+            return None
+        body = found.lstrip("\n")
+    return _with_imports(body)
+
+
+def _with_imports(body: str) -> str:
+    """Imports on top, as ruff sorts them: the standard library, others, fricmb."""
+    lines = body.splitlines()
+    first = [line for line in lines if line.startswith(("import ", "from "))]
+    standard = [line for line in first if line.split()[1] in ("dataclasses", "warnings")]
+    own = [line for line in first if line.startswith("from fricmb")]
+    others = [line for line in first if line not in (*standard, *own)]
+    groups = ["\n".join(group) for group in (standard, others, ["import fricmb as fm", *own]) if group]
+    rest = "\n".join(line for line in lines if line not in first).strip("\n")
+    return "\n\n".join(groups) + ("\n\n\n" if rest.startswith(("@", "def ", "class ")) else "\n\n") + rest + "\n"
