@@ -104,6 +104,26 @@ def test_8_two_are_caught_at_the_same_instant(method, angle):
 
 
 @METHODS
+@PLANAR
+def test_8_what_turns_round_leaves_what_has_rested(method, angle):
+    # both plates could also go on together (static friction of the joint 0.9, of the floor 1.4, under 1 and 1.6); but
+    # nothing makes the lower one let go: under the upper one's 0.3 it is held before and after the turn
+    lower, upper = body("lower", 1.0, angle), body("upper", 1.0, angle, -0.5)
+    parts = [lower, upper]
+    for name, plate, force in (("push", lower, 0.6), ("pull", upper, 1.0)):
+        parts += [fm.Force(f"{name}{a}", plate, axis=a, value=f) for a, f in components(angle, force).items()]
+    parts.append(fm.Contact("floor", lower, law=fm.laws.Coulomb(mu_s=1.4, mu_k=0.5), normal_force=1.0))
+    parts.append(fm.Contact("joint", upper, lower, law=fm.laws.Coulomb(mu_s=0.9, mu_k=0.3), normal_force=1.0))
+    turn = 0.5 / 1.3
+    t = np.array([0.2, turn, 0.7, 1.0])
+    sol = fm.simulate(fm.Scene("plates", parts), t_end=1.0, rtol=1e-9, t_eval=t, method=method)
+    assert "floor" not in dict(story(sol))
+    before, after = np.minimum(t, turn), np.maximum(t - turn, 0.0)
+    assert along(angle, sol, "upper") == pytest.approx(-0.5 * before + 0.65 * before**2 + 0.35 * after**2, abs=1e-8)
+    assert np.abs(sol.q[: len(lower.axes)]).max() < 1e-15
+
+
+@METHODS
 def test_8_like_blocks_do_alike(method):
     # three blocks side by side on a belt and two springs to one driver: the same instant for all of them
     V, D = 0.1, 0.3
