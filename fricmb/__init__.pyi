@@ -7,13 +7,13 @@ from . import plot as plot
 from . import testing as testing
 from ._simulate import simulate as simulate
 from ._sweep import sweep as sweep
+from .dae import solve_dae as solve_dae
 from .errors import FricmbError as FricmbError
 from .errors import IntegrationError as IntegrationError
 from .errors import Interrupted as Interrupted
 from .errors import LawError as LawError
 from .errors import SceneError as SceneError
 from .integrate import integrators as integrators
-from .integrate import solve_dae as solve_dae
 from .laws import FrictionLaw as FrictionLaw
 from .scene import GROUND as GROUND
 from .scene import Body as Body

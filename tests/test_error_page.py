@@ -14,8 +14,8 @@ from fricmb import errors
 from fricmb._simulate._blame import _law_without_value, blame
 from fricmb._simulate._result import not_there
 from fricmb.analysis import AnalysisError
-from fricmb.integrate import _memory, _stop
 from fricmb.integrate.collocation import _collocation
+from fricmb.integrate.run import memory, stop
 from fricmb.integrate.taylor import _taylor
 
 BLAME = (blame, _law_without_value)
@@ -51,12 +51,12 @@ def raised(path):
 
 def reasons():
     """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
-    from fricmb.integrate._advance import FAILURES
     from fricmb.integrate.constrained import _messages
+    from fricmb.integrate.methods.attempt_step import FAILURES
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
-    for function in (_messages.failure_text, _memory.Footprint.excess, _stop.Watch.look, not_there, *BLAME):
+    for function in (_messages.failure_text, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
             text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
             if text and text.strip("."):

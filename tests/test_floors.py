@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[1]
 
 #: A module imports, when it is itself imported, only from its own floor or a lower one.
 FLOORS = (
-    {"errors", "integrate", "reduction", "solution", "values"},
+    {"dae", "errors", "integrate", "reduction", "solution", "values"},
     {"laws", "normal"},
     {"scene"},
     {"plan"},
@@ -24,6 +24,22 @@ FLOORS = (
     {"models", "testing", "bench"},
     {"cli"},
 )
+#: Inside `integrate`, imports inside functions counted: what a problem is and what a run returns; compilation; what
+#: goes on around any run; forces and accelerations; rows that a run leaves; one implicit step; transitions; methods.
+ENGINE = (
+    {"problem", "mechanism", "csr", "trajectory", "integrator"},
+    {"compile"},
+    {"run"},
+    {"model"},
+    {"output"},
+    {"step"},
+    {"contact"},
+    {"methods"},
+    {"collocation", "constrained", "taylor", "timestepping"},
+    {"select"},
+)
+#: Methods that hand scenes with joints on to steps of their own kind.
+HANDED_ON = {("bdf", "constrained"), ("radau", "constrained")}
 #: The package's front door and `python -m fricmb` stand outside the floors.
 OUTSIDE = {"__init__", "__main__"}
 
@@ -86,6 +102,30 @@ def test_imports_only_go_down(path):
         if other in known and floor(other) > floor(here)
     ]
     assert not upwards, f"{here} imports from a higher floor: {upwards}"
+
+
+def test_imports_inside_the_engine_only_go_down():
+    top = ROOT / "fricmb" / "integrate"
+
+    def level(name):
+        return next(i for i, names in enumerate(ENGINE) if name in names)
+
+    upwards, seen = [], set()
+    for path in sorted(top.rglob("*.py")):
+        parts = path.relative_to(top).with_suffix("").parts
+        if parts == ("__init__",):
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("fricmb.integrate"):
+                continue
+            base = (node.module or "").split(".")[2:]
+            for other in {base[0]} if base else {alias.name for alias in node.names}:
+                if (parts[-1], other) in HANDED_ON:
+                    seen.add((parts[-1], other))
+                elif level(other) > level(parts[0]):
+                    upwards.append(f"{'/'.join(parts)}, line {node.lineno}: {other}")
+    assert not upwards
+    assert seen == HANDED_ON
 
 
 def test_ground_floor_stands_alone():

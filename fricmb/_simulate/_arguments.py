@@ -11,8 +11,8 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate import Tolerance
-from fricmb.integrate._memory import available
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.memory import available
 from fricmb.solution import times_inside
 
 #: Tightest and loosest relative tolerance: what double precision can hold, and what still means something.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fricmb.integrate import Trajectory
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.scene import Contact
 from fricmb.values import Declaration, is_expression
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fricmb.integrate._long import take
-from fricmb.integrate._problem import Floats, Ints
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.run.chunked_run import take
+from fricmb.integrate.trajectory import Samples
 from fricmb.solution import Solution
 from fricmb.solution._run import Record
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene
 from fricmb.system import DrivenMotion, driven_motions
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from fricmb.errors import IntegrationError, Interrupted
-from fricmb.integrate._stop import Watch, watching
+from fricmb.integrate.run.stop import Watch, watching
 from fricmb.solution import Solution
 
 

@@ -15,9 +15,9 @@ from fricmb._simulate._members import Member, resting
 from fricmb._simulate._method import find_integrator
 from fricmb.errors import SceneError
 from fricmb.integrate import Integrator, Problem, Start, Tolerance, Trajectory
-from fricmb.integrate._exact import Exact
-from fricmb.integrate._long import run_kept
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.methods.free_vibration import Exact
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.chunked_run import run_kept
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,8 +10,8 @@ import numpy as np
 
 from fricmb._simulate._members import Idle, Member
 from fricmb.integrate import OPEN, STICK, Samples, Start, Trajectory, Transitions
-from fricmb.integrate._long import KeptTrajectory, add_counters, take
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.run.chunked_run import KeptTrajectory, add_counters, take
 from fricmb.scene import Contact
 from fricmb.solution import IslandStats, Names
 from fricmb.values import value_of

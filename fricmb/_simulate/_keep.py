@@ -11,8 +11,8 @@ import numpy as np
 from fricmb._simulate._arguments import Span, number
 from fricmb.errors import SceneError
 from fricmb.integrate import Integrator, Problem, Start, Trajectory
-from fricmb.integrate._long import MEMORY, pieces, run_kept
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.chunked_run import MEMORY, pieces, run_kept
 from fricmb.solution import Solution
 
 #: Bytes of rows at a time where no dense output is wanted.

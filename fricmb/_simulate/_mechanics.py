@@ -14,7 +14,7 @@ from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of, row_scale
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import Samples, Start, Trajectory
-from fricmb.integrate._problem import LAW_CONSTANT, Codes, Floats, Ints
+from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
 from fricmb.scene import Scene
 from fricmb.solution import Flags, Motion, Names, Origin, builder

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fricmb.integrate import Samples, Start
-from fricmb.integrate._problem import Codes, Floats, Ints
+from fricmb.integrate.problem import Codes, Floats, Ints
 from fricmb.plan import Island, Plan, Selection
 from fricmb.scene import Contact, Joint, Scene
 from fricmb.solution import Flags, Names

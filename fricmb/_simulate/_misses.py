@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate._joined import JoinedRun
-from fricmb.integrate._long import KeptTrajectory
-from fricmb.integrate._problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
-from fricmb.integrate._row_run import RowTrajectory
-from fricmb.integrate._trajectory import Trajectory
+from fricmb.integrate.output.row_trajectory import RowTrajectory
+from fricmb.integrate.problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
+from fricmb.integrate.run.chunked_run import KeptTrajectory
+from fricmb.integrate.trajectory import Trajectory
 from fricmb.solution import Solution
 
 #: How much nearer than this many ``rtol`` of the largest value something passes for its outcome to be in doubt; the

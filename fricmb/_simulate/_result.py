@@ -14,7 +14,7 @@ from fricmb._simulate._mechanics import SceneMechanics
 from fricmb._simulate._misses import miss_notes
 from fricmb.errors import IntegrationError
 from fricmb.integrate import Samples, Trajectory
-from fricmb.integrate._problem import LAW_COEFFICIENT, Floats
+from fricmb.integrate.problem import LAW_COEFFICIENT, Floats
 from fricmb.solution import Piece, Run, Solution, Stats
 
 #: What counts as round-off at a slip speed of round-off, where the direction of slip is round-off, too: power of

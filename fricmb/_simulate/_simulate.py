@@ -111,8 +111,8 @@ def simulate(
         from fricmb._simulate._progress import progress_bar
         from fricmb._simulate._result import make_solution
         from fricmb._simulate._start import find_start
-        from fricmb.integrate._memory import Footprint
-        from fricmb.integrate._stop import Watch, watching
+        from fricmb.integrate.run.memory import Footprint
+        from fricmb.integrate.run.stop import Watch, watching
 
         mechanics = prepare(scene, parameters, observe)
         start, mechanics = find_start(mechanics, initial, number("t_start", t_start, "a finite time"))

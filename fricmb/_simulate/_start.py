@@ -12,7 +12,7 @@ from fricmb._simulate._arguments import number
 from fricmb._simulate._mechanics import SceneMechanics, mechanics_of
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import SLIP, Start
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.solution import Names, Solution
 
 KEYS = ("position", "velocity", "state")

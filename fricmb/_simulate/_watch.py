@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from numba.core import event
 
-from fricmb.integrate._cache_files import say
+from fricmb.integrate.compile.cache_files import say
 
 
 class CompileWatch:

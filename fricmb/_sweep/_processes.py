@@ -19,7 +19,7 @@ from multiprocessing import connection
 from typing import Any
 
 from fricmb.errors import FricmbError, IntegrationError
-from fricmb.integrate._cache_files import say
+from fricmb.integrate.compile.cache_files import say
 
 #: A run: from its parameters to its result.
 Run = Callable[[Mapping[str, Any]], Any]

@@ -12,7 +12,7 @@ from typing import Any
 
 from fricmb._sweep._fingerprint import Fingerprint
 from fricmb.errors import SceneError
-from fricmb.integrate._cache_files import say
+from fricmb.integrate.compile.cache_files import say
 
 _DIGEST = 32
 

@@ -11,7 +11,7 @@ import fricmb
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
 from fricmb.errors import IntegrationError, SceneError
-from fricmb.integrate._cache_files import say
+from fricmb.integrate.compile.cache_files import say
 from fricmb.solution import Solution
 
 

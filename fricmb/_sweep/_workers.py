@@ -13,7 +13,7 @@ from typing import Any
 from fricmb._simulate import simulate
 from fricmb._sweep._processes import lost, run_in_processes
 from fricmb.errors import FricmbError, IntegrationError, SceneError
-from fricmb.integrate._cache_files import say
+from fricmb.integrate.compile.cache_files import say
 from fricmb.solution import Solution
 
 

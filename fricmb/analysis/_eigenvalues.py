@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._steady import SteadySliding, steady_sliding
 from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, eigenpairs, follow, refine
+from fricmb.values import DIMENSIONS, Units
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
@@ -39,6 +40,8 @@ class Eigenvalues:
         The values again with those between them at which the modes were looked at, in the same direction: for curves.
     fine_eigenvalues : (n_fine, n_modes) complex
         The same modes there.
+    units : Units
+        Of the scene.
     """
 
     over: str
@@ -49,6 +52,7 @@ class Eigenvalues:
     critical: tuple[Crossing, ...]
     fine_values: Floats
     fine_eigenvalues: Complexes
+    units: Units = DIMENSIONS
 
     @property
     def growth(self) -> Floats:
@@ -140,6 +144,7 @@ def complex_eigenvalues(
         critical=tuple(replace(c, mode=stands[c.mode], kind=_kind(c, len(dofs))) for c in critical),
         fine_values=fine,
         fine_eigenvalues=between[:, kept],
+        units=scene.units,
     )
 
 
@@ -162,6 +167,8 @@ class StabilityMap:
         Angular frequency of the mode that has it.
     unstable : (n_a, n_b) int
         Number of growing modes, an oscillation counting once.
+    units : Units
+        Of the scene.
     """
 
     over: tuple[str, str]
@@ -169,6 +176,7 @@ class StabilityMap:
     growth: Floats
     frequency: Floats
     unstable: NDArray[np.int64]
+    units: Units = DIMENSIONS
 
 
 def stability_map(
@@ -214,7 +222,12 @@ def stability_map(
             growth[i, j], frequency[i, j] = found[most].real, abs(found[most].imag)
             unstable[i, j] = int(((found.real > 1e-7 * scale) & (found.imag >= -1e-12 * scale)).sum())
     return StabilityMap(
-        over=(over[0], over[1]), values=(first, second), growth=growth, frequency=frequency, unstable=unstable
+        over=(over[0], over[1]),
+        values=(first, second),
+        growth=growth,
+        frequency=frequency,
+        unstable=unstable,
+        units=scene.units,
     )
 
 

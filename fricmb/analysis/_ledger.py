@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.errors import unknown_name
-from fricmb.integrate._problem import NORMAL_LAW
+from fricmb.integrate.problem import NORMAL_LAW
 from fricmb.scene import Contact, Element, MatrixElement, ModalBody, Scene
 from fricmb.system import System, build
 from fricmb.system._evaluate import arguments, evaluate

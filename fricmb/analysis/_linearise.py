@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fricmb.analysis._errors import Floats
-from fricmb.integrate._problem import (
+from fricmb.integrate.problem import (
     LAW_COEFFICIENT,
     LAW_SMOOTH,
     NORMAL_CONSTANT,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.equations import function, law_template, numbers
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.laws import FrictionLaw
 
 
@@ -115,8 +115,9 @@ def _states(
 
 
 def cycle(
-    law: FrictionLaw, *, amplitude: float, period: float, normal_force: float = 1.0, cycles: int = 3, points: int = 400
-) -> Path:
+    law: FrictionLaw, *, amplitude: float, period: float, normal_force: float = 1.0, cycles: int = 3, points: int = 400,
+    rtol: float = 1e-7,
+) -> Path:  # fmt: skip
     """The last of several harmonic cycles of the displacement: the hysteresis loop of a law.
 
     Parameters
@@ -129,11 +130,13 @@ def cycle(
     cycles : int
     points : int
         On the last cycle.
+    rtol : float
+        Of the states.
     """
     omega = 2.0 * np.pi / period
     t = np.linspace(0.0, cycles * period, cycles * points + 1)
     whole = path(
-        law, lambda time: amplitude * omega * np.cos(omega * np.asarray(time)), t, normal_force=normal_force, rtol=1e-7
+        law, lambda time: amplitude * omega * np.cos(omega * np.asarray(time)), t, normal_force=normal_force, rtol=rtol
     )
     last = slice((cycles - 1) * points, None)
     moved = amplitude * np.sin(omega * t)
@@ -161,7 +164,9 @@ def settling_distance(law: FrictionLaw, normal_force: float = 1.0) -> float:
     return 1e-3
 
 
-def pull(law: FrictionLaw, *, normal_force: float = 1.0, speed: float = 1e-6, points: int = 800) -> Path:
+def pull(
+    law: FrictionLaw, *, normal_force: float = 1.0, speed: float = 1e-6, points: int = 800, rtol: float = 1e-7
+) -> Path:
     """Slow pulling from rest into slip: presliding, break-away, and the way to steady slip.
 
     Parameters
@@ -172,7 +177,9 @@ def pull(law: FrictionLaw, *, normal_force: float = 1.0, speed: float = 1e-6, po
     speed : float
         Of the pulling.
     points : int
+    rtol : float
+        Of the states.
     """
     distance = 20.0 * settling_distance(law, normal_force)
     t = np.linspace(0.0, 1.0, points + 1) ** 2 * distance / speed
-    return path(law, lambda time: np.full(np.shape(time), speed), t, normal_force=normal_force, rtol=1e-7)
+    return path(law, lambda time: np.full(np.shape(time), speed), t, normal_force=normal_force, rtol=rtol)

@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._linearise import Linearised, linearise
 from fricmb.errors import unknown_name
-from fricmb.integrate._problem import LAW_SMOOTH, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, Ints
 from fricmb.system import System, build
 
 if TYPE_CHECKING:

@@ -17,9 +17,9 @@ from fricmb.audit._statements import Statements
 from fricmb.audit._transitions import Changes
 from fricmb.audit._units import ROUND_OFF, Units, at_rest, units_of
 from fricmb.audit._weak import NODES, Weak
-from fricmb.integrate._long import KeptTrajectory, take
-from fricmb.integrate._problem import Floats, Ints
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.run.chunked_run import KeptTrajectory, take
+from fricmb.integrate.trajectory import Samples
 
 #: Tolerance that a run of fixed steps is measured by, which nobody has asked for.
 FIXED = 1e-3

@@ -10,7 +10,7 @@ from fricmb.audit._functions import Given, normal_function
 from fricmb.audit._motions import Moment, Row
 from fricmb.audit._parts import Found
 from fricmb.equations import numbers
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.scene import Contact
 from fricmb.values import value_of
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
-from fricmb.integrate._problem import Floats
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.trajectory import Samples
 
 #: Steps through which an error is followed, and times within each; at most so many errors.
 _STEPS, _WITHIN, _ERRORS = 60, 3, 200

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.audit._functions import Given, place_function
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.scene import Driven, LinearForm, Scene
 from fricmb.values import value_of
 

@@ -17,8 +17,8 @@ from fricmb.audit._release import _matrix
 from fricmb.audit._statements import Statements
 from fricmb.audit._transitions import opening
 from fricmb.audit._units import Units
-from fricmb.integrate._problem import Floats
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.trajectory import Samples
 
 #: Times after break-away, in times of growth, between which the motion is compared with its equations.
 _TIMES = (0.0, 0.3, 1.0, 2.0, 4.0)

@@ -10,7 +10,7 @@ import numpy as np
 from fricmb.audit._functions import Given, element_function, joint_function
 from fricmb.audit._motions import Moment, Row
 from fricmb.equations import numbers
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 from fricmb.scene import Body, Force, Gravity, Joint, MatrixElement, ModalBody, RigidBody, modal_matrices
 from fricmb.values import value_of
 

@@ -12,8 +12,8 @@ from fricmb.audit._motions import Moment, Row
 from fricmb.audit._parts import Found
 from fricmb.audit._statements import Statements
 from fricmb.audit._units import ROUND_OFF, Units
-from fricmb.integrate._problem import OPEN, SLIP, STICK, Floats
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import OPEN, SLIP, STICK, Floats
+from fricmb.integrate.trajectory import Samples
 
 #: A cone is searched at this many times of every step at most, and at so many in all.
 _PER_STEP, _IN_ALL = 8, 40_000

@@ -10,7 +10,7 @@ import numpy as np
 from fricmb.audit._motions import Moment, Row
 from fricmb.audit._parts import Found
 from fricmb.audit._statements import Statements
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 
 #: More degrees of freedom or rows than this are not solved for.
 MOST = 400

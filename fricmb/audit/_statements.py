@@ -9,8 +9,8 @@ import numpy as np
 from fricmb.audit._contacts import Presses, Rubs
 from fricmb.audit._motions import Frame, Moment
 from fricmb.audit._parts import Acting, Found, Joins, acting, masses
-from fricmb.integrate._problem import SLIP, Floats
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import SLIP, Floats
+from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Contact, Joint
 
 

@@ -13,9 +13,9 @@ from fricmb.audit._points import row_unit
 from fricmb.audit._release import holding
 from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
-from fricmb.integrate._long import take
-from fricmb.integrate._problem import OPEN, SLIP, STICK, Floats, Ints
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import OPEN, SLIP, STICK, Floats, Ints
+from fricmb.integrate.run.chunked_run import take
+from fricmb.integrate.trajectory import Samples
 
 #: Changes of mode that are looked at in all contacts, and places within a step at which a release is tried.
 _CHANGES, _PLACES = 80, 5

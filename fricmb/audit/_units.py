@@ -10,9 +10,9 @@ import numpy as np
 
 from fricmb.audit._motions import Moment
 from fricmb.audit._statements import Statements
-from fricmb.integrate._long import take
-from fricmb.integrate._problem import Floats
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.chunked_run import take
+from fricmb.integrate.trajectory import Samples
 
 #: Round-off of a value, relative to its size.
 ROUND_OFF = 4e-15

@@ -16,8 +16,8 @@ from fricmb.audit._fading import Fading
 from fricmb.audit._gather import LIMITS
 from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
-from fricmb.integrate._problem import Floats
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.trajectory import Samples
 
 #: Gauss and Kronrod's rule of 7 and 15 nodes on -1 to 1: nodes from 0 on, weights of both.
 _HALF = np.array([

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.bench._reference import Floats
-from fricmb.integrate._kernel import entry
+from fricmb.integrate.compile.kernel import entry
 
 # geometry, masses and forces under their published names
 _XA, _YA, _XB, _YB, _XC, _YC = -0.06934, -0.00227, -0.03635, 0.03273, 0.014, 0.072

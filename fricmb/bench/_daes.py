@@ -16,7 +16,7 @@ import numpy as np
 import fricmb as fm
 from fricmb.bench import _andrews
 from fricmb.bench._reference import Floats
-from fricmb.integrate._kernel import entry
+from fricmb.integrate.compile.kernel import entry
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

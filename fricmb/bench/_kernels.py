@@ -12,8 +12,8 @@ import math
 import numpy as np
 
 from fricmb.bench._reference import Floats, Ints
-from fricmb.integrate._call import call
-from fricmb.integrate._kernel import entry, kernel
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.template import call
 
 _I0 = 6
 A_PTR, A_IDX, P_PTR, P_IDX, R_PTR, R_IDX, D_PTR, D_IDX, ROW, LAW, Z_START, L_ADR, L_P, S_ADR, S_P = range(_I0, _I0 + 15)

@@ -23,7 +23,7 @@ from fricmb.bench._method import Method
 from fricmb.bench._peers import PeerError
 from fricmb.bench._reference import Floats
 from fricmb.bench._run import Run, Setting
-from fricmb.integrate._problem import LAW_CONSTANT
+from fricmb.integrate.problem import LAW_CONSTANT
 from fricmb.system import System, build
 
 #: Steps a unit of the reference's grid.

@@ -70,7 +70,7 @@ def _listen(stream: IO[bytes], answers: queue.Queue[Any]) -> None:
 def _ready() -> None:
     """Import what every cell needs: a fresh process is not to be charged for it."""
     import fricmb.bench.stability
-    import fricmb.integrate._kernel  # noqa: F401
+    import fricmb.integrate.compile.kernel  # noqa: F401
 
 
 #: Seconds that a process may take to start.

@@ -53,7 +53,8 @@ def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: ar
     if kind == "animation":
         sol.plot.animation(path, t_start=options.t_start, t_end=options.t_end, frames=options.frames)
     elif kind == "sound":
-        sol.plot.sound(str(name), path, seconds=options.seconds)
+        span = {"t_start": options.t_start, "t_end": options.t_end}
+        sol.plot.sound(str(name), path, seconds=options.seconds, **span)
     elif kind == "view":
         sol.plot.view(path, t_start=options.t_start, t_end=options.t_end)
     else:

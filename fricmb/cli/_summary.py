@@ -26,6 +26,7 @@ def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = N
         "scene": sol.scene.name,
         "t_start": sol.t_start,
         "t_end": sol.t_end,
+        "units": asdict(sol.units),
         "failure": None if failure is None else {"t": failure.t, "reason": failure.reason},
         "contacts": {
             name: {
@@ -34,6 +35,7 @@ def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = N
                     for kind in ("stick", "slip", "open", "close", "reversal")
                 },
                 "stick_share": stick_share(sol, name),
+                "rest_share": float(np.diff(sol.rest_spans(name)).sum() / (sol.t_end - sol.t_start)),
                 "friction_loss": float(energy.friction_loss_by_contact[k, -1]),
             }
             for k, name in enumerate(sol.contact_names)

@@ -188,14 +188,15 @@ def read_arguments(
 
 def module(title: str, lines: Sequence[str]) -> str:
     """A generated module around the statements of its kernel."""
-    from fricmb.integrate._straight import is_straight
+    from fricmb.integrate.compile.straight_line_codegen import is_straight
 
     head = f'"""{title}: derived by fricmb, do not edit."""\n\n'
     statements = "\n".join(lines)
     if lines and is_straight(statements):
         return (
-            f"{head}from fricmb.integrate._call import template\n"
-            f'from fricmb.integrate._straight import straight\n\nstatements = straight("""\n{statements}\n""")\n\n\n'
+            f"{head}from fricmb.integrate.compile.template import template\n"
+            "from fricmb.integrate.compile.straight_line_codegen import straight\n\n"
+            f'statements = straight("""\n{statements}\n""")\n\n\n'
             "@template\ndef kernel(x, p, out):\n    statements(x, p, out)\n"
         )
     text = "\n    ".join(lines) or "pass"
@@ -203,5 +204,5 @@ def module(title: str, lines: Sequence[str]) -> str:
     imports = f"from math import {', '.join(used)}\n\n" if used else ""
     return (
         f"{head}{imports}"
-        f"from fricmb.integrate._call import template\n\n\n@template\ndef kernel(x, p, out):\n    {text}\n"
+        f"from fricmb.integrate.compile.template import template\n\n\n@template\ndef kernel(x, p, out):\n    {text}\n"
     )

@@ -52,7 +52,7 @@ def _vector(value: Any, label: str, method: str) -> tuple[Any, ...]:
 
 
 def derive_joint(math: JointMath, title: str) -> tuple[dict[str, Any], str]:
-    """Facts and kernel of a joint type; the layout of the output is that of ``integrate._mechanism.Joints``."""
+    """Facts and kernel of a joint type; the layout of the output is that of ``integrate.mechanism.Joints``."""
     x, v, lam = math.x, math.v, math.lam
     G = [[sympy.diff(phi, a) for a in x] for phi in math.phi]
     second = [[[sympy.diff(g, b) for b in x] for g in row] for row in G]

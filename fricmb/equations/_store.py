@@ -1,8 +1,8 @@
 """Derived templates on disk: one file of facts and of the source of the compiled kernel, keyed by content.
 
 Several processes may start together on an empty cache: a file appears whole, and its content is given by its key.  It
-begins with a line that holds the digest of the rest (:mod:`fricmb.integrate._cache_files` says what becomes of files
-that are damaged and of folders that cannot be written).
+begins with a line that holds the digest of the rest (:mod:`fricmb.integrate.compile.cache_files` says what becomes of
+files that are damaged and of folders that cannot be written).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from fricmb.integrate._cache_files import CacheFiles
+from fricmb.integrate.compile.cache_files import CacheFiles
 
 #: Raised by one whenever the shape of the stored facts or of the kernels changes.
 FORMAT = 2

@@ -25,7 +25,7 @@ def formula(text: str, arguments: str = "p") -> Callable[..., Any]:
 @cache
 def _compiled(function: Callable[..., None]) -> Any:
     """The kernel of a law that brings its own, kept for good: its code is freed with the object."""
-    from fricmb.integrate._call import template
+    from fricmb.integrate.compile.template import template
 
     return template(function)
 
@@ -234,7 +234,7 @@ def _normal_text(law: Any) -> str:
 
 
 def joint_template(joint: Any) -> Template:
-    """Template of a joint's type; the layout of its output is that of ``integrate._mechanism.Joints``."""
+    """Template of a joint's type; the layout of its output is that of ``integrate.mechanism.Joints``."""
     n = len(joint.local_coordinates()) + len(joint.drives())
     bare, dry = joint.bare(), joint.friction is not None
     shape = ("joint", structure(bare), n, dry)

@@ -7,11 +7,10 @@ import lazy_loader as lazy
 
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
-    submodules=["dae"],
     submod_attrs={
-        "_choose": ["choose", "integrators"],
-        "_integrator": ["Integrator", "Tolerance"],
-        "_problem": [
+        "select": ["choose", "integrators"],
+        "integrator": ["Integrator", "Tolerance"],
+        "problem": [
             "EVENT_KINDS",
             "OPEN",
             "SLIP",
@@ -24,7 +23,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
             "Start",
             "Templates",
         ],
-        "_trajectory": ["Counters", "Samples", "Trajectory", "Transitions"],
-        "dae": ["solve_dae"],
+        "trajectory": ["Counters", "Samples", "Trajectory", "Transitions"],
     },
 )

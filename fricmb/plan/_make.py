@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fricmb.errors import unknown_name
-from fricmb.integrate._storage import is_narrow
+from fricmb.integrate.model.band_ordering import is_narrow
 from fricmb.plan._acting import links_of
 from fricmb.plan._graph import coupling, narrow_order
 from fricmb.plan._links import Flags, Links

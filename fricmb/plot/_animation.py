@@ -17,7 +17,7 @@ from fricmb.analysis import AnalysisError
 from fricmb.plot._contact import OPEN, SLIP, STICK
 from fricmb.plot._make_sketch import shown_span, sketch_of_run, sketch_of_scene
 from fricmb.plot._sketch import Floats, Link, Mark, Shape, Sketch, Touch, coil, pot
-from fricmb.plot._style import Paint, drawn, name_figure, paint
+from fricmb.plot._style import Paint, drawn, figure_of, name_figure, paint
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -33,8 +33,9 @@ class Drawing:
         self.sketch, self.ax, self.paint = sketch, ax, paint()
         self.unit = sketch.unit
         left, right, _, _ = sketch.view
-        points = 72.0 * ax.get_position().width * ax.get_figure(root=True).get_figwidth() / (right - left)
-        self.font = float(np.clip(0.36 * points * sketch.letters, 4.0, 8.0))
+        #: Points of print for each unit of length, and the size of names.
+        self.points = 72.0 * ax.get_position().width * figure_of([ax]).get_figwidth() / (right - left)
+        self.font = float(np.clip(0.36 * self.points * sketch.letters, 4.0, 8.0))
         self.floor()
         self.marks = [self._mark(mark) for mark in sketch.marks]
         self.links = [self._line(1.1, zorder=3) for _ in sketch.links]
@@ -256,9 +257,13 @@ def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
     sketch = sketch_of_scene(scene)
     figure, panel = canvas(sketch, ax)
     drawing = Drawing(sketch, panel)
+    taken: dict[Any, int] = {}
     for touch in sketch.touches:
-        at = sketch.where(touch.at, 0)
-        panel.annotate(touch.name, at, xytext=(6, -9), textcoords="offset points", fontsize=drawing.font - 1, zorder=11)
+        at = tuple(sketch.where(touch.at, 0).tolist())
+        k = taken[at] = taken.get(at, -1) + 1  # names at one place stand below one another
+        away = drawing.points * sketch.unit * (0.3 if touch.turns else 0.16) + 2.0
+        shift = (away, -away - (k + 0.4) * drawing.font)
+        panel.annotate(touch.name, at, xytext=shift, textcoords="offset points", fontsize=drawing.font - 1, zorder=11)
     return figure
 
 

@@ -58,7 +58,7 @@ class _Boxes:
         room = 0.75 if self.layout.above else 1.2
         largest = max((float(np.ptp(x, axis=1).max()) for n, x in moved.items() if n not in bands), default=0.0)
         self.scale = (room / largest if largest > 0.0 else 1.0) if magnify is None else magnify
-        places = []
+        places: list[Floats] = []
         for name in self.layout.order:
             x, y = self.layout.places[name]
             here = np.zeros((3, self.n))
@@ -107,7 +107,9 @@ class _Boxes:
             width, height = self.layout.sizes[a]
             for k, part in enumerate(parts):
                 share = (k + 0.5) / len(parts) - 0.5
-                spot = (share * 0.9 * width, -0.12 * height if self.layout.above else -height / 2 - 0.1)
+                # from above: below the name of the body, of a plate beside what lies on it
+                low = -0.38 if a in self.layout.under.values() else -0.12
+                spot = (share * 0.9 * width, low * height if self.layout.above else -height / 2 - 0.1)
                 ends = [self._point(part.a, a, spot, b), self._point(part.b, b, spot, a)]
                 # of a modal body the contact is at its point, of others somewhere on the body
                 at: Spot = (self.number[a], *spot) if ends[0] == self.number[a] else (ends[0], 0.0, 0.0)

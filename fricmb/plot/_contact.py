@@ -138,7 +138,7 @@ def draw_phases(sol: Solution, ax: Axes, units: Units, span: tuple[float, float]
     floor = _floor(length)
     short = length < floor
     for code, (label, marker, colour) in kinds.items():
-        style = {"color": colour, "linestyle": "none"}
+        style: dict[str, Any] = {"color": colour, "linestyle": "none"}
         if (here := mode == code).any():
             ax.plot(begin[here & ~short], length[here & ~short], marker, markersize=3, label=label, **style)
             ax.plot(begin[here & short], np.full((here & short).sum(), floor), 11, markersize=5, **style)

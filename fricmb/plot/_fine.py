@@ -18,6 +18,10 @@ Floats = NDArray[np.float64]
 Signals = Callable[["Solution"], list[Floats]]
 #: Points of a curve over the whole of what is drawn, beside those that the solution has.
 POINTS = 60_000
+#: Numbers that a refined run holds at most, whatever the size of the scene, and points that a curve has at least.
+_NUMBERS, _LEAST = 50_000_000, 4000
+#: Signals whose swings are counted, those that vary most.
+_COUNTED = 8
 #: Steps at the end of a run from which its period is taken, and the samples in them.
 _STEPS, _SAMPLES = 2000, 16_384
 #: A swing that is smaller than this share of the largest is none.
@@ -50,7 +54,7 @@ def refined(sol: Solution, t_start: float | None = None, t_end: float | None = N
     if t.size < 2:
         return sol
     gaps = np.diff(t)
-    parts = np.ceil(gaps * (POINTS / (t[-1] - t[0]))).astype(np.int64)
+    parts = np.ceil(gaps * (_most(sol, POINTS) / (t[-1] - t[0]))).astype(np.int64)
     first = np.cumsum(parts) - parts
     inside = np.repeat(t[:-1], parts) + (np.arange(parts.sum()) - np.repeat(first, parts)) * np.repeat(
         gaps / parts, parts
@@ -58,6 +62,12 @@ def refined(sol: Solution, t_start: float | None = None, t_end: float | None = N
     events = sol.events.t
     events = events[(events > t[0]) & (events < t[-1])]
     return sol.at(np.unique(np.concatenate((inside, t[-1:], events, np.nextafter(events, -np.inf)))))
+
+
+def _most(sol: Solution, wanted: int) -> int:
+    """As many points as wanted, fewer for a scene so large that its curves would fill the memory."""
+    rows = 2 * len(sol.dof_names) + 6 * len(sol.contact_names)
+    return max(min(wanted, _NUMBERS // max(1, rows)), min(wanted, _LEAST))
 
 
 def reversals(x: Floats, least: float) -> int:
@@ -82,10 +92,10 @@ def period_of(sol: Solution, signals: Signals, t_start: float, t_end: float) -> 
     steps = steps[(steps >= t_start) & (steps <= t_end)]
     begin = max(t_start, float(steps[-_STEPS])) if steps.size > _STEPS else t_start
     for low in (begin, t_start):
-        seen = sol.at(np.linspace(low, t_end, _SAMPLES))
-        values = signals(seen)
-        largest = max((float(np.ptp(x)) for x in values), default=0.0)
-        turns = max((reversals(x, _SWING * largest) for x in values), default=0) if largest > 0.0 else 0
+        seen = sol.at(np.linspace(low, t_end, _most(sol, _SAMPLES)))
+        values = sorted(signals(seen), key=np.ptp, reverse=True)[:_COUNTED]
+        largest = float(np.ptp(values[0])) if values else 0.0
+        turns = max(reversals(x, _SWING * largest) for x in values) if largest > 0.0 else 0
         if turns >= 3:
             return 2.0 * (t_end - low) / turns
     return None

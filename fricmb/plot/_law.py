@@ -18,6 +18,8 @@ from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
 Floats = NDArray[np.float64]
 #: A curve whose values differ by less than this share is a straight line.
 _FLAT = 2e-3
+#: Of the states in a loop: more than a picture shows.
+_RTOL = 1e-4
 
 
 @drawn
@@ -91,7 +93,7 @@ def loop_length(law: FrictionLaw, normal_force: float = 1.0) -> float:
 
     Of a law that gives way at once, the distance over which it settles.
     """
-    pulled = pull(law, normal_force=normal_force)
+    pulled = pull(law, normal_force=normal_force, rtol=_RTOL)
     held = np.abs(pulled.force)
     reached = int(np.argmax(held >= 0.63 * held.max()))
     length = float(pulled.displacement[reached])
@@ -124,9 +126,10 @@ def draw_coefficient(law: FrictionLaw, ax: Axes, speeds: Floats, normal_force: f
 
 
 def _label_few(ax: Axes, speeds: Floats) -> None:
-    """Labels of a logarithmic axis that stay apart: powers of ten, over few decades also 2 and 5 of each."""
+    """Labels of a logarithmic axis that stay apart: powers of ten, over few decades also numbers between them."""
     decades = np.log10(speeds[-1] / speeds[0])
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < 2.0 else (1.0,), numticks=8))
+    subs = (1.0, 2.0, 5.0) if decades < 1.2 else (1.0, 3.0) if decades < 2.0 else (1.0,)
+    ax.xaxis.set_major_locator(LogLocator(subs=subs, numticks=8))
     if decades < 2.0:
         ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
@@ -138,7 +141,8 @@ def draw_loops(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_f
     for i, share in enumerate(shares):
         amplitude = share * length
         top = 0.03 * speed * (1.0 if law.states else 30.0 * share)
-        loop = cycle(law, amplitude=amplitude, period=2 * np.pi * amplitude / top, normal_force=normal_force)
+        period = 2 * np.pi * amplitude / top
+        loop = cycle(law, amplitude=amplitude, period=period, normal_force=normal_force, cycles=2, rtol=_RTOL)
         x = loop.displacement / amplitude if not law.states else loop.displacement / length
         label = f"amplitude {_short(amplitude)}" if law.states else f"speed {_short(top)}"
         ax.plot(x, -loop.force / normal_force, label=label, **line(i))

@@ -57,6 +57,7 @@ class _Linkage:
         self.joints = list(scene.joints)
         self.sketch = Sketch(title=str(scene.name), t=t)
         self.number: dict[str, int] = {}
+        self._shift: dict[str, float] = {}  # how far wheels have been moved aside
         self.points = self._points()
         unit = self.sketch.unit = _PIN * self._extent()
         self.sketch.reach, self.sketch.letters = 2.2 * unit, 4.0 * unit
@@ -101,7 +102,7 @@ class _Linkage:
         return size if size > 0.0 else 4.0 * max(gyration, default=0.25)
 
     def _bodies(self) -> None:
-        places = []
+        places: list[Floats] = []
         for part in (*self.scene.bodies, *self.scene.driven):
             here = np.zeros((3, self.n))
             for row, letter in enumerate(("x", "y", "angle")):
@@ -160,6 +161,7 @@ class _Linkage:
         places, shapes = self.sketch.places, self.sketch.shapes
         wheels = [name for name, points in self.points.items() if not points and shapes[self.number[name]].marks]
         done: list[str] = []
+        shifts = self._shift
         for name in wheels:
             k = self.number[name]
             same = [o for o in done if np.allclose(places[self.number[o], :2], places[k, :2])]
@@ -167,15 +169,10 @@ class _Linkage:
                 last = self.number[same[-1]]
                 mesh = any(isinstance(j, Gear) and {owner(j.a), owner(j.b)} == {name, same[-1]} for j in self.joints)
                 reach = shapes[last].outline[:, 0].max() + shapes[k].outline[:, 0].max()
-                self._shift[name] = self._shift.get(same[-1], 0.0) + reach + (0.0 if mesh else 2.5 * self.sketch.unit)
+                shifts[name] = shifts.get(same[-1], 0.0) + reach + (0.0 if mesh else 2.5 * self.sketch.unit)
             done.append(name)
-        for name, shift in self._shift.items():
+        for name, shift in shifts.items():
             places[self.number[name], 0] += shift
-
-    @property
-    def _shift(self) -> dict[str, float]:
-        """How far wheels have been moved aside."""
-        return self.__dict__.setdefault("_shifts", {})
 
     # ---- ends
 

@@ -65,7 +65,7 @@ def _on_paper(sol: Solution, seen: Solution, name: str) -> Floats:
     turn = float(getattr(part, "angle", 0.0) or 0.0) * np.ones(seen.t.size)
     if isinstance(part.b.owner, RigidBody):
         turn = turn + seen[f"{part.b.owner.name}.angle"]
-    return np.array([np.cos(turn), np.sin(turn)]) * force[0]
+    return np.asarray(np.array([np.cos(turn), np.sin(turn)]) * force[0])
 
 
 def shown_span(sol: Solution, t_start: float | None, t_end: float | None) -> tuple[float, float, int]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb.plot._fine import span_of
 from fricmb.plot._style import drawn, figure_of, panels
 from fricmb.plot._units import Units
 
@@ -161,11 +162,21 @@ class SignalPlots:
 
         return animate(self.sol, path, t_start=t_start, t_end=t_end, frames=frames, fps=fps, magnify=magnify)
 
-    def sound(self, name: str, path: Any, *, seconds: float | None = None, speed: float = 1.0) -> Any:
+    def sound(
+        self,
+        name: str,
+        path: Any,
+        *,
+        seconds: float | None = None,
+        speed: float = 1.0,
+        t_start: float | None = None,
+        t_end: float | None = None,
+    ) -> Any:
         """Write a signal as a wav file that lasts ``seconds``, or in which ``speed`` units of time pass each second."""
         from fricmb.plot._sound import write_sound
 
-        return write_sound(self.sol, name, path, seconds=seconds, speed=speed)
+        span = span_of(self.sol, t_start, t_end)
+        return write_sound(self.sol, name, path, seconds=seconds, speed=speed, span=span)
 
     def view(self, path: Any, *, t_start: float | None = None, t_end: float | None = None) -> Any:
         """Write an interactive view of the run: one HTML file that needs no network; returns its path.

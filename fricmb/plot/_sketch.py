@@ -125,7 +125,7 @@ class Sketch:
 
     def where(self, spot: Spot, i: int) -> Floats:
         """A spot in picture i."""
-        return self.turned(spot[0], np.array([spot[1:]]), i)[0]
+        return np.asarray(self.turned(spot[0], np.array([spot[1:]]), i)[0])
 
     def angle(self, spot: Spot, i: int) -> float:
         """The angle of the shape that a spot is on, in picture i."""
@@ -144,6 +144,9 @@ class Sketch:
         """Fit the view to all shapes in all pictures, and to what stands at the ground."""
         corners = [np.array([mark.at[1:]]) for mark in self.marks if mark.at[0] == GROUND_SHAPE]
         corners += [np.array([end[1:]]) for link in self.links for end in (link.a, link.b) if end[0] == GROUND_SHAPE]
+        for mark in self.marks:
+            if mark.kind == "circle" and mark.at[0] == GROUND_SHAPE:
+                corners.append(np.array(mark.at[1:]) + box(2 * mark.size, 2 * mark.size))
         n = self.places.shape[2]
         for k, shape in enumerate(self.shapes):
             corners += [self.turned(k, shape.outline, i) for i in np.unique(np.linspace(0, n - 1, 60).astype(int))]
@@ -186,7 +189,7 @@ def _at_zero(value: Any) -> float:
 
 def box(width: float, height: float) -> Floats:
     """A rectangle about the origin."""
-    return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([width, height]) / 2
+    return np.asarray(np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([width, height]) / 2)
 
 
 def disc(radius: float, points: int = 40) -> Floats:

@@ -19,20 +19,27 @@ RATE = 44100
 _LEVEL, _FADE = 0.9, 0.01
 
 
-def write_sound(sol: Solution, name: str, path: str | PathLike[str], *, seconds: float | None, speed: float) -> Path:
-    """Write a signal of a run as a mono wav file of 16 bits.
+def write_sound(
+    sol: Solution,
+    name: str,
+    path: str | PathLike[str],
+    *,
+    seconds: float | None,
+    speed: float,
+    span: tuple[float, float],
+) -> Path:
+    """Write a signal of a stretch of a run as a mono wav file of 16 bits.
 
     ``seconds``: length of the sound, or None for ``speed`` units of time in each second.
     """
     from scipy.io import wavfile
 
-    span = sol.t_end - sol.t_start
-    length = span / speed if seconds is None else float(seconds)
+    length = (span[1] - span[0]) / speed if seconds is None else float(seconds)
     if not (np.isfinite(length) and 0.05 <= length <= 600.0):
         raise AnalysisError(
             f"sound: it would last {length:g} s; give seconds= from 0.05 to 600, or a speed= that leads there"
         )
-    t = np.linspace(sol.t_start, sol.t_end, int(length * RATE))
+    t = np.linspace(*span, int(length * RATE))
     x = signal_of(sol, name, t)
     x = x - x.mean()
     fade = np.minimum(1.0, np.minimum(np.arange(x.size), np.arange(x.size)[::-1]) / (_FADE * RATE))

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._style import DASHES, NAMED_CURVES, THIN, drawn, figure_of, finish, line, paint, panels
-from fricmb.plot._units import SCENE_UNITS, Units
+from fricmb.plot._units import Units
 
 if TYPE_CHECKING:
     from fricmb.analysis import Eigenvalues, StabilityMap
@@ -24,7 +24,7 @@ def eigenvalues(
     *,
     hz: bool = False,
     modes: list[int] | None = None,
-    units: Units = SCENE_UNITS,
+    units: Units | None = None,
 ) -> Figure:
     """Frequencies and growth rates of the modes over the parameter, critical values as vertical lines.
 
@@ -39,9 +39,10 @@ def eigenvalues(
         Frequencies (Hz where time is in s) instead of angular frequencies.
     modes : list of int, optional
         Only these.
-    units : Units
-        For the labels: ``scene.units``.
+    units : Units, optional
+        For the labels; default: those of the scene.
     """
+    units = found.units if units is None else units
     top, bottom = panels(2, None, height=5.2, sharex=True)
     count = found.eigenvalues.shape[1]
     chosen = list(range(count)) if modes is None else list(modes)
@@ -84,7 +85,7 @@ def _style(i: int) -> dict[str, Any]:
 
 
 @drawn
-def stability(found: StabilityMap, *, ax: Axes | None = None, units: Units = SCENE_UNITS) -> Figure:
+def stability(found: StabilityMap, *, ax: Axes | None = None, units: Units | None = None) -> Figure:
     """Largest growth rate over two parameters; the border of stability as a line, unstable modes hatched by number.
 
     Parameters
@@ -92,9 +93,10 @@ def stability(found: StabilityMap, *, ax: Axes | None = None, units: Units = SCE
     found : StabilityMap
         Of :func:`fricmb.analysis.stability_map`.
     ax : Axes, optional
-    units : Units
-        For the labels: ``scene.units``.
+    units : Units, optional
+        For the labels; default: those of the scene.
     """
+    units = found.units if units is None else units
     (panel,) = panels(1, ax, height=4.2)
     y, x = found.values
     largest = float(np.abs(found.growth).max()) or 1.0

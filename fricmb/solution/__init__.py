@@ -1,6 +1,6 @@
 """What a run found: motion, contacts, transitions, energies.  Knows nothing of scenes."""
 
-from fricmb.integrate._long import take
+from fricmb.integrate.run.chunked_run import take
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._names import Motion, Names

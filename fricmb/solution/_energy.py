@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 
 
 @dataclass(frozen=True)

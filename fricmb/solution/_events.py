@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate import EVENT_KINDS, Transitions
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
 
 
 @dataclass(frozen=True)

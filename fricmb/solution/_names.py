@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fricmb.errors import unknown_name
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
 
 
 @dataclass(frozen=True, kw_only=True)

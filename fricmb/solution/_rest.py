@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate import Samples
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 
 #: A relative velocity below this share of the contact's largest is none: rest, not a passage through 0.
 STILL = 1e-10

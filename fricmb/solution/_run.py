@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from fricmb.errors import FricmbError, SceneError
 from fricmb.integrate import Samples, Start, Trajectory
-from fricmb.integrate._long import concatenate, take
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.run.chunked_run import concatenate, take
 
 Flags = NDArray[np.bool_]
 #: A time this far outside a run, relative to the run's times, is its end: accumulated steps of a t_eval.

@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb.errors import IntegrationError, unknown_name
 from fricmb.integrate import Samples, Start
-from fricmb.integrate._problem import Codes, Floats
+from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Events
 from fricmb.solution._names import Names

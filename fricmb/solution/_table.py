@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import pandas
 
-    from fricmb.integrate._problem import Codes, Floats
+    from fricmb.integrate.problem import Codes, Floats
     from fricmb.solution._solution import Solution
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fricmb.equations import Template
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 
 #: A search looks at this many points at first, and at twice as many until it finds no more sign changes.
 _FIRST, _MOST = 512, 2**18

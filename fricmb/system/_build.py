@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
+from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.scene import Body, Element, Gravity, MatrixElement, ModalBody
 from fricmb.scene._lines import lines_of
 from fricmb.system import _motions

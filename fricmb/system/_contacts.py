@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.equations import Template, law_template, normal_template, numbers, signal_expression, value_expression
 from fricmb.errors import LawError
-from fricmb.integrate._problem import (
+from fricmb.integrate.problem import (
     LAW_COEFFICIENT,
     LAW_CONSTANT,
     LAW_SMOOTH,

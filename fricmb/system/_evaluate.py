@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._call import call
-from fricmb.integrate._kernel import entry
-from fricmb.integrate._problem import Floats, Templates
+from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.problem import Floats, Templates
 
 
 @entry

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.equations import element_groups
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
 from fricmb.scene import Element, Part, Scene
 from fricmb.scene._lines import MOVING, Rows, lines_of
 

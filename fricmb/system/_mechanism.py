@@ -10,8 +10,8 @@ import numpy as np
 
 from fricmb.equations import joint_template, numbers, place_template, signal_expression, uniform_signal
 from fricmb.errors import SceneError
-from fricmb.integrate._mechanism import Entries, Joints, Mechanism, Places
-from fricmb.integrate._problem import Floats, Linear, Problem, Signals, Start
+from fricmb.integrate.mechanism import Entries, Joints, Mechanism, Places
+from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import topology
 from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody
 from fricmb.system import _motions

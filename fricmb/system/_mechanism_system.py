@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from fricmb.errors import unknown_name
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Floats, Start
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.problem import Floats, Start
+from fricmb.integrate.trajectory import Samples
 from fricmb.system._evaluate import _each
 from fricmb.system._system import System
 from fricmb.system._tables import Row

@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.equations import Expression, Signal, signal_expression, uniform_signal
 from fricmb.errors import SceneError
-from fricmb.integrate._problem import Codes
+from fricmb.integrate.problem import Codes
 from fricmb.scene import Driven
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
 from fricmb.values import is_expression, value_of

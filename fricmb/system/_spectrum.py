@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 
 
 def check_mass(M: Floats, dofs: Sequence[str]) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
 from fricmb.system._lined import LinedStores
 from fricmb.system._structure import Store
 from fricmb.system._tables import Row

@@ -10,8 +10,8 @@ import numpy as np
 
 from fricmb.equations import Template, element_template, force_expression, force_terms, numbers, signal_expression
 from fricmb.errors import SceneError
-from fricmb.integrate._problem import Elements, Floats, Linear, SparseLinear
-from fricmb.integrate._sparse import Csr
+from fricmb.integrate.csr import Csr
+from fricmb.integrate.problem import Elements, Floats, Linear, SparseLinear
 from fricmb.scene import Body, Element, Force, MatrixElement, ModalBody, PointDamper, PointSpring, modal_matrices
 from fricmb.system._lined import Entries
 from fricmb.system._motions import Motions

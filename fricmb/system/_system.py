@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from fricmb.errors import unknown_name
-from fricmb.integrate._problem import NORMAL_LAW, Floats, Problem, Start, Templates
-from fricmb.integrate._sparse import Csr
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.csr import Csr
+from fricmb.integrate.problem import NORMAL_LAW, Floats, Problem, Start, Templates
+from fricmb.integrate.trajectory import Samples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._evaluate import arguments, evaluate
 from fricmb.system._lined import LinedStores

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fricmb.integrate._problem import Templates
+from fricmb.integrate.problem import Templates
 
 #: Kinds of entries of X = [t, q, v, u, u'].
 TIME, Q, V, U, DU = range(5)

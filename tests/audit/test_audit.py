@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 import fricmb as fm
-from fricmb.integrate._trajectory import SampledTrajectory
+from fricmb.integrate.trajectory import SampledTrajectory
 
 
 def oscillator(law, *, force=None, belt=None, normal_force=1.0, stiffness=4.0):

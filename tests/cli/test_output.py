@@ -118,7 +118,7 @@ def test_threads_are_set_before_libraries_look(noisy, tmp_path):
 
 
 def test_quiet_says_nothing(monkeypatch, capsys):
-    from fricmb.integrate._cache_files import say
+    from fricmb.integrate.compile.cache_files import say
 
     monkeypatch.delenv("FRICMB_QUIET", raising=False)
     say("a notice")

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from fricmb.equations import _store
-from fricmb.integrate import _cache_files
+from fricmb.integrate.compile import cache_files
 
 BRAKE = """
 import json, sys, time
@@ -138,7 +138,7 @@ def test_a_full_disk_leaves_them_in_memory(tmp_path, monkeypatch, capsys):
 
     monkeypatch.setenv("FRICMB_CACHE_DIR", str(tmp_path / "full"))
     monkeypatch.setattr(_store._files, "_other", None)
-    monkeypatch.setattr(_cache_files, "_write", full)
+    monkeypatch.setattr(cache_files, "_write", full)
     key = _store.key("test", "full")
     _store.write(key, {"n": 1}, None)
     assert _store.read(key) == {"n": 1, "compiled": False}
@@ -168,15 +168,15 @@ def test_without_a_home_files_are_kept_for_the_process(monkeypatch, capsys):
     monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: f"~/.cache/{name}")
     for name in ("FRICMB_CACHE_DIR", "NUMBA_CACHE_DIR"):
         monkeypatch.delenv(name, raising=False)
-    for one in (_cache_files._folder, _cache_files._temporary):
+    for one in (cache_files._folder, cache_files._temporary):
         one.cache_clear()
     try:
-        found = [_cache_files.cache_folder(room) for room in ("kernels", "templates", "kernels")]
+        found = [cache_files.cache_folder(room) for room in ("kernels", "templates", "kernels")]
         assert all(path.is_absolute() and path.is_dir() for path in found)
         assert found[0] == found[2]
         assert "no home folder" in capsys.readouterr().err
     finally:
-        for one in (_cache_files._folder, _cache_files._temporary):
+        for one in (cache_files._folder, cache_files._temporary):
             one.cache_clear()
 
 
@@ -184,8 +184,8 @@ SAME = """
 import sys
 from fricmb.equations import _store
 source = "'Title %s.'" % sys.argv[1] + '''
-from fricmb.integrate._call import template
-from fricmb.integrate._straight import straight
+from fricmb.integrate.compile.template import template
+from fricmb.integrate.compile.straight_line_codegen import straight
 statements = straight("out[0] = 2.0*x[0]")
 @template
 def kernel(x, p, out):
@@ -196,7 +196,7 @@ _store.write(key, {}, source)
 import numpy as np
 x, out = np.array([3.0]), np.zeros(1)
 _store.function(_store.address(key))(x, x, out)
-from fricmb.integrate._kernel_cache import _files
+from fricmb.integrate.compile.kernel_cache import _files
 print(out[0], len(list(_files.folder.glob("*.nbc"))))
 """
 

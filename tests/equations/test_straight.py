@@ -9,7 +9,7 @@ import pytest
 from fricmb import laws
 from fricmb.equations import _store, function
 from fricmb.equations._templates import law_template
-from fricmb.integrate._straight import is_straight
+from fricmb.integrate.compile.straight_line_codegen import is_straight
 
 SMOOTH = [n for n in laws.names if getattr(laws, n).example().kind == "smooth" and n != "Contensou"]
 

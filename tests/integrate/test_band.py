@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate import _storage
-from fricmb.integrate._sparse import Csr
-from fricmb.integrate._storage import band_order
+from fricmb.integrate.csr import Csr
+from fricmb.integrate.model import band_ordering
+from fricmb.integrate.model.band_ordering import band_order
 
 _spec = importlib.util.spec_from_file_location("reference", Path(__file__).parents[1] / "reference.py")
 reference = importlib.util.module_from_spec(_spec)
@@ -20,8 +20,8 @@ _spec.loader.exec_module(reference)
 @pytest.fixture
 def bands(monkeypatch):
     """Every structure is kept as a band, however small."""
-    monkeypatch.setattr(_storage, "SMALL", 1)
-    monkeypatch.setattr(_storage, "NARROW", 1e9)
+    monkeypatch.setattr(band_ordering, "SMALL", 1)
+    monkeypatch.setattr(band_ordering, "NARROW", 1e9)
 
 
 def pattern(n, pairs):
@@ -76,7 +76,7 @@ def test_nonlinear_elements_and_dampers_find_their_places_in_the_band(method, mo
     parts += [fm.Contact("sole", blocks[7], belt, law=fm.laws.Coulomb(mu_s=0.4, mu_k=0.3), normal_force=1.0)]
     scene = fm.Scene("cubic chain", [*blocks, belt, *parts])
     wide = fm.simulate(scene, t_end=20.0, rtol=1e-9, method=method)
-    monkeypatch.setattr(_storage, "SMALL", n + 1)
+    monkeypatch.setattr(band_ordering, "SMALL", n + 1)
     dense = fm.simulate(fm.Scene("again", scene.parts), t_end=20.0, rtol=1e-9, t_eval=wide.t, method=method)
     assert len(wide.events) == len(dense.events) > 2
     assert wide.q == pytest.approx(dense.q, abs=1e-7)

@@ -10,8 +10,8 @@ import pytest
 import fricmb as fm
 from fricmb.bench._closed import free_oscillator
 from fricmb.bench.stability._structures import stiff_pair
-from fricmb.integrate._choose import Guarded
 from fricmb.integrate.collocation import Collocation
+from fricmb.integrate.select import Guarded
 
 
 def row(n, law, *, axes="x", contacts=None, **contact):

@@ -14,7 +14,7 @@ from outer import outer
 print(outer(2.0), sum(outer.stats.cache_misses.values()))
 """
 INNER = """
-from fricmb.integrate._kernel import kernel
+from fricmb.integrate.compile.kernel import kernel
 FACTOR = {factor}
 @kernel
 def inner(x: float) -> float:
@@ -22,7 +22,7 @@ def inner(x: float) -> float:
     return FACTOR * x + {shift}
 """
 OUTER = """
-from fricmb.integrate._kernel import entry
+from fricmb.integrate.compile.kernel import entry
 from inner import inner
 @entry
 def outer(x: float) -> float:
@@ -91,7 +91,7 @@ def test_a_folder_that_cannot_be_made_falls_back(run):
 
 def test_an_attribute_is_no_global_of_the_same_name():
     """What the module keeps under that name while it runs is not in the kernel, and does not make it a new one."""
-    from fricmb.integrate._content import _Reader
+    from fricmb.integrate.compile.content import _Reader
 
     def lines(kept):
         around = {"kept": kept, "factor": 3.0}
@@ -108,7 +108,7 @@ def test_an_attribute_is_no_global_of_the_same_name():
 def test_a_run_by_bdf_compiles_nothing_the_second_time():
     program = (
         "import fricmb as fm, sys; fm.simulate(fm.models.belt_oscillator(), t_end=1.0, method='bdf');"
-        "kernels = [m for n, m in sys.modules.items() if n == 'fricmb.integrate._bdf'];"
+        "kernels = [m for n, m in sys.modules.items() if n == 'fricmb.integrate.methods.bdf'];"
         "print(sum(kernels[0].drive_bdf.stats.cache_misses.values()))"
     )
     run = [sys.executable, "-c", program]

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from numba import njit
 
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._places import CORE, FURTHER, LAPACK, PLACES
-from fricmb.integrate._problem import Codes, Floats, Floats2, Floats3, Ints
-from fricmb.integrate._room import Room, block, block_address, room, room_type
+from fricmb.integrate.compile.block import block, block_address
+from fricmb.integrate.compile.block_places import CORE, FURTHER, LAPACK, PLACES
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import Room, room, room_type
+from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 
 
 class Inner(NamedTuple):
@@ -137,7 +138,7 @@ def test_only_a_name_in_the_table_becomes_a_block():
 
 def test_a_block_is_called_through_the_table_of_addresses():
     # "complete" stands for any block: here it is one of this file, with arguments and result of its own
-    import fricmb.integrate._room as module
+    import fricmb.integrate.compile.room as module
 
     kept = dict(module._blocks)
     try:
@@ -163,7 +164,7 @@ def test_a_block_is_called_through_the_table_of_addresses():
 
 
 def test_addresses_hold_lapack_and_what_is_asked_for():
-    import fricmb.integrate._instant  # noqa: F401  (where it is defined)
+    import fricmb.integrate.model.accelerations  # noqa: F401  (where it is defined)
 
     table = addresses("complete")
     assert table.dtype == np.int64

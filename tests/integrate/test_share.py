@@ -4,25 +4,25 @@ import os
 import subprocess
 import sys
 
-from fricmb.integrate import _share
-from fricmb.integrate._collect import Collector  # noqa: F401  (defines the blocks)
-from fricmb.integrate._room import block_address, block_module
+from fricmb.integrate.compile import parallel_compile
+from fricmb.integrate.compile.block import block_address, block_module
+from fricmb.integrate.methods.run_setup import Collector  # noqa: F401  (defines the blocks)
 
 BLOCKS = ("mark_rest", "find_open", "complete")
 
 
 def test_addresses_come_in_the_order_of_the_names():
-    assert _share.shared_addresses(BLOCKS) == [block_address(name) for name in BLOCKS]
-    assert _share.shared_addresses(()) == []
+    assert parallel_compile.shared_addresses(BLOCKS) == [block_address(name) for name in BLOCKS]
+    assert parallel_compile.shared_addresses(()) == []
 
 
 def test_a_pool_or_a_user_who_says_so_compiles_alone(monkeypatch):
     monkeypatch.setenv("FRICMB_COMPILE_PROCESSES", "1")
-    assert _share._start_helper(BLOCKS) is None
+    assert parallel_compile._start_helper(BLOCKS) is None
 
 
 def test_a_second_process_fills_the_cache(tmp_path):
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "FRICMB_COMPILE_PROCESSES": "1"}
     arguments = [f"{block_module(name)}:{name}" for name in BLOCKS[:1]]
-    subprocess.run([sys.executable, "-c", _share._COMMAND, *arguments], env=environment, check=True)
+    subprocess.run([sys.executable, "-c", parallel_compile._COMMAND, *arguments], env=environment, check=True)
     assert list(tmp_path.rglob("*mark_rest*.nbc"))

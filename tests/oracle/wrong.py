@@ -14,8 +14,8 @@ import sympy
 
 import fricmb as fm
 from fricmb.audit import Audit
-from fricmb.integrate._problem import EVENT_KINDS
-from fricmb.integrate._trajectory import SampledTrajectory, Transitions
+from fricmb.integrate.problem import EVENT_KINDS
+from fricmb.integrate.trajectory import SampledTrajectory, Transitions
 
 RTOL = 1e-6
 #: Amounts that are tried, from the smallest on.

@@ -124,6 +124,14 @@ def test_gears_touch():
     assert apart == pytest.approx(sum(radii))
 
 
+def test_what_stands_at_the_ground_is_in_view():
+    bead = fm.RigidBody("bead", mass=1.0, inertia=0.01, position=(1.0, 0.0))
+    sketch = sketch_of_scene(fm.Scene("ring", [bead, fm.RollerOnCircle("ring", bead, radius=1.0)]))
+    left, right, bottom, top = sketch.view
+    assert left < -1.0 < 1.0 < right
+    assert bottom < -1.0 < 1.0 < top
+
+
 def test_coils_and_pots_reach_both_ends(belt):
     sketch = sketch_of_run(belt, np.array([0.0, 10.0]))
     for link in sketch.links:

@@ -95,8 +95,25 @@ def test_command_draws_the_units_of_the_run(tmp_path, capsys, monkeypatch):
         "scene = fm.Scene('m', [m, fm.Spring('k', m, axis='x', stiffness=1.0)])\n"
         "t_end = 2.0\nunits = fm.Units('s', 'm', 'N')\n"
     )
-    assert main(["run", str(file), "--no-plots", "--out", str(tmp_path / "out")]) == 0
+    assert main(["run", str(file), "--format", "svg", "--out", str(tmp_path / "out")]) == 0
+    pictures = {path.name for path in (tmp_path / "out").glob("*.*") if path.suffix in (".svg", ".png")}
+    assert pictures == {"velocities.svg", "phase.svg", "energy.svg"}
     seen = []
     monkeypatch.setattr(mpl.figure.Figure, "savefig", lambda self, *a, **k: seen.append(self.axes[0].get_ylabel()))
     assert main(["plot", str(tmp_path / "out" / "solution.npz"), "velocities"]) == 0
     assert seen == ["velocity [m/s]"]
+
+
+def test_command_writes_lines_and_hertz_on_dark_pages(scene, tmp_path, capsys):
+    sol = fm.simulate(scene, t_end=20.0, rtol=1e-6)
+    sol.save(tmp_path / "run.npz")
+    out = tmp_path / "spectrum.svg"
+    command = ["plot", str(tmp_path / "run.npz"), "spectrum", "--of", "mass.x", "--hz", "--theme", "dark"]
+    assert main([*command, "--out", str(out), "--t-end", "10"]) == 0
+    text = out.read_text()
+    assert "#14181e" in text  # the page
+    assert main(["plot", str(tmp_path / "run.npz"), "energy", "--hz"]) == 2
+    assert "--hz: only spectrum, spectrogram, orders have frequencies" in capsys.readouterr().err
+    path = ["path", "--of", "mass.x,mass.x", "--out", str(tmp_path / "p.pdf")]
+    assert main(["plot", str(tmp_path / "run.npz"), *path]) == 0
+    assert (tmp_path / "p.pdf").read_bytes()[:4] == b"%PDF"

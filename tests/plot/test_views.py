@@ -58,7 +58,7 @@ def test_stability_pictures():
     assert bottom.lines[0].get_ydata()[given] == pytest.approx(found.growth[:, 0])
     omega = np.sqrt(1.0 - found.fine_eigenvalues[:, 0].real ** 2)  # |eigenvalue| = 1: the mass is held by its spring
     assert top.lines[0].get_ydata() == pytest.approx(omega, abs=1e-9)
-    hertz = fm.plot.eigenvalues(found, hz=True, units=scene.units).axes[0]
+    hertz = fm.plot.eigenvalues(found, hz=True).axes[0]
     assert hertz.lines[0].get_ydata() == pytest.approx(omega / (2 * np.pi), abs=1e-9)
     assert hertz.get_ylabel() == "frequency [1]"
     assert bottom.lines[1].get_xdata()[0] == found.critical[0].value

@@ -8,9 +8,9 @@ import pytest
 from scipy.linalg import expm
 
 import fricmb as fm
-from fricmb.integrate._integrator import Integrator
-from fricmb.integrate._problem import Start
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.integrator import Integrator
+from fricmb.integrate.problem import Start
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
 
 class ExactTrajectory(Trajectory):

@@ -15,11 +15,11 @@ from scipy.integrate import solve_ivp
 
 import fricmb as fm
 from fricmb._simulate import _arguments
-from fricmb.integrate import _memory
-from fricmb.integrate._integrator import Integrator
-from fricmb.integrate._kernel import entry
-from fricmb.integrate._radau import Radau
-from fricmb.integrate._stop import Watch, stopped, watched, watching
+from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.integrator import Integrator
+from fricmb.integrate.methods.radau import Radau
+from fricmb.integrate.run import memory
+from fricmb.integrate.run.stop import Watch, stopped, watched, watching
 
 METHODS = ("auto", "bdf", "radau", "collocation", "taylor", "timestepping", "bdf2-paper")
 VALUES = {
@@ -216,9 +216,9 @@ def test_threads_have_limits_of_their_own():
 
 def test_a_result_that_finds_no_room_ends_the_run(monkeypatch):
     held = iter(np.arange(0.0, 1e12, 1e9))
-    monkeypatch.setattr(_memory, "EVERY", 0.0)
-    monkeypatch.setattr(_memory, "taken", lambda: next(held))
-    monkeypatch.setattr(_memory, "available", lambda: 3e9)
+    monkeypatch.setattr(memory, "EVERY", 0.0)
+    monkeypatch.setattr(memory, "taken", lambda: next(held))
+    monkeypatch.setattr(memory, "available", lambda: 3e9)
     with pytest.raises(fm.IntegrationError, match=r"taken .* GB and only 3 GB are left") as caught:
         fm.simulate(endless(), t_end=1e8, method="radau")
     assert caught.value.partial.t[-1] > 0.0

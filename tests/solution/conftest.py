@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fricmb.integrate._problem import Contacts, Elements, Linear, Problem, Signals, Start
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.problem import Contacts, Elements, Linear, Problem, Signals, Start
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 from fricmb.solution import Motion, Names, Origin, Piece, Run, Solution, Stats, builder
 
 X0, FRICTION = 0.95, 0.1

@@ -7,7 +7,7 @@ import sympy
 
 import fricmb as fm
 from fricmb.equations import derivations, function
-from fricmb.integrate._problem import (
+from fricmb.integrate.problem import (
     LAW_COEFFICIENT,
     LAW_CONSTANT,
     LAW_SMOOTH,

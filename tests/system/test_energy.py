@@ -6,7 +6,7 @@ import sympy
 from scipy.integrate import solve_ivp
 
 import fricmb as fm
-from fricmb.integrate._trajectory import Samples
+from fricmb.integrate.trajectory import Samples
 from fricmb.system import build
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.bench._reference import Floats
-from fricmb.integrate._orders import MAX_ORDER, backward_polynomial
-from fricmb.integrate._tableau import radau
+from fricmb.integrate.methods.bdf_stability import MAX_ORDER, backward_polynomial
+from fricmb.integrate.step.tableau import radau
 
 Complexes = NDArray[np.complex128]
 ComplexFloats = NDArray[np.complexfloating[Any, Any]]

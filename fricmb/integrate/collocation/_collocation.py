@@ -11,11 +11,6 @@ from typing import ClassVar
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate._integrator import Integrator, Tolerance
-from fricmb.integrate._pack import packed_of
-from fricmb.integrate._problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
-from fricmb.integrate._stop import ended, watched
-from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
 from fricmb.integrate.collocation._general_prepare import free_blocks
 from fricmb.integrate.collocation._general_run import run_general
 from fricmb.integrate.collocation._nodes import Z_EXACT
@@ -42,6 +37,11 @@ from fricmb.integrate.collocation._single import (
 )  # fmt: skip
 from fricmb.integrate.collocation._structure import NoBlocks
 from fricmb.integrate.collocation._trajectory import SingleRun
+from fricmb.integrate.integrator import Integrator, Tolerance
+from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
+from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
 
 _FAILURES = {
     UNDERFLOW: "the step fell to nothing: the direction of slip cannot be resolved",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
+from fricmb.integrate.compile.kernel import kernel
 
 
 @kernel

@@ -2,15 +2,6 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._exact_step import INPUTS, OUTPUTS, UNKNOWN
-from fricmb.integrate._field import Scratch, set_state, set_time
-from fricmb.integrate._instant import State, slip_speed
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._onestep import Accuracy, OneStep, newton_tolerances, widest
-from fricmb.integrate._pack import Packed
-from fricmb.integrate._ports import solve_ports
-from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, STICK, Ints
-from fricmb.integrate._room import block
 from fricmb.integrate.collocation._general_blocks import (
     end_blocks,
     free_outputs,
@@ -21,6 +12,15 @@ from fricmb.integrate.collocation._general_blocks import (
 )
 from fricmb.integrate.collocation._general_ports import exact_ports
 from fricmb.integrate.collocation._layout import NODE, TABLEAU, VECTORS
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.accelerations import State, slip_speed
+from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, STICK, Ints
+from fricmb.integrate.step.contact_newton import solve_ports
+from fricmb.integrate.step.exact_structure import INPUTS, OUTPUTS, UNKNOWN
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, widest
 
 
 @kernel

@@ -2,14 +2,6 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._exact_step import INPUTS, IS_MODAL, OUTPUTS, RUNGS, STIFF_AT, UNKNOWN, Exact, rung_below
-from fricmb.integrate._field import Scratch, belt_velocity, gather, set_time
-from fricmb.integrate._instant import State
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._onestep import OneStep
-from fricmb.integrate._pack import Packed
-from fricmb.integrate._problem import STICK, Floats, Ints
-from fricmb.integrate._room import block
 from fricmb.integrate.collocation._layout import (
     B0,
     B1,
@@ -32,6 +24,14 @@ from fricmb.integrate.collocation._layout import (
     S,
 )
 from fricmb.integrate.collocation._weights import free_weights, port_weights
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.forces import Scratch, belt_velocity, gather, set_time
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import STICK, Floats, Ints
+from fricmb.integrate.step.exact_structure import INPUTS, IS_MODAL, OUTPUTS, RUNGS, STIFF_AT, UNKNOWN, Exact, rung_below
+from fricmb.integrate.step.radau_step import OneStep
 
 #: Places in ``Exact.bs``: u, v + e0, acceleration, its rate, e0 and e1 of the constant load; gains of u and v.
 U0, V0, A0, K0, LOAD_E0, LOAD_E1, DU, DV = range(8)

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._exact_step import INPUTS, IS_MODAL, STIFF_AT, Exact
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats, Floats2
 from fricmb.integrate.collocation._general_blocks import A0, K0, V0
 from fricmb.integrate.collocation._layout import (
     B0,
@@ -25,6 +22,9 @@ from fricmb.integrate.collocation._layout import (
     WITH_START,
 )
 from fricmb.integrate.collocation._weights import radau_block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats, Floats2
+from fricmb.integrate.step.exact_structure import INPUTS, IS_MODAL, STIFF_AT, Exact
 
 
 @kernel

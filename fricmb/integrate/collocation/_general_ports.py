@@ -12,19 +12,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._call import call
-from fricmb.integrate._exact_step import ELEMENT_F, ELEMENT_X, INPUTS, NORMAL_X, SAFETY
-from fricmb.integrate._field import Scratch, gather
-from fricmb.integrate._instant import State
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._lapack import solve_rows
-from fricmb.integrate._onestep import Accuracy, OneStep
-from fricmb.integrate._pack import Packed
-from fricmb.integrate._ports import solve_ports
-from fricmb.integrate._problem import OPEN, Floats3, Ints
-from fricmb.integrate._room import block
-from fricmb.integrate._stop import stopped
 from fricmb.integrate.collocation._general_blocks import all_outputs
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lapack import solve_rows
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.forces import Scratch, gather
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import OPEN, Floats3, Ints
+from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.contact_newton import solve_ports
+from fricmb.integrate.step.exact_structure import ELEMENT_F, ELEMENT_X, INPUTS, NORMAL_X, SAFETY
+from fricmb.integrate.step.radau_step import Accuracy, OneStep
 
 
 @kernel

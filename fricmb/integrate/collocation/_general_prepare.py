@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._exact_step import RUNGS, UNIT_RUNG, Exact
-from fricmb.integrate._kept import kept
-from fricmb.integrate._problem import Floats, Problem, Templates
-from fricmb.integrate._room import room
 from fricmb.integrate.collocation._nodes import TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation._structure import Blocks, blocks
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.problem import Floats, Problem, Templates
+from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,30 +7,30 @@ from functools import lru_cache
 
 import numpy as np
 
-from fricmb.integrate._advance import Clock
-from fricmb.integrate._collect import Collector, accuracy, run_loop
-from fricmb.integrate._drive import drive
-from fricmb.integrate._exact_step import Exact
-from fricmb.integrate._factor import Factor
-from fricmb.integrate._field import scratch
-from fricmb.integrate._instant import State
-from fricmb.integrate._integrator import Tolerance
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._onestep import OneStep
-from fricmb.integrate._pack import packed_of
-from fricmb.integrate._places import CORE, PLACES
-from fricmb.integrate._plain_ports import plain_ports
-from fricmb.integrate._port_state import port_state
-from fricmb.integrate._problem import LAW_CONSTANT, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
-from fricmb.integrate._room import room
-from fricmb.integrate._row_run import RowTrajectory
-from fricmb.integrate._stages import Stages
-from fricmb.integrate._tableau import radau
-from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
 from fricmb.integrate.collocation._general_attempt import exact_attempt
 from fricmb.integrate.collocation._general_prepare import exact_of
 from fricmb.integrate.collocation._general_sample import sample_exact
 from fricmb.integrate.collocation._general_step import exact_error, exact_finish, exact_record
+from fricmb.integrate.compile.block_places import CORE, PLACES
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.integrator import Tolerance
+from fricmb.integrate.methods.attempt_step import Clock
+from fricmb.integrate.methods.run_setup import Collector, accuracy, run_loop
+from fricmb.integrate.methods.time_loop import drive
+from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.forces import scratch
+from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.output.row_trajectory import RowTrajectory
+from fricmb.integrate.problem import LAW_CONSTANT, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
+from fricmb.integrate.step.contact_unknowns import port_state
+from fricmb.integrate.step.coulomb_newton import plain_ports
+from fricmb.integrate.step.exact_structure import Exact
+from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.stages import Stages
+from fricmb.integrate.step.step_matrix import Factor
+from fricmb.integrate.step.tableau import radau
+from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
 
 #: Blocks that stand in for those of plain Radau IIA, and those that are not needed then.
 STANDS_FOR = {

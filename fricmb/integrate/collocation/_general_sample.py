@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._exact_step import Exact
-from fricmb.integrate._field import Scratch, set_state, set_time
-from fricmb.integrate._hermite import point_along_slip, relative_velocity, set_window_around, write_sample
-from fricmb.integrate._instant import State, complete
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._pack import Packed
-from fricmb.integrate._problem import Codes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.collocation._general_blocks import load_at_start, start_blocks
 from fricmb.integrate.collocation._general_dense import gains_at, input_series
 from fricmb.integrate.collocation._layout import MONOMIAL, WITH_START
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.model.accelerations import State, complete
+from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.output.hermite_output import point_along_slip, relative_velocity, set_window_around, write_sample
+from fricmb.integrate.problem import Codes2, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.step.exact_structure import Exact
 
 
 @kernel

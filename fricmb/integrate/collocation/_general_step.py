@@ -6,23 +6,23 @@ import math
 
 import numpy as np
 
-from fricmb.integrate._exact_step import CAP, FASTEST_BLOCK, INPUTS, LEDGER, SAFETY, STIFF_AT
-from fricmb.integrate._field import Scratch, powers, set_state, set_time
-from fricmb.integrate._growth import too_long
-from fricmb.integrate._instant import State, complete, slip_speed
-from fricmb.integrate._jumps import jump_error
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._law_defect import law_defect
-from fricmb.integrate._onestep import Accuracy, OneStep, state_noise, widest
-from fricmb.integrate._pack import Packed
-from fricmb.integrate._problem import LAW_SMOOTH, SLIP, STICK, Floats, Ints
-from fricmb.integrate._room import block
-from fricmb.integrate._rows import Rows
-from fricmb.integrate._triggers import force_noise
 from fricmb.integrate.collocation._fundamental import two_sum
 from fricmb.integrate.collocation._general_blocks import BY_VELOCITY_1
 from fricmb.integrate.collocation._general_dense import gains_at, input_series, is_stiff, stiff_nodes
 from fricmb.integrate.collocation._layout import DAMP, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.accelerations import State, complete, slip_speed
+from fricmb.integrate.model.forces import Scratch, powers, set_state, set_time
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.output.recorder import Rows
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Ints
+from fricmb.integrate.step.event_functions import force_noise
+from fricmb.integrate.step.exact_structure import CAP, FASTEST_BLOCK, INPUTS, LEDGER, SAFETY, STIFF_AT
+from fricmb.integrate.step.force_jumps import jump_error
+from fricmb.integrate.step.law_defect import law_defect
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
+from fricmb.integrate.step.slip_growth import too_long
 
 #: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
 SMOOTH = 0.03

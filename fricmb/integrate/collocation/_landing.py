@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_STICK, Ints
-from fricmb.integrate._room import block
 from fricmb.integrate.collocation._fundamental import two_sum
 from fricmb.integrate.collocation._layout import (
     B0,
@@ -62,6 +59,9 @@ from fricmb.integrate.collocation._step import (
     transfer_weights,
     weigh,
 )  # fmt: skip
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, Ints
 
 
 @kernel

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats, Ints, Problem
+from fricmb.integrate.problem import Floats, Ints, Problem
 
 #: ``states(row, tau)`` gives t, q, v, F at times since the start of rows.
 States = Callable[[Ints, Floats], tuple[Floats, Floats, Floats, Floats]]

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, STICK, Ints
-from fricmb.integrate._room import block
 from fricmb.integrate.collocation._fundamental import two_sum
 from fricmb.integrate.collocation._layout import (
     BELT,
@@ -56,6 +53,9 @@ from fricmb.integrate.collocation._layout import (
 )  # fmt: skip
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._slip import start_direction
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, STICK, Ints
 
 
 @block

@@ -7,16 +7,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._kept import kept
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate._room import room
 from fricmb.integrate.collocation._layout import CHANGE
 from fricmb.integrate.collocation._nodes import RUNGS, TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._signals import linear_signals
 from fricmb.integrate.collocation._single import BLOCKS
 from fricmb.integrate.collocation._structure import blocks
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate.run.problem_cache import kept
 
 
 def is_single(problem: Problem) -> bool:

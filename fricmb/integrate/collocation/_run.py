@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fricmb.integrate._problem import Floats, Floats2, Floats3, Floats4, Ints
-from fricmb.integrate._tableau import Complexes3
+from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
+from fricmb.integrate.step.tableau import Complexes3
 
 Ints2 = Ints
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import SLIP, Floats, Ints
 from fricmb.integrate.collocation._fundamental import fundamental, two_sum
 from fricmb.integrate.collocation._layout import (
     AT_BLOCKS,
@@ -32,6 +30,8 @@ from fricmb.integrate.collocation._layout import (
     WT,
 )  # fmt: skip
 from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.problem import SLIP, Floats, Ints
 
 
 @entry

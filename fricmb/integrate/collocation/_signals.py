@@ -6,7 +6,7 @@ import ctypes
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats, Problem
+from fricmb.integrate.problem import Floats, Problem
 
 _Doubles = ctypes.POINTER(ctypes.c_double)
 _Function = ctypes.CFUNCTYPE(None, _Doubles, _Doubles, _Doubles)

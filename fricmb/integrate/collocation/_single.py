@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import EVENT_SLIP, SLIP, STICK, Ints
-from fricmb.integrate._room import block
-from fricmb.integrate._stop import stopped
 from fricmb.integrate.collocation._fundamental import fundamental, two_sum
 from fricmb.integrate.collocation._landing import arrive, first_stop, land, nearly_stopped
 from fricmb.integrate.collocation._layout import (
@@ -69,6 +65,10 @@ from fricmb.integrate.collocation._step import (
     weigh,
 )  # fmt: skip
 from fricmb.integrate.collocation._stick import release_time
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints
+from fricmb.integrate.run.stop import stopped
 
 #: Why a run came back: at its end; no room for rows; for a progress report; or what went wrong.
 DONE, FULL, PAUSE, UNDERFLOW, ENDLESS, NOT_FINITE = range(6)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
 from fricmb.integrate.collocation._layout import (
     COUPLED,
     DIRECTION,
@@ -20,6 +19,7 @@ from fricmb.integrate.collocation._layout import (
     N,
 )  # fmt: skip
 from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.compile.kernel import kernel
 
 
 @kernel

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, Ints
-from fricmb.integrate._room import block
 from fricmb.integrate.collocation._fundamental import two_sum
 from fricmb.integrate.collocation._layout import (
     AT_BLOCKS,
@@ -69,6 +66,9 @@ from fricmb.integrate.collocation._phase import contact_acceleration
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._slip import relative_velocity, slip_directions
 from fricmb.integrate.collocation._weights import free_weights, port_weights
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, Ints
 
 
 @block

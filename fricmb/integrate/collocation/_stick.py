@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._stop import stopped
 from fricmb.integrate.collocation._fundamental import fundamental
 from fricmb.integrate.collocation._layout import DAMP, FREE, LINES, MU_S, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
 from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.run.stop import stopped
 
 
 @kernel

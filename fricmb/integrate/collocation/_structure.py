@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.problem import Floats
 
 #: A pole of the state matrix with its eigenvector.
 Pole = tuple[complex, NDArray[np.complex128]]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
 from fricmb.integrate.collocation._general_prepare import free_blocks
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant
 #: friction, and under constant friction at tight tolerances or where there are far more degrees of freedom.

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import Floats, Ints, Problem, Start
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
 from fricmb.integrate.collocation._ledger import from_row_starts, has_ledger, integrals, powers
 from fricmb.integrate.collocation._prepare import Rows, linear_part, model, run_of, with_rows
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._sample import locate, sample_rows
+from fricmb.integrate.problem import Floats, Ints, Problem, Start
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
 
 class SingleRun(Trajectory):

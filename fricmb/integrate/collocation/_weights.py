@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fricmb.integrate._kernel import kernel
 from fricmb.integrate.collocation._layout import (
     B0,
     B1,
@@ -36,6 +35,7 @@ from fricmb.integrate.collocation._layout import (
     W2,
     S,
 )  # fmt: skip
+from fricmb.integrate.compile.kernel import kernel
 
 
 @kernel

@@ -6,15 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._laws import coefficient
-from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints, Problem
-from fricmb.integrate._room import block, room
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._band import spread_of_pivots
 from fricmb.integrate.constrained._field import call_joint, friction_at, move
 from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
 from fricmb.integrate.constrained._slip import lack, slip_speed, spare
 from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.model.law_values import coefficient
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints, Problem
 
 
 class Watch(NamedTuple):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Codes, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._accept import Watch, least_singular, margins
 from fricmb.integrate.constrained._change import change_modes
 from fricmb.integrate.constrained._codes import (
@@ -31,6 +30,7 @@ from fricmb.integrate.constrained._record import Record, copy_state, record_step
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
 from fricmb.integrate.constrained._step import Control, end_step, error_of, remember, try_step
+from fricmb.integrate.problem import Codes, Ints
 
 #: A step ends a try at this part of the span.
 SMALLEST = 1e-14

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Codes, Floats, Problem, Start
 from fricmb.integrate.constrained._least import Least, constraints_at, names_of_rows, unit_rows
 from fricmb.integrate.constrained._pack import masses, mechanism_of
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.problem import Codes, Floats, Problem, Start
 
 #: A constraint is satisfied to this part of the sizes that occur.
 CLOSED = 1e-12

@@ -10,9 +10,9 @@ from llvmlite import ir
 from numba import types
 from numba.extending import get_cython_function_address, intrinsic
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats, Ints, Pivots
-from fricmb.integrate._tableau import Complexes
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats, Ints, Pivots
+from fricmb.integrate.step.tableau import Complexes
 
 _NAMES = ("dgbtrf", "dgbtrs", "zgbtrf", "zgbtrs")
 DTRF, DTRS, ZTRF, ZTRS = range(4)

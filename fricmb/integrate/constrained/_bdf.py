@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import Codes
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.constrained._accept import Watch
 from fricmb.integrate.constrained._advance import arrive, is_there, radau_step
 from fricmb.integrate.constrained._change import next_stop, set_window
@@ -16,6 +14,8 @@ from fricmb.integrate.constrained._record import Record, crowded
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import Instant, State
 from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.problem import Codes
+from fricmb.integrate.run.stop import stopped
 
 #: BDF steps after which the two methods are compared.
 PATIENCE = 16

@@ -2,20 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import (
-    EVENT_CLOSE,
-    EVENT_OPEN,
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    OPEN,
-    SLIP,
-    STICK,
-    Codes,
-    Ints,
-)
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._accept import TURNS, Watch, least_singular, margins
 from fricmb.integrate.constrained._codes import (
     DONE,
@@ -34,6 +22,18 @@ from fricmb.integrate.constrained._record import Record, copy_state, record_even
 from fricmb.integrate.constrained._slip import lack, magnitude, plane
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix, react
 from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.problem import (
+    EVENT_CLOSE,
+    EVENT_OPEN,
+    EVENT_REVERSAL,
+    EVENT_SLIP,
+    EVENT_STICK,
+    OPEN,
+    SLIP,
+    STICK,
+    Codes,
+    Ints,
+)
 
 
 @kernel

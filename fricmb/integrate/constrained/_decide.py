@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._slip import (
     SETTING_OUT,
@@ -18,6 +17,7 @@ from fricmb.integrate.constrained._slip import (
     stick_limit,
 )
 from fricmb.integrate.constrained._state import Instant, State, react
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2

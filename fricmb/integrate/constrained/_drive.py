@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import entry
-from fricmb.integrate._problem import SLIP, Codes
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.constrained._accept import TURNS, Watch, least_singular, margins, pivots_of, triggers
 from fricmb.integrate.constrained._advance import arrive, grow, is_there, radau_step
 from fricmb.integrate.constrained._change import let_go, next_stop, set_window
@@ -25,6 +23,8 @@ from fricmb.integrate.constrained._record import Record, crowded
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import Instant, State, react
 from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.problem import SLIP, Codes
+from fricmb.integrate.run.stop import stopped
 
 
 @entry

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Floats, Ints, Problem, Start
 from fricmb.integrate.constrained._assemble import closed, consistent_start, listed
 from fricmb.integrate.constrained._least import Least, constraints_at, names_of_rows, unit_rows
 from fricmb.integrate.constrained._pack import masses, mechanism_of
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.problem import Floats, Ints, Problem, Start
 
 #: Singular values this small beside the largest count as 0.
 RANK = 1e-9

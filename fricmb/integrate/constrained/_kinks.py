@@ -6,13 +6,13 @@ one of them changes its sign.  A formula of high order has its order on either s
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, Floats
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._accept import Watch
 from fricmb.integrate.constrained._field import call_joint, friction_at
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import State
+from fricmb.integrate.problem import SLIP, Floats
 
 #: Directions of the reactions in which slopes of a load are compared.
 DIRECTIONS = 8

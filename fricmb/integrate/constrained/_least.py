@@ -9,10 +9,10 @@ import numpy as np
 from scipy.sparse import bmat, csr_matrix, diags, eye
 from scipy.sparse.linalg import splu
 
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Floats, Ints, Problem
 from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained._sample import constraints
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.problem import Floats, Ints, Problem
 
 #: What keeps the equations regular where constraints depend on one another, beside rows of length 1.
 REGULAR = 1e-10

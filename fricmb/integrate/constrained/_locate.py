@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._accept import Watch, gaps, least_singular, margins, triggers
 from fricmb.integrate.constrained._field import move
 from fricmb.integrate.constrained._pack import Mech, Moving
@@ -13,6 +12,7 @@ from fricmb.integrate.constrained._record import copy_state
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
 from fricmb.integrate.constrained._step import Control, end_step, try_step
+from fricmb.integrate.problem import SLIP, Ints
 
 
 @kernel

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Floats, Ints, Problem, Templates
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.problem import Floats, Ints, Problem, Templates
 
 #: Softness of ports that stick in a loop, beside that of the bodies, in Jacobians alone: of contacts that hold more
 #: than there is to hold only what their forces do together is determined.

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fricmb.integrate._call import call
-from fricmb.integrate._field import gather
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._pack import Table
-from fricmb.integrate._problem import NORMAL_LAW, Floats, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained._field import call_joint, friction_at
 from fricmb.integrate.constrained._pack import Mech, Moving, Order
+from fricmb.integrate.model.forces import gather
+from fricmb.integrate.model.problem_structs import Table
+from fricmb.integrate.problem import NORMAL_LAW, Floats, Ints
 
 
 class Layers(NamedTuple):

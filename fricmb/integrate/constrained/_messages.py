@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import SLIP, STICK, Codes, Floats, Problem
 from fricmb.integrate.constrained._codes import (
     FAIL_HIT,
     FAIL_LOST,
@@ -19,6 +18,7 @@ from fricmb.integrate.constrained._codes import (
 )
 from fricmb.integrate.constrained._independent import singular_joints
 from fricmb.integrate.constrained._pack import mechanism_of
+from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem
 
 
 def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:

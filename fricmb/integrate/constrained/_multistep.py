@@ -1,6 +1,6 @@
 """A BDF step of a mechanism: one stage of the one-step method's equations, from what the formula keeps of the past.
 
-With gamma_k = 1 + 1/2 + ... + 1/k the formula reads y = psi + (h/gamma_k) y' (see ``integrate._bdf_step``).
+With gamma_k = 1 + 1/2 + ... + 1/k the formula reads y = psi + (h/gamma_k) y' (see ``integrate.methods.bdf_step``).
 Velocities, multipliers and friction forces are solved for on the level of velocities; positions and velocities are then
 moved onto their constraints, and what has been moved enters the history (Eich 1993: BDF with projection keeps its
 order).
@@ -8,11 +8,8 @@ order).
 
 from __future__ import annotations
 
-from fricmb.integrate._bdf_step import GROWTH, ladder, predict
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._orders import MAX_ORDER
-from fricmb.integrate._problem import Floats, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._accept import Watch, margins
 from fricmb.integrate.constrained._advance import grow, near_singular
 from fricmb.integrate.constrained._codes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
@@ -25,6 +22,9 @@ from fricmb.integrate.constrained._slip import aim, keep_held
 from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained._state import Instant, State
 from fricmb.integrate.constrained._step import Control, measure, settle
+from fricmb.integrate.methods.bdf_stability import MAX_ORDER
+from fricmb.integrate.methods.bdf_step import GROWTH, ladder, predict
+from fricmb.integrate.problem import Floats, Ints
 
 #: Newton stops at this part of the error that a step may make.
 NEWTON = 0.03

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._slip import lightness, magnitude, plane
 from fricmb.integrate.constrained._stages import Stages, newton_change
 from fricmb.integrate.constrained._state import State
 from fricmb.integrate.constrained._turns import NEAR, across, by_turn, force_place
+from fricmb.integrate.problem import SLIP
 
 
 @kernel

@@ -6,17 +6,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._field import Scratch
-from fricmb.integrate._kept import kept
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._pack import Spread, Table, _table
-from fricmb.integrate._places import MECHANISM, MECHANISM_STEPS, PLACES
-from fricmb.integrate._problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
-from fricmb.integrate._room import block_address, room
+from fricmb.integrate.compile.block import block_address
+from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_STEPS, PLACES
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._band import band_addresses, band_sizes
 from fricmb.integrate.constrained._loops import softness
 from fricmb.integrate.constrained._pattern import ordering
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.problem_structs import Spread, Table, _table
+from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
+from fricmb.integrate.run.problem_cache import kept
 
 
 class Linear(NamedTuple):

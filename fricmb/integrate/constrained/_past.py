@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._history import rescale
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._orders import MAX_ORDER
-from fricmb.integrate._problem import Floats, Floats2, Ints, Problem, Start
-from fricmb.integrate._room import room
-from fricmb.integrate._tableau import one_stage
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._pack import mechanism_of
 from fricmb.integrate.constrained._stages import Stages, stages_of
 from fricmb.integrate.constrained._state import State, state_of
+from fricmb.integrate.methods.backward_differences import rescale
+from fricmb.integrate.methods.bdf_stability import MAX_ORDER
+from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, Start
+from fricmb.integrate.step.tableau import one_stage
 
 __all__ = ["Past", "past_of", "rescale", "start_past"]
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Ints, Problem, Templates
-from fricmb.integrate._storage import narrow_order
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.model.band_ordering import narrow_order
+from fricmb.integrate.problem import Ints, Problem, Templates
 
 
 def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int]:

@@ -8,12 +8,12 @@ with a negative slip speed ``n . g``.
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._laws import coefficient
-from fricmb.integrate._problem import Codes, Floats
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._matrix import Layers, add
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._slip import SETTING_OUT, add_load, add_slip, magnitude, slip_speed
+from fricmb.integrate.model.law_values import coefficient
+from fricmb.integrate.problem import Codes, Floats
 
 
 @kernel

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._problem import STICK, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
 from fricmb.integrate.constrained._field import forces, move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._state import NONE, STUCK, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.problem import STICK, Ints
 
 #: Corrections of positions at most: after a step one or two are needed.
 CORRECTIONS = 6

@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Codes2, Floats2, Floats3, Ints, Problem
-from fricmb.integrate._room import block, room
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._pack import Mech, mechanism_of
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import State
 from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.problem import Codes2, Floats2, Floats3, Ints, Problem
 
 
 class Record(NamedTuple):

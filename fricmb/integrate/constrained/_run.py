@@ -7,12 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._integrator import Tolerance
-from fricmb.integrate._mechanism import Mechanism
-from fricmb.integrate._problem import Floats, Problem, Start
-from fricmb.integrate._stop import ended, watched
-from fricmb.integrate._tableau import radau
-from fricmb.integrate._trajectory import Counters, Transitions
 from fricmb.integrate.constrained._accept import watch_of
 from fricmb.integrate.constrained._assemble import away, consistent_start
 from fricmb.integrate.constrained._codes import DONE, FULL
@@ -26,6 +20,12 @@ from fricmb.integrate.constrained._stages import stages_of
 from fricmb.integrate.constrained._state import State, instant_of, state_of
 from fricmb.integrate.constrained._step import control_of
 from fricmb.integrate.constrained._trajectory import StepTrajectory, complete_at, nodes_of, with_open
+from fricmb.integrate.integrator import Tolerance
+from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.step.tableau import radau
+from fricmb.integrate.trajectory import Counters, Transitions
 
 CHUNK = 1024
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate._call import call
-from fricmb.integrate._field import gather
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._laws import break_away
-from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained._field import call_joint, friction_at
 from fricmb.integrate.constrained._matrix import Layers, add, add_form, add_row
 from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.model.forces import gather
+from fricmb.integrate.model.law_values import break_away
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
 SETTING_OUT = 3

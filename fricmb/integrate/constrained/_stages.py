@@ -14,11 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Codes, Floats, Floats2, Ints, Pivots, Problem
-from fricmb.integrate._room import block, room
-from fricmb.integrate._stop import stopped
-from fricmb.integrate._tableau import Complexes2, Tableau
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._band import (
     factor_complex,
     factor_real,
@@ -31,6 +29,9 @@ from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_
 from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
 from fricmb.integrate.constrained._state import State
 from fricmb.integrate.constrained._turns import Turns, correct_turns, spread_of_stages, turns_of
+from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Pivots, Problem
+from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.tableau import Complexes2, Tableau
 
 
 class Stages(NamedTuple):

@@ -6,18 +6,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._call import call
-from fricmb.integrate._field import gather
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
-from fricmb.integrate._room import block, room
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained._band import factor_real, solve_real_band
 from fricmb.integrate.constrained._field import bend, call_joint, forces, friction_at, move, pull_back
 from fricmb.integrate.constrained._friction import add_friction, friction_residual
 from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass
 from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
 from fricmb.integrate.constrained._slip import add_stick
+from fricmb.integrate.model.forces import gather
+from fricmb.integrate.problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
+from fricmb.integrate.run.stop import stopped
 
 
 class State(NamedTuple):

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats, Floats2, Ints, Problem
-from fricmb.integrate._room import block, room
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._field import forces, move
 from fricmb.integrate.constrained._near import choose_forms, prepare_turns
 from fricmb.integrate.constrained._pack import Mech, Moving
@@ -16,6 +16,7 @@ from fricmb.integrate.constrained._project import project_positions, project_vel
 from fricmb.integrate.constrained._slip import aim, keep_held
 from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained._state import Instant, State, powers, react
+from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 
 
 class Control(NamedTuple):

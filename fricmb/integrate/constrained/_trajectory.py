@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fricmb.integrate._problem import Codes, Floats, Ints, Problem, Start
-from fricmb.integrate._tableau import radau
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
 from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained._sample import instants
 from fricmb.integrate.constrained._state import instant_of, state_of
+from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
+from fricmb.integrate.step.tableau import radau
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
 
 class StepTrajectory(Trajectory):

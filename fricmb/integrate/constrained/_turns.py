@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._lu import lu_factor, lu_solve
-from fricmb.integrate._problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
-from fricmb.integrate._room import room
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lu import lu_factor, lu_solve
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._pack import Mech
+from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
 
 #: A contact faster than what this many steps of its acceleration bring has a direction of its own.
 NEAR = 4.0

@@ -5,9 +5,9 @@ Each counts up to a point of the step: what lies behind it may be given up (a st
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, Ints
 from fricmb.integrate.taylor._layout import DAMPING, INPUT, N_TOUCHED, PAID, STEP
 from fricmb.integrate.taylor._ledger import driven_power, signal_power, speed
 from fricmb.integrate.taylor._net import Net

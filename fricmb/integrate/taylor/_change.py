@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK, Ints
 from fricmb.integrate.taylor._correct import add_correction, correct, local_force
 from fricmb.integrate.taylor._heap import push_due
 from fricmb.integrate.taylor._layout import BEFORE, INPUT, JUMP, N_EVENTS, SHIFTED, STEP, TIME, WATCH

@@ -7,8 +7,8 @@ through dampers) with every neighbour, and ends at contacts that stick: so it to
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, Floats2
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, Floats2
 from fricmb.integrate.taylor._layout import CUT, SHIFTED
 from fricmb.integrate.taylor._net import Net
 

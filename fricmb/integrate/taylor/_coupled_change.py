@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK, Ints
 from fricmb.integrate.taylor._account import force_at, pay, pay_touched
 from fricmb.integrate.taylor._change import MARGIN, keep_event
 from fricmb.integrate.taylor._correct import shift_rows

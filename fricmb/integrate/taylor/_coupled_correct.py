@@ -7,8 +7,8 @@ changes by the difference of mu over the new and over the old motion.
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, STICK
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.taylor._coupled_series import relative_row
 from fricmb.integrate.taylor._curve import compose
 from fricmb.integrate.taylor._groups import solve_group, stuck_contact

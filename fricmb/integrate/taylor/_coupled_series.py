@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, Floats, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.integrate.taylor._curve import coefficient_at, compose, fit_around, within
 from fricmb.integrate.taylor._groups import factor_group, solve_group, stuck_contact
 from fricmb.integrate.taylor._layout import ALLOWED, FASTEST, PAID

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK, Ints
 from fricmb.integrate.taylor._change import MARGIN, keep_event
 from fricmb.integrate.taylor._coupled_series import coupled_series, relative_row
 from fricmb.integrate.taylor._layout import LONGEST, N_STOP, NOISE, STEP, TIME

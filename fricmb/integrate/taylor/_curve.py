@@ -8,9 +8,9 @@ coefficients of mu(r(s)) order by order.
 
 from __future__ import annotations
 
-from fricmb.integrate._call import call
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats, Floats2
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.taylor._layout import TOL
 from fricmb.integrate.taylor._net import Net
 

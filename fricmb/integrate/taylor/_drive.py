@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import STICK
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.problem import STICK
+from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.taylor._account import coupled_pay
 from fricmb.integrate.taylor._change import hold_force, taylor_change
 from fricmb.integrate.taylor._heap import pop_due, push_due

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import STICK
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import STICK
 from fricmb.integrate.taylor._net import Net
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.taylor._layout import N_HEAP
 from fricmb.integrate.taylor._net import Net
 

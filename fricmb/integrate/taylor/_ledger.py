@@ -5,8 +5,8 @@ At a transition the rest of the step is counted again, for the dofs alone that i
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, STICK
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.taylor._layout import DAMPING, INPUT, STEP, WATCH, WORK, WORK2
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._series import belt_value, force_row, horner, horner_rate, polynomial

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._kept import kept
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._pack import _table
-from fricmb.integrate._places import PLACES
-from fricmb.integrate._problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate._room import room
-from fricmb.integrate._sparse import Csr
+from fricmb.integrate.compile.block_places import PLACES
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.csr import Csr
+from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate.run.problem_cache import kept
 from fricmb.integrate.taylor import _coupled_change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._prepare_coupled import (

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-from fricmb.integrate._kept import kept
-from fricmb.integrate._pack import _table
-from fricmb.integrate._problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem, Templates
+from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem, Templates
+from fricmb.integrate.run.problem_cache import kept
 from fricmb.integrate.taylor._coupled import Coupled
 
 #: Most contacts of a group: its matrix is factorised as a full one whenever one of them changes its mode.

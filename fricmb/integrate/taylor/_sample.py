@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor._account import coupled_pay
 from fricmb.integrate.taylor._change import hold_force
 from fricmb.integrate.taylor._layout import DAMPING, INPUT, N_SAMPLES, STEP

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import STICK, Floats, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import STICK, Floats, Ints
 from fricmb.integrate.taylor._layout import N_SEARCHES, NOISE, SHIFTED, STEP, SUM, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._series import belt_at, force_row

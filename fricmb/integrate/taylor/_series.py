@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._call import call
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import SLIP, STICK, Floats, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.problem import SLIP, STICK, Floats, Ints
 from fricmb.integrate.taylor._layout import STEP, TOL
 from fricmb.integrate.taylor._net import Net
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor._change import MARGIN, hold_force, keep_event, set_mode
 from fricmb.integrate.taylor._coupled_settle import coupled_settle
 from fricmb.integrate.taylor._layout import LONGEST, N_STOP, NOISE, STEP, TIME

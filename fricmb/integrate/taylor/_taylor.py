@@ -10,10 +10,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from fricmb.integrate._integrator import Integrator, Tolerance
-from fricmb.integrate._problem import SLIP, Floats, Problem, Start
-from fricmb.integrate._stop import ended, watched
-from fricmb.integrate._trajectory import Counters, Trajectory, Transitions
+from fricmb.integrate.integrator import Integrator, Tolerance
+from fricmb.integrate.problem import SLIP, Floats, Problem, Start
+from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.taylor._drive import (
     CROWDED,
     DONE,
@@ -46,6 +45,7 @@ from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._prepare import fastest, net_of, no_samples, refusal, with_arrays
 from fricmb.integrate.taylor._settle import settle_start
 from fricmb.integrate.taylor._trajectory import Checkpoints, TaylorRun
+from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
 
 FAILURES = {
     CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (timestepping takes them)",

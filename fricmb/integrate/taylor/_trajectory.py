@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import Codes, Floats, Problem, Start
-from fricmb.integrate._stop import watched
-from fricmb.integrate._trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.problem import Codes, Floats, Problem, Start
+from fricmb.integrate.run.stop import watched
 from fricmb.integrate.taylor._drive import PAUSE, drive_taylor
 from fricmb.integrate.taylor._layout import END, N_SAMPLES
 from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._prepare import net_of, no_samples, with_arrays
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
 #: Numbers that checkpoints and rows may hold altogether.
 NUMBERS, ROWS = 3_000_000, 20_000_000

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, HELD, RESIDUAL
 from fricmb.integrate.timestepping._run import Run
 

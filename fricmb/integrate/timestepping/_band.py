@@ -6,8 +6,8 @@ Computations, 4.3).
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.timestepping._layout import BAND, N_FACTOR
 from fricmb.integrate.timestepping._run import Run
 

@@ -17,12 +17,12 @@ the band of the structure (the contacts' own couplings are in it).  With few con
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._lapack import solve_real
-from fricmb.integrate._places import PLACES
-from fricmb.integrate._problem import Floats, Floats2, Ints
-from fricmb.integrate._room import block
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block_places import PLACES
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lapack import solve_real
+from fricmb.integrate.problem import Floats, Floats2, Ints
+from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, keep_piece, project, residual, same_piece
 from fricmb.integrate.timestepping._band import (
     add_contacts,

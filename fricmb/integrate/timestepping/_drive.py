@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._kernel import entry, kernel
-from fricmb.integrate._problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
+from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._error import doubtful, step_error
 from fricmb.integrate.timestepping._free import length, set_signals, set_window
 from fricmb.integrate.timestepping._layout import (

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import EVENT_STICK, STICK
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import EVENT_STICK, STICK
 from fricmb.integrate.timestepping._layout import HERE, LEEWAY, MIDDLE, THERE, TOL, WHOLE
 from fricmb.integrate.timestepping._run import Run
 

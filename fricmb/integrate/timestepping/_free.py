@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._call import call
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import Floats
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.timestepping._band import assemble, factorise, solve
 from fricmb.integrate.timestepping._layout import CONDENSED, FAULT, NO_NUMBER, TIME
 from fricmb.integrate.timestepping._run import Run

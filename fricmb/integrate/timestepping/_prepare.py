@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._kept import kept
-from fricmb.integrate._lapack import addresses
-from fricmb.integrate._pack import _table
-from fricmb.integrate._problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
-from fricmb.integrate._room import room
-from fricmb.integrate._sparse import on_one_pattern
-from fricmb.integrate._storage import narrow_order
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.csr import on_one_pattern
+from fricmb.integrate.model.band_ordering import narrow_order
+from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
+from fricmb.integrate.run.problem_cache import kept
 from fricmb.integrate.timestepping._run import Run
 
 #: Most contact rows that may be condensed, and numbers that a factorisation may hold.

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate._call import call
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import LAW_COEFFICIENT, STICK, Ints
-from fricmb.integrate._room import block
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.problem import LAW_COEFFICIENT, STICK, Ints
 from fricmb.integrate.timestepping._free import length
 from fricmb.integrate.timestepping._layout import (
     BROKEN,

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fricmb.integrate._pack import Table
-from fricmb.integrate._problem import Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
+from fricmb.integrate.model.problem_structs import Table
+from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
 
 
 class Run(NamedTuple):

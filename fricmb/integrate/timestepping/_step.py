@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from fricmb.integrate._kernel import kernel
-from fricmb.integrate._problem import (
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import (
     EVENT_CLOSE,
     EVENT_OPEN,
     EVENT_REVERSAL,
@@ -14,8 +15,7 @@ from fricmb.integrate._problem import (
     STICK,
     Ints,
 )
-from fricmb.integrate._room import block
-from fricmb.integrate._stop import stopped
+from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import mark_stuck
 from fricmb.integrate.timestepping._cones import solve_contacts
 from fricmb.integrate.timestepping._free import (

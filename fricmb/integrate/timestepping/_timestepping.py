@@ -9,10 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate._integrator import Integrator, Tolerance
-from fricmb.integrate._problem import Floats, Problem, Start
-from fricmb.integrate._stop import ended, watched
-from fricmb.integrate._trajectory import Counters, Samples, Transitions
+from fricmb.integrate.integrator import Integrator, Tolerance
+from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, begin, drive
 from fricmb.integrate.timestepping._layout import (
     BAND,
@@ -42,6 +41,7 @@ from fricmb.integrate.timestepping._layout import (
 from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
+from fricmb.integrate.trajectory import Counters, Samples, Transitions
 
 FAILURES = {
     NOT_FINITE: "the state grew beyond what numbers hold",

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate._problem import SLIP, Codes, Floats, Start
-from fricmb.integrate._trajectory import SampledTrajectory, Samples
+from fricmb.integrate.problem import SLIP, Codes, Floats, Start
+from fricmb.integrate.trajectory import SampledTrajectory, Samples
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,160 @@
+"""The stepper with its memory, and its service from Python: residual, Jacobians, factors, solution."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.dae import _layout as L
+from fricmb.dae._consistent import Start
+from fricmb.dae._function import Residual
+from fricmb.dae._matrix import Matrix
+from fricmb.dae._stepper import advance
+from fricmb.integrate.problem import Floats
+
+
+class Record:
+    """Accepted points, in arrays that grow: ``t`` (m,), ``y``, ``yp`` (m, n), ``order`` (m,) of the step that ended."""
+
+    def __init__(self, n: int) -> None:
+        self.size = 0
+        self.t = np.empty(64)
+        self.y = np.empty((64, n))
+        self.yp = np.empty((64, n))
+        self.order = np.zeros(64, dtype=np.int64)
+
+    def reserve(self, more: int) -> None:
+        """Make room for ``more`` points."""
+        need = self.size + more
+        if need <= len(self.t):
+            return
+        room = max(need, 2 * len(self.t))
+        for name in ("t", "y", "yp", "order"):
+            old = getattr(self, name)
+            new = np.zeros((room, *old.shape[1:]), dtype=old.dtype)
+            new[: self.size] = old[: self.size]
+            setattr(self, name, new)
+
+    def add(self, t: float, y: Floats, yp: Floats, order: int) -> None:
+        """Append a point."""
+        self.reserve(1)
+        self.t[self.size], self.y[self.size], self.yp[self.size], self.order[self.size] = t, y, yp, order
+        self.size += 1
+
+    def forget(self, keep: int) -> None:
+        """Drop all but the last ``keep`` points."""
+        first = max(0, self.size - keep)
+        for name in ("t", "y", "yp", "order"):
+            values = getattr(self, name)
+            values[: self.size - first] = values[first : self.size].copy()
+        self.size -= first
+
+
+class System:
+    """The problem as the solver sees it, with its tolerances."""
+
+    def __init__(self, residual: Residual, jacobian: Any, matrix: Matrix, rtol: Floats, atol: Floats) -> None:
+        self.function, self.jacobian, self.matrix = residual, jacobian, matrix
+        self.rtol, self.atol = rtol, atol
+        self.direction = 1.0
+        self.evaluations = 0
+        self.factorisations = 0
+        self.jacobians = 0
+
+    def residual(self, t: float, y: Floats, yp: Floats, out: Floats) -> bool:
+        """Evaluate F; False if it is not finite."""
+        self.evaluations += 1
+        return self.function(t, y, yp, out)
+
+    def weight(self, y: Floats) -> Floats:
+        """What turns a change of y into units of its tolerance."""
+        return np.asarray(1.0 / (self.atol + self.rtol * np.abs(y)))
+
+
+class Engine:
+    """The stepper, served by Python."""
+
+    chunk = 1
+
+    def __init__(self, system: System, max_order: int, max_step: float, t_end: float) -> None:
+        n = len(system.rtol)
+        self.system = system
+        self.whole = np.zeros(L.WHOLE_SIZE, dtype=np.int64)
+        self.real = np.zeros(L.REAL_SIZE)
+        self.rows = np.zeros((L.ROWS, n))
+        self.whole[L.ORDER_LIMIT] = max_order
+        self.real[L.T_END] = t_end
+        self.real[L.H_MAX] = max_step
+
+    def start(self, t: float, start: Start, h: float) -> None:
+        """Begin at t, or begin again, with order 1 and step h."""
+        self.whole[[L.ORDER, L.RISING, L.FIRST, L.AT_START]] = 1
+        self.whole[[L.SAME, L.HAVE_FACTORS, L.FRESH, L.ERROR_FAILS, L.NEWTON_FAILS]] = 0
+        self.whole[L.POINTS] = 2
+        self.real[L.T], self.real[L.H], self.real[L.H_STEP] = t, h, h
+        self.real[L.CONTRACTION] = 20.0
+        self.real[L.AGO : L.AGO + 8] = 0.0
+        self.real[L.AGO + 1] = h
+        self.rows[L.HISTORY :] = 0.0
+        self.rows[L.HISTORY], self.rows[L.HISTORY + 1] = start.y, h * start.yp
+        self.rows[L.YP_LAST] = start.yp
+
+    def run(self, record: Record) -> int:
+        """Make a step (or some) and record it: ACCEPTED, FINISHED, or the code of the failure."""
+        served = L.SERVED
+        s = self.system
+        while True:
+            request = advance(self.whole, self.real, self.rows, s.rtol, s.atol, served)
+            if request < 0:
+                return int(request)
+            if request == L.ACCEPTED:
+                record.add(self.real[L.T], self.rows[L.HISTORY], self.rows[L.YP_LAST], self.whole[L.ORDER_USED])
+                return L.FINISHED if self.real[L.T] == self.real[L.T_END] else L.ACCEPTED
+            served = self.serve(request)
+
+    def serve(self, request: int) -> int:
+        """Do what the stepper asked for."""
+        s = self.system
+        t, c, h = float(self.real[L.T_NEW]), float(self.real[L.C]), float(self.real[L.H_STEP])
+        y, yp, delta = self.rows[L.Y], self.rows[L.YP], self.rows[L.DELTA]
+        if not s.residual(t, y, yp, delta):
+            return L.NONFINITE
+        doubtful = self.whole[L.NEWTON_FAILS] >= 2 and not (s.jacobian.exact or s.jacobian.central)
+        s.jacobian.central |= bool(doubtful)
+        if request == L.JACOBIAN or (request == L.FACTOR and doubtful):
+            s.jacobians += 1
+            if not s.jacobian.evaluate(t, y, yp, delta, c, h):
+                return L.NONFINITE
+        if request in (L.FACTOR, L.JACOBIAN):
+            s.factorisations += 1
+            if not s.matrix.factor(c):
+                return L.SINGULAR
+        s.matrix.solve(delta)
+        return L.SERVED
+
+    def counts(self) -> dict[str, int]:
+        """Counters of the run."""
+        s = self.system
+        return {
+            "nfev": s.evaluations + s.jacobian.calls,
+            "njev": s.jacobians,
+            "nlu": s.factorisations,
+            "nsteps": int(self.whole[L.STEPS]),
+            "nrejected": int(self.whole[L.REJECTED]),
+        }
+
+
+def first_step(start: Start, weight: Floats, span: float) -> float:
+    """A step whose first-order error is well inside the tolerance, from the second derivatives where they are known."""
+
+    def norm(x: Floats) -> float:
+        return float(np.sqrt(np.mean((x * weight) ** 2)))
+
+    speed = norm(start.yp)
+    careful = 0.5 / speed if speed > 0.0 else np.inf
+    h = min(1e-3 * span, careful)
+    if start.ypp is not None:
+        bend = norm(start.ypp)
+        h = min(1e-2 * span, 100.0 * careful, np.sqrt(0.5 / bend) if bend > 0.0 else np.inf)
+    return max(h, 1e-14 * span)

@@ -1,0 +1,1 @@
+"""How kernels are compiled, kept on disk, and call one another, templates and LAPACK."""

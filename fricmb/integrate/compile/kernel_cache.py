@@ -1,0 +1,85 @@
+"""Machine code on disk, by content: one file a kernel and signature, checked before it is used.
+
+A file is named by the digest of what the kernel is made of (:mod:`fricmb.integrate.compile.content`) and begins with
+the digest of its own bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from typing import Any
+
+from numba.core.caching import Cache, CompileResultCacheImpl
+
+from fricmb.integrate.compile.cache_files import CacheFiles, remove, say
+from fricmb.integrate.compile.content import content_digest
+
+_DIGEST = 32
+
+
+def _seal(payload: bytes) -> bytes:
+    return hashlib.sha256(payload).digest() + payload
+
+
+def _unseal(data: bytes) -> bytes | None:
+    payload = data[_DIGEST:]
+    return payload if hashlib.sha256(payload).digest() == data[:_DIGEST] else None
+
+
+_files = CacheFiles("kernels", _seal, _unseal, "compiled again")
+
+
+class KernelCache(Cache):  # type: ignore[misc]
+    """Numba's cache of one function, with files by content."""
+
+    def __init__(self, function: Any, name: str, options: str) -> None:
+        self._name = name
+        self._py_func = function
+        self._options = options
+        self._impl = CompileResultCacheImpl.__new__(CompileResultCacheImpl)
+        self._enabled = True
+
+    @property
+    def cache_path(self) -> str:
+        """The folder of the files."""
+        return str(_files.folder)
+
+    def flush(self) -> None:
+        """Remove the files of this function."""
+        for path in _files.folder.glob(f"{self._name}-*.nbc"):
+            remove(path)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The kernel for one signature, or None where there is no sound file of it."""
+        target_context.refresh()
+        name = self._file(sig, target_context.codegen())
+        payload = _files.read(name)
+        if payload is not None:
+            try:
+                return self._impl.rebuild(target_context, pickle.loads(payload))
+            except Exception as error:  # whatever an unsound file can bring about: the kernel is made again
+                say(f"a kept kernel cannot be used ({error!r}) and is compiled again: {name}")
+                _files.discard(name)
+        return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled kernel; where that cannot be done the run goes on."""
+        if any(not lifted.can_cache for lifted in data.lifted) or data.library.has_dynamic_globals:
+            return
+        payload = pickle.dumps(self._impl.reduce(data), protocol=-1)
+        name = self._file(sig, data.codegen)
+        _files.write(name, payload)
+
+    def _file(self, sig: Any, codegen: Any) -> str:
+        return f"{self._name}-{content_digest(self._py_func, self._options, sig, codegen.magic_tuple())}.nbc"
+
+
+def kept(compiled: Any) -> Any:
+    """Let a numba dispatcher or callback keep its machine code by content."""
+    function = getattr(compiled, "py_func", None) or compiled._pyfunc
+    options = repr(sorted(getattr(compiled, "targetoptions", {}).items()))
+    if not function.__module__.startswith("fricmb."):
+        options += f" {function.__module__}"  # a kept kernel imports the module that it was compiled in
+    compiled._cache = KernelCache(function, function.__name__, options)
+    return compiled

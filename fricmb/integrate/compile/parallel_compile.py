@@ -1,0 +1,64 @@
+"""The first compilation on a machine, shared with a second process.
+
+Blocks are compiled and cached one by one, and numba compiles in one thread.  Where the first of them is not in the
+cache, a second process compiles from the other end of the list, into the cache, until the two meet.  Whatever happens
+to that process, this one takes each block from the cache or compiles it.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import subprocess
+import sys
+
+from fricmb.integrate.compile.block import block_address, block_module, was_compiled
+
+_COMMAND = f"import sys; from {__name__} import compile_blocks; compile_blocks(sys.argv[1:])"
+
+
+def compile_blocks(arguments: list[str]) -> None:
+    """What the second process does; arguments: module and name of each block."""
+    import importlib
+
+    for module, name in (argument.split(":") for argument in arguments):
+        importlib.import_module(module)
+        block_address(name)
+
+
+def shared_addresses(blocks: tuple[str, ...]) -> list[int]:
+    """Addresses of the blocks, compiled by two processes where nothing is cached yet.
+
+    ``FRICMB_COMPILE_PROCESSES=1`` in the environment keeps it to this one; so does a process of a pool.
+    """
+    found: list[int] = []
+    helper = None
+    try:
+        for name in blocks:
+            found.append(block_address(name))
+            if len(found) == 1 and was_compiled(name):
+                helper = _start_helper(blocks[:0:-1])
+    finally:
+        if helper is not None:
+            # what it may still be at has been done here; numba writes its files atomically
+            helper.terminate()
+            helper.wait()
+    return found
+
+
+def _start_helper(blocks: tuple[str, ...]) -> subprocess.Popen[bytes] | None:
+    alone = os.environ.get("FRICMB_COMPILE_PROCESSES") == "1" or multiprocessing.parent_process() is not None
+    if alone or len(blocks) < 2 or (os.cpu_count() or 1) < 2 or not sys.executable:
+        return None
+    quiet = subprocess.DEVNULL
+    arguments = [f"{block_module(name)}:{name}" for name in blocks]
+    try:
+        return subprocess.Popen(
+            [sys.executable, "-c", _COMMAND, *arguments],
+            stdin=quiet,
+            stdout=quiet,
+            stderr=quiet,
+            env={**os.environ, "FRICMB_COMPILE_PROCESSES": "1"},
+        )
+    except OSError:
+        return None

@@ -1,0 +1,174 @@
+"""Rooms: named tuples of arrays that kernels take as one pointer.
+
+Numba passes a named tuple by value, array by array, seven words each; a program of some sixty arrays takes minutes to
+compile so.  A *room* puts the descriptors of the arrays of a (nested) named tuple into memory once, and kernels get its
+address.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import lru_cache
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    NativeValue,
+    infer_getattr,
+    lower_getattr_generic,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+
+_Tuple = TypeVar("_Tuple")
+_WORD = 8
+
+_DTYPES = {"Floats": types.float64, "Complexes": types.complex128, "Ints": types.int64, "Codes": types.int8}
+
+
+def array_type(name: str) -> Any:
+    """Numba's type of the annotation (Floats2: two axes); None where it names no array."""
+    stem = name.rstrip("234")
+    if name == "Pivots":
+        return types.Array(types.int32, 1, "C")
+    if stem not in _DTYPES:
+        return None
+    return types.Array(_DTYPES[stem], int(name[len(stem) :] or 1), "C")
+
+
+class RoomType(types.Type):
+    """Numba's type of a room: names with the types of their arrays (or of rooms in it), and where each begins."""
+
+    def __init__(self, title: str, fields: tuple[tuple[str, Any], ...]) -> None:
+        self.at: dict[str, int] = {}
+        self.of: dict[str, Any] = dict(fields)
+        #: What each field takes: dtype and number of axes of an array, None for a room.
+        self.wanted: list[tuple[str, tuple[Any, int] | None]] = []
+        words = 0
+        for name, kind in fields:
+            self.wanted.append((name, None if isinstance(kind, RoomType) else (np.dtype(str(kind.dtype)), kind.ndim)))
+            self.at[name] = words * _WORD
+            words += 1 if isinstance(kind, RoomType) else 1 + kind.ndim
+        inside = ", ".join(f"{name}: {kind}" for name, kind in fields)
+        super().__init__(name=f"room {title}({inside})")
+
+
+@lru_cache(maxsize=64)
+def room_type(kind: Any) -> RoomType:
+    """The type of a room made from the named tuple ``kind``, read from its annotations (Floats2: two axes)."""
+    around = vars(sys.modules[kind.__module__])
+    fields = [(name, array_type(note) or _inner(around[note])) for name, note in annotations_of(kind).items()]
+    return RoomType(kind.__name__, tuple(fields))
+
+
+def _inner(kind: Any) -> RoomType:
+    return room_type(kind)
+
+
+def annotations_of(annotated: Any) -> dict[str, str]:
+    """The annotations of a function or named tuple, as they are written."""
+    notes = annotated.__annotations__
+    return {name: getattr(note, "__forward_arg__", note) for name, note in notes.items()}
+
+
+class Room:
+    """Keeps a named tuple alive beside the descriptors of its arrays."""
+
+    def __init__(self, values: Any) -> None:
+        self._tuple = values
+        self.address: int
+        self.room_type: RoomType = _inner(type(values))
+        words: list[int] = []
+        self._rooms = []
+        for (name, wanted), value in zip(self.room_type.wanted, values, strict=True):
+            if wanted is None:
+                inner = value if isinstance(value, Room) else Room(value)
+                self._rooms.append(inner)
+                words.append(inner.address)
+                continue
+            if value.dtype != wanted[0] or value.ndim != wanted[1] or not value.flags.c_contiguous:
+                expected = self.room_type.of[name]
+                raise TypeError(f"{name} is {value.dtype} with {value.ndim} axes; expected {expected}")
+            words.append(value.ctypes.data)
+            words.extend(value.shape)
+        self._memory = np.array(words, dtype=np.int64)
+        self.address = int(self._memory.ctypes.data)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._tuple, name)
+
+
+def room(values: _Tuple) -> _Tuple:
+    """The named tuple as a room; to a kernel and to a reader of attributes it looks the same."""
+    return cast(_Tuple, Room(values))
+
+
+@typeof_impl.register(Room)
+def _typeof_room(value: Room, context: Any) -> RoomType:
+    return value.room_type
+
+
+@register_model(RoomType)
+class _RoomModel(models.OpaqueModel):
+    pass
+
+
+@unbox(RoomType)
+def _unbox_room(kind: RoomType, value: Any, c: Any) -> Any:
+    address = c.pyapi.object_getattr_string(value, "address")
+    number = c.pyapi.long_as_longlong(address)
+    c.pyapi.decref(address)
+    failed = cgutils.is_not_null(c.builder, c.pyapi.err_occurred())
+    return NativeValue(c.builder.inttoptr(number, cgutils.voidptr_t), is_error=failed)
+
+
+@infer_getattr
+class _RoomAttributes(AttributeTemplate):
+    key = RoomType
+
+    def generic_resolve(self, kind: RoomType, name: str) -> Any:
+        return kind.of.get(name)
+
+
+@lower_getattr_generic(RoomType)
+def _room_attribute(context: Any, builder: Any, kind: RoomType, value: Any, name: str) -> Any:
+    word = ir.IntType(64)
+    start = builder.gep(value, [ir.Constant(word, kind.at[name])])
+    words = builder.bitcast(start, word.as_pointer())
+
+    def load(i: int) -> Any:
+        loaded = builder.load(builder.gep(words, [ir.Constant(word, i)]))
+        # descriptors never change while a kernel runs: loads may leave the loops
+        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+        return loaded
+
+    field = kind.of[name]
+    if isinstance(field, RoomType):
+        return builder.inttoptr(load(0), cgutils.voidptr_t)
+    array = context.make_array(field)(context, builder)
+    size = context.get_abi_sizeof(context.get_data_type(field.dtype))
+    shape = [load(1 + i) for i in range(field.ndim)]
+    strides: list[Any] = [None] * field.ndim
+    step = ir.Constant(word, size)
+    items = ir.Constant(word, 1)
+    for i in reversed(range(field.ndim)):
+        strides[i] = step
+        step = builder.mul(step, shape[i])
+        items = builder.mul(items, shape[i])
+    # the descriptor owns nothing
+    array.meminfo = cgutils.get_null_value(array.meminfo.type)
+    array.parent = cgutils.get_null_value(array.parent.type)
+    array.nitems = items
+    array.itemsize = ir.Constant(word, size)
+    array.data = builder.inttoptr(load(0), context.get_data_type(field.dtype).as_pointer())
+    array.shape = cgutils.pack_array(builder, shape, ty=word)
+    array.strides = cgutils.pack_array(builder, strides, ty=word)
+    return array._getvalue()

@@ -1,0 +1,290 @@
+"""Modes at an instant: which of the contacts at rest stick, and where the others set out to (set-valued laws).
+
+The problem is one of accelerations: with a = a0 + D F, a stuck contact has a = 0 and |F| <= mu_s N, a slipping one
+F = -mu(0) N n and a = rho n, rho >= 0 the initial growth of its slip speed.  It is the port problem of a step with D
+for G and accelerations for velocities, so the same Newton solves it.  All are tried stuck; the worst beyond its cone is
+released, one at a time.  For mu_s > mu_k more than one set may hold: what comes to rest is released before what has
+rested, which lets go only where it has to.  A cone is never split into axes.  Where these trials turn in a circle,
+``disc_projection.release`` finds a set that holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.contact.disc_projection import release
+from fricmb.integrate.model.accelerations import (
+    INFINITE,
+    State,
+    accelerate,
+    complete,
+    kinematics,
+    known_forces,
+    slip_speed,
+    solve_response,
+)
+from fricmb.integrate.model.forces import Scratch, normal_force
+from fricmb.integrate.model.friction_discs import share
+from fricmb.integrate.model.law_values import break_away, coefficient
+from fricmb.integrate.model.problem_structs import Packed, Ports, Table
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
+from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.contact_newton import solve_ports
+from fricmb.integrate.step.contact_unknowns import PortState, port_state
+
+#: Relative excess over the cone that still counts as on it: round-off of D^-1 a.
+MARGIN = 1e-11
+
+
+class Rest(NamedTuple):
+    """Room for the problem of accelerations: constant-law ports, their state, modes, and who takes part.
+
+    ``part`` (n_c,): 1 a contact at rest, 2 one that is just released (its direction n is a hint, and F is on the cone).
+    ``rested`` (n_c,): 1 where one at rest has been so before this instant, 0 where it comes to rest now.
+    ``small`` (n_c,): relative velocities that are round-off beside what the scene's forces bring.
+    """
+
+    ports: Ports
+    w: PortState
+    laws: Table
+    mode: Codes
+    part: Codes
+    rested: Codes
+    tol: Floats
+    hA: Floats2
+    small: Floats
+
+
+def rest(problem: Problem, packed: Packed) -> Rest:
+    """Room for the acceleration problem of a scene."""
+    nc = problem.n_c
+    plain = Contacts(
+        row=problem.contacts.row, W=problem.contacts.W, w=problem.contacts.w, Wu=problem.contacts.Wu,
+        z_start=np.zeros(nc + 1, np.int64), law=np.zeros(nc, np.int8), normal=np.zeros(nc, np.int8),
+        Wn=problem.contacts.Wn,
+    )  # fmt: skip
+    w = port_state(replace(problem, contacts=plain), 1)
+    ports = packed.ports._replace(
+        law=np.zeros(nc, np.int8),
+        mu_s=packed.ports.mu_s.copy(),
+        mu_0=packed.ports.mu_0.copy(),
+        N=np.zeros(nc),
+        var=np.full(nc, -1, np.int64),
+        acts=np.zeros(nc, np.int8),
+        z_start=np.zeros(nc + 1, np.int64),
+    )
+    mode, part, rested = (np.zeros(nc, np.int8) for _ in range(3))
+    return room(Rest(ports, w, packed.laws, mode, part, rested, np.zeros(nc), np.zeros((1, 1)), np.zeros(nc)))
+
+
+@kernel
+def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
+    """Forces, modes and directions of the contacts in ``r.part``; a0 must hold their accelerations without friction.
+
+    Returns the number of trials, or -1 where none of them holds.
+    """
+    ports = r.ports
+    nc = r.mode.shape[0]
+    w = r.w
+    held = np.zeros(nc)
+    # of redundant contacts one that is released may be held by the others: it does not slip
+    least = 1e-9 if ports.soft[0] > 0.0 else -1e-9
+    big = 1e-300
+    for a in range(y.a0.shape[0]):
+        big = max(big, abs(y.a0[a]))
+        for b in range(y.a0.shape[0]):
+            w.G[a, b] = ports.D[a, b]
+    for k in range(nc):
+        w.N[0, k] = y.N[k]
+        if packed.ports.law[k] != LAW_SMOOTH and packed.ports.var[k] >= 0:
+            ports.mu_0[k] = coefficient(packed.ports, packed.laws, k, s, 0.0, y.N[k])[0]
+            ports.mu_s[k] = break_away(packed.ports, packed.laws, k, s, y.N[k])
+        r.tol[k] = 1e-13 * big
+        r.mode[k] = OPEN
+        if r.part[k] == 1:
+            r.mode[k] = STICK
+        elif r.part[k] == 2:
+            r.mode[k] = SLIP
+    for trial in range(6 * nc + 10):
+        if stopped() or not try_modes(y, r, s, address):
+            break
+        if ports.soft[0] > 0.0:
+            for k in range(nc):
+                held[k] = ports.mu_s[k] * y.N[k]
+            share(ports, r.mode, held, w.F[0], y.way)
+        worst, back, excess = -1, -1, 1.0 + MARGIN
+        for k in range(nc):
+            row0 = ports.row[k]
+            d = ports.row[k + 1] - row0
+            if r.mode[k] == STICK:
+                size = slip_speed(w.F[0], row0, d)
+                limit = ports.mu_s[k] * y.N[k]
+                ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
+                # what comes to rest lets go before what has rested
+                first = worst >= 0 and r.rested[k] < r.rested[worst]
+                later = worst >= 0 and r.rested[k] > r.rested[worst]
+                if ratio > 1.0 + MARGIN and (first or (ratio > excess and not later)):
+                    excess, worst = ratio, k
+            elif r.mode[k] == SLIP and w.r[0, k] < least * big and r.part[k] == 1:
+                back = k
+        if worst >= 0:
+            row0 = ports.row[worst]
+            size = slip_speed(w.F[0], row0, ports.row[worst + 1] - row0)
+            for a in range(row0, ports.row[worst + 1]):
+                y.n[a] = -w.F[0, a] / size
+            r.mode[worst] = SLIP
+        elif back >= 0:
+            r.mode[back] = STICK
+        else:
+            take_modes(packed, y, r, w.n[0], w.F[0])
+            return trial + 1
+    # releases that call each other back, or no convergence
+    if not release(ports, y, r.part, r.mode, y.F):
+        return -1
+    take_modes(packed, y, r, y.n, y.F)
+    return 1
+
+
+@kernel
+def try_modes(y: State, r: Rest, s: Scratch, address: Ints) -> bool:
+    """Forces and directions under ``r.mode``, from directions ``y.n``; False without convergence."""
+    w = r.w
+    for k in range(r.mode.shape[0]):
+        w.r[0, k] = 0.0
+        for a in range(r.ports.row[k], r.ports.row[k + 1]):
+            w.F[0, a] = 0.0
+            w.Fo[0, a] = 0.0
+            w.gb[0, a] = y.a0[a]
+            w.n[0, a] = y.n[a]
+    return bool(solve_ports(r.ports, r.laws, s, w, r.hA, r.mode, r.tol, address) >= 0)
+
+
+@kernel
+def take_modes(packed: Packed, y: State, r: Rest, n: Floats, F: Floats) -> None:
+    """Give the contacts that take part the modes found, with their directions and forces."""
+    for k in range(r.mode.shape[0]):
+        if r.mode[k] != OPEN:
+            y.mode[k] = r.mode[k]
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+                y.n[a] = n[a]
+                y.F[a] = F[a]
+
+
+@block
+def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
+    """Find modes, directions, forces and accelerations of the state: contacts with ``r.part`` 0 keep their mode.
+
+    On entry part marks contacts at rest (1) or just released (2).  Velocities of those at rest are projected to g = 0.
+    Returns 0, or 1 where no consistent modes were found, 2: stuck contacts redundant, 3: accelerations infinite.
+    """
+    sizes, pivots = r.w.sizes, r.w.pivots
+    some = False
+    for k in range(y.mode.shape[0]):
+        r.rested[k] = 1 if y.mode[k] == STICK else 0
+        r.tol[k] = y.size[packed.ports.row[k]]
+    for k in range(y.mode.shape[0]):
+        if r.part[k] != 0:
+            some = True
+            y.mode[k] = STICK
+    if some:
+        project(packed, s, y, r, address)
+        kinematics(packed, s, y)
+        if packed.ports.soft[0] > 0.0 and find_held(packed, y, r):
+            project(packed, s, y, r, address)
+            kinematics(packed, s, y)
+        known_forces(packed, s, y)
+        if solve_rest(packed, s, y, r, address) < 0:
+            return 1
+    if not complete(packed, s, y, sizes, pivots, address):
+        return 3 if y.fault[0] == INFINITE else 2
+    return 0
+
+
+@kernel
+def find_held(packed: Packed, y: State, r: Rest) -> bool:
+    """Mark contacts that slip by no more than round-off once those at rest do not: loops close through them.
+
+    ``r.tol`` has the sizes of their velocities before.
+    """
+    some = False
+    for k in range(y.mode.shape[0]):
+        row0 = packed.ports.row[k]
+        speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        slips = r.part[k] == 0 and y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH
+        if slips and speed <= 1e-13 * r.tol[k] + r.small[k]:
+            r.part[k] = 1
+            y.mode[k] = STICK
+            some = True
+    return some
+
+
+@kernel
+def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> None:
+    """Take the last round-off of g away where a contact is at rest: v += M^-1 W D^-1 (-g), momentum conserved.
+
+    Forces and accelerations of ``y`` are lost.
+    """
+    kinematics(packed, s, y)
+    size = 0
+    for k in range(y.mode.shape[0]):
+        if r.part[k] == 0:
+            continue
+        for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+            y.rhs[size] = -y.g[a]
+            size += 1
+    if size == 0:
+        return
+    if not solve_response(packed.ports, y, r.part, False, size, r.w.sizes, r.w.pivots, address):
+        return
+    i = 0
+    y.f[:] = 0.0
+    for k in range(y.mode.shape[0]):
+        if r.part[k] == 0:
+            continue
+        for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+            for b in range(y.q.shape[0]):
+                y.f[b] += packed.ports.W[b, a] * y.rhs[i]
+            i += 1
+    accelerate(packed.structure, y.f, y.a)
+    for b in range(y.q.shape[0]):
+        y.v[b] += y.a[b]
+
+
+@block
+def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> None:
+    """Mark as at rest every contact that sticks or whose relative velocity is nothing but round-off."""
+    kinematics(packed, s, y)
+    for k in range(y.mode.shape[0]):
+        row0 = packed.ports.row[k]
+        r.part[k] = 0
+        if packed.ports.law[k] == LAW_SMOOTH or y.mode[k] == OPEN:
+            continue
+        speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        if y.mode[k] == STICK or speed <= 8e-16 * y.size[row0] + r.small[k]:
+            r.part[k] = 1
+        if y.mode[k] == STICK and speed > 1e-9 * y.size[row0] + 1e3 * r.small[k]:
+            # a prescribed velocity has jumped: the contact slips from now on (what drifts in stick is round-off)
+            r.part[k] = 0
+            y.mode[k] = SLIP
+        if r.part[k] == 0:
+            for a in range(row0, packed.ports.row[k + 1]):
+                y.n[a] = y.g[a] / speed
+
+
+@block
+def find_open(packed: Packed, s: Scratch, y: State, address: Ints) -> None:
+    """Open the contacts whose normal force is not positive, close the others."""
+    kinematics(packed, s, y)
+    for k in range(y.mode.shape[0]):
+        if packed.ports.var[k] < 0:
+            continue
+        if normal_force(packed.ports, packed.normals, k, s) <= 0.0:
+            y.mode[k] = OPEN
+        elif y.mode[k] == OPEN:
+            y.mode[k] = SLIP

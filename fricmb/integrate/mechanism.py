@@ -1,0 +1,136 @@
+"""The arrays of a mechanism: bodies that turn, joints as constraints, friction whose load is a reaction.
+
+Beside the degrees of freedom q (n,) stand the *places* p = P(q), coordinates of points fixed in bodies.  Together they
+are the extended coordinates y = [q, p], and everything that makes force sees y alone:
+
+    M q'' = f_q + P_q^T f_p + G^T lam,   (f_q, f_p) = force(t, y, y', u, u') + friction
+    0     = phi(t, q),                   G = d phi / dq
+
+``X = [t, y (n_y), y' (n_y), u (n_u), u' (n_u)]`` is what arguments of templates are gathered from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fricmb.integrate.problem import Codes, Floats, Ints, Templates, _f, _i
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entries:
+    """A sparse matrix by its entries: ``row``, ``column`` (k,) and ``value`` (k,); repeated places add up."""
+
+    row: Ints = field(default_factory=lambda: _i(0))
+    column: Ints = field(default_factory=lambda: _i(0))
+    value: Floats = field(default_factory=lambda: _f(0))
+
+    @classmethod
+    def of(cls, entries: list[tuple[int, int, float]]) -> Entries:
+        """From triples, those of one place added up."""
+        total: dict[tuple[int, int], float] = {}
+        for i, j, value in entries:
+            total[i, j] = total.get((i, j), 0.0) + value
+        kept = [(i, j, value) for (i, j), value in sorted(total.items()) if value != 0.0]
+        return cls(
+            row=np.array([i for i, _, _ in kept], dtype=np.int64),
+            column=np.array([j for _, j, _ in kept], dtype=np.int64),
+            value=np.array([value for _, _, value in kept], dtype=float),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Places:
+    """Points fixed in bodies.
+
+    Attributes
+    ----------
+    address, p_start, p : as in Templates
+        x = coordinates of the body (b,), out = [P (c), dP/dx (c x b), d2P/dx2 (c x b x b)].
+    dof_start, dof : (k+1,) and (sum,) int64
+        Degrees of freedom of the body that place i belongs to.
+    first : (k+1,) int64
+        Place i is the extended coordinates ``n + first[i]`` to ``n + first[i+1] - 1``.
+    """
+
+    address: Ints = field(default_factory=lambda: _i(0))
+    p_start: Ints = field(default_factory=lambda: _i(1))
+    p: Floats = field(default_factory=lambda: _f(0))
+    dof_start: Ints = field(default_factory=lambda: _i(1))
+    dof: Ints = field(default_factory=lambda: _i(0))
+    first: Ints = field(default_factory=lambda: _i(1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joints:
+    """Constraints, joint by joint.
+
+    Attributes
+    ----------
+    table : Templates
+        x = [x (n_x), x' (n_x), lam (m)]; the linear forms give x and x', lam follows.  out = [phi (m), dphi/dx (m n_x),
+        sum lam d2phi/dx2 (n_x n_x), x'^T d2phi/dx2 (m n_x)] and, of a joint with friction, [s (n_x), ds/dx (n_x n_x),
+        N, dN/dlam (m), dN/dx (n_x)]: the slip velocity is s . x', the normal force N(x, lam).
+    row : (k+1,) int64
+        Joint i owns the multipliers ``row[i]:row[i+1]``.
+    port : (k,) int64
+        Its friction among the contacts of the problem, or -1.
+    one_sided : (k,) int8
+        1: its single multiplier pushes only (lam >= 0); where it would pull, contact is lost.
+    hands_over : (k,) int8
+        1: where contact is lost the joint opens and the run goes on.
+    names : tuple of str
+    dropped : (m,) int8
+        1: a constraint that follows from the others; its multiplier is 0.  2: a joint that is open.
+    """
+
+    table: Templates = field(default_factory=Templates)
+    row: Ints = field(default_factory=lambda: _i(1))
+    port: Ints = field(default_factory=lambda: _i(0))
+    one_sided: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    hands_over: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    names: tuple[str, ...] = ()
+    dropped: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """All of it; contacts, elements and signals of the problem see extended coordinates.
+
+    Attributes
+    ----------
+    n, n_places : int
+        Degrees of freedom and further extended coordinates.
+    M : Entries
+        Mass matrix over the degrees of freedom.
+    K, C, B : Entries
+        Stiffness and damping over [y, u]; force on y per unit of signal.
+    f : (n_y + n_u,)
+        Constant force.
+    places, joints : Places, Joints
+    slip : Templates
+        Of every contact that is no joint the form of its slip velocity (address 0; one form an entry), of others an
+        empty one.
+    """
+
+    n: int
+    n_places: int
+    M: Entries
+    K: Entries
+    C: Entries
+    B: Entries
+    f: Floats
+    places: Places
+    joints: Joints
+    slip: Templates
+
+    @property
+    def n_y(self) -> int:
+        """Number of extended coordinates."""
+        return self.n + self.n_places
+
+    @property
+    def n_rows(self) -> int:
+        """Number of multipliers."""
+        return int(self.joints.row[-1])

@@ -1,0 +1,1 @@
+"""The general methods: loops over steps, and the integrators made of them."""

@@ -1,0 +1,248 @@
+"""One accepted or rejected one-step step of a run: its error, the transition it may meet, its rows."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.contact.event_location import (
+    EPS,
+    Before,
+    copy_state,
+    locate,
+    passes_by,
+    slip_rate,
+    swap_state,
+    transition,
+)
+from fricmb.integrate.contact.mode_decision import Rest
+from fricmb.integrate.model.accelerations import INFINITE, State, slip_speed
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.output.recorder import INSIDE, STEP, Rows, put, record
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints
+from fricmb.integrate.step.event_functions import find_trigger
+from fricmb.integrate.step.exact_structure import CAP, rung_below
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, ladder, update_scales
+from fricmb.integrate.step.step_error import step_error
+
+#: What a step or a loop of steps ends with: an accepted or rejected step, a transition gone through, or why not.
+ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
+FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW, FAIL_INFINITE = range(5, 11)
+FAILURES = {
+    FAIL_STEP: "the step size fell below round-off: the equations of the step could not be solved to tolerance",
+    FAIL_MODES: "no consistent set of stick and slip was found for contacts at rest",
+    FAIL_REDUNDANT: "stuck contacts are redundant: their forces are not determined",
+    FAIL_LAW: "the coefficient of a friction law is negative at the slip speed reached: friction would drive",
+    FAIL_INFINITE: "forces or accelerations became infinite",
+    FAIL_CHATTER: "transitions pile up at one instant (chattering)",
+}
+#: Slip speed, relative to the velocities behind it, that is taken for none where no step can be taken.
+NEARLY = 1e-12
+#: Transitions at one instant after which that is done, too.
+PATIENCE = 10
+
+
+class Clock(NamedTuple):
+    """Step control: ``h`` (1,) next step, ``usual`` (1,) step to start with after a transition, ``span`` (2,) bounds.
+
+    ``stops`` breakpoints; ``same`` (2,) transitions in a row at one instant, and since the time ``retry[1]``;
+    ``found``, ``retry[0]`` room for locating.
+    """
+
+    h: Floats
+    usual: Floats
+    span: Floats
+    stops: Floats
+    same: Ints
+    found: Floats
+    retry: Floats
+
+
+@kernel
+def settled(code: int) -> int:
+    """What a transition that went wrong is reported as; CHANGED where it did not."""
+    if code == 0:
+        return CHANGED
+    return (FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code - 1]
+
+
+@kernel
+def incomplete(y: State) -> int:
+    """Why the forces of a state could not be found."""
+    return FAIL_INFINITE if y.fault[0] == INFINITE else FAIL_REDUNDANT
+
+
+@block
+def advance(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, r: Rest, old: Before, out: Rows,
+    clock: Clock, left: float, address: Ints,
+) -> int:  # fmt: skip
+    """Try one step of ``clock.h``, at most ``left``, from y.
+
+    After ACCEPTED y is the end of the step and ``end`` its start (stages are in ``one``); after CHANGED y stands behind
+    the transition.
+    """
+    order = 1.0 / one.tab.c.shape[0]
+    t = y.t[0]
+    # a hundred steps at least: where nothing moves, no error says how fast a load changes (with exact structure loads
+    # are among what is collocated, and the error knows them)
+    part = 0.01 if one.exact.ladder.shape[0] == 0 else 0.02
+    h = min(clock.h[0], part * (clock.span[1] - clock.span[0]))
+    if h >= left * (1.0 - 1e-9):
+        h = left
+    elif one.exact.ladder.shape[0] > 0:
+        h = one.exact.ladder[rung_below(h)]
+    else:
+        # steps of a ladder come again, and their factors with them
+        h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h)
+    # the shortest rung of the ladder of exact structure is no end of steps: what is asked for is
+    if not min(h, clock.h[0]) > 8.0 * EPS * abs(t) + 1e-280:
+        return end_round_off(packed, s, y, r, old, out, clock, address)
+    error = np.inf
+    if attempt(packed, s, y, one, acc, h, address):
+        error = step_error(packed, s, y, one, acc, h, address)
+    if not error < np.inf:
+        one.counts[1] += 1
+        clock.h[0] = 0.25 * h
+        return REJECTED
+    copy_state(y, end)
+    if not finish(packed, s, end, one, acc, h, address):
+        return incomplete(end)
+    k = find_trigger(packed, s, y, end, one, clock.found, address)
+    wanted = h * min(5.0, max(0.1, 0.85 * max(error, 1e-20) ** -order))
+    if one.exact.ladder.shape[0] > 0:
+        wanted = min(wanted, one.exact.par[CAP])
+    if k < 0 and error <= 1.0:
+        if end.fault[0] > 0.0:
+            return FAIL_LAW
+        record_inside(packed, s, y, end, one, acc, out, address)
+        swap_state(y, end)
+        record(out, y, STEP)
+        one.counts[0] += 1
+        clock.same[0] = 0
+        if h < left:
+            clock.usual[0] = max(h, 0.8 * clock.usual[0])
+        clock.h[0] = wanted
+        return ACCEPTED
+    if k < 0 or (error > 1.0 and clock.found[0] * h > wanted):
+        one.counts[1] += 1
+        clock.h[0] = wanted
+        return REJECTED
+    if clock.found[0] < 1e-9 and y.mode[k] == SLIP and h > 1e-6 * clock.usual[0]:
+        # slip that has only begun and seems to end at once: a wrong solution of too large a step, not to start from
+        one.counts[1] += 1
+        clock.h[0] = 0.2 * h
+        one.last[1] = 0.0
+        return REJECTED
+    clock.retry[0] = wanted
+    k = locate(packed, s, y, end, one, acc, k, h, clock.found[0], clock.found, clock.retry, address)
+    if k == -2:
+        return end_round_off(packed, s, y, r, old, out, clock, address)
+    if k == -1:
+        one.counts[1] += 1
+        clock.h[0] = clock.retry[0]
+        return REJECTED
+    lifted = clock.found[1] == 1.0
+    if not lifted and end.t[0] - t > 1e-6 * clock.usual[0] and passes_by(packed, s, y, end, acc, k):
+        one.counts[1] += 1
+        clock.h[0] = 0.5 * (end.t[0] - t)
+        one.last[1] = 0.0
+        return REJECTED
+    if end.t[0] > t:
+        record_inside(packed, s, y, end, one, acc, out, address)
+        one.counts[0] += 1
+    clock.same[0] = 0 if end.t[0] - t > 16.0 * EPS * abs(t) else clock.same[0] + 1
+    if clock.same[0] == PATIENCE:
+        code = end_round_off(packed, s, y, r, old, out, clock, address)
+        if code != FAIL_STEP:
+            return code
+    if clock.same[0] > 20 + 4 * y.mode.shape[0] or pile_up(clock, end.t[0], y.mode.shape[0]):
+        return FAIL_CHATTER
+    copy_state(end, y)
+    clock.h[0] = clock.usual[0]
+    one.last[1] = 0.0
+    return settled(transition(packed, s, y, k, lifted, r, old, out, address))
+
+
+@kernel
+def pile_up(clock: Clock, t: float, n_c: int) -> bool:
+    """Count a transition at t; whether hundreds of them have brought the run on by nothing."""
+    if clock.same[1] == 0:
+        clock.retry[1] = t
+    clock.same[1] += 1
+    if clock.same[1] <= 200 + 20 * n_c:
+        return False
+    clock.same[1] = 0
+    return bool(t - clock.retry[1] < 1e-12 * (clock.span[1] - clock.span[0]))
+
+
+@kernel
+def end_round_off(
+    packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints
+) -> int:
+    """Where no step can be taken: end the slips that are as good as round-off and settle, if there are any.
+
+    Slips that land together (two points of a pad that comes to rest) leave each other a speed of some roundings of
+    the bodies' own, too small to step on and too large for round-off of one velocity, or a time to land that is
+    nothing beside the step.
+    """
+    kept = r.small.copy()
+    found = False
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH:
+            row0 = packed.ports.row[k]
+            speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            soon = -1e-9 * clock.usual[0] * slip_rate(packed, y, k)
+            if speed <= max(soon, NEARLY * y.size[row0] + 1e3 * kept[k]):
+                found = True
+                r.small[k] = speed
+    clock.same[0] += 1
+    if not found or clock.same[0] > 20 + 4 * y.mode.shape[0]:
+        return FAIL_STEP
+    clock.h[0] = clock.usual[0]
+    code = settled(transition(packed, s, y, -1, False, r, old, out, address))
+    r.small[:] = kept
+    return code
+
+
+@block
+def record_inside(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows, address: Ints
+) -> None:
+    """Rows for the stages inside an accepted step: dense output between them keeps the accuracy of the step."""
+    # of accepted steps alone: a wild trial must not loosen the tolerance for the rest of the run
+    update_scales(packed, y, one, acc)
+    st, w, tab = one.st, one.w, one.tab
+    n_s = tab.c.shape[0]
+    h = end.t[0] - y.t[0]
+    add_work(packed, s, end, one, h)
+    n, nc = y.q.shape[0], y.mode.shape[0]
+    for j in range(n_s - 1):
+        k = out.used[0]
+        row = out.values[k]
+        row[0] = st.t[j]
+        at = put(row, 1, st.Q[j])
+        at = put(row, at, st.V[j])
+        for i in range(n):
+            value = tab.rate[j, 0] * y.v[i]
+            for x in range(n_s):
+                value += tab.rate[j, x + 1] * st.V[x, i]
+            row[at + i] = value / h
+        at = put(row, at + n, w.z[j])
+        at = put(row, at, w.zd[j])
+        at = put(row, at, w.F[j])
+        at = put(row, at, w.N[j])
+        for i in range(nc + 2):
+            energy = y.work[i]
+            for x in range(n_s):
+                energy += h * tab.A[j, x] * one.power[x, i]
+            row[at + i] = energy
+        put(row, at + nc + 2, one.power[j])
+        out.kind[k] = INSIDE
+        for i in range(nc):
+            out.mode[k, i] = y.mode[i]
+        out.used[0] = k + 1

@@ -1,0 +1,182 @@
+"""The general integrator: BDF of variable step and order between transitions, Radau IIA around them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.contact.event_location import Before, slip_rate
+from fricmb.integrate.contact.mode_decision import Rest
+from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
+from fricmb.integrate.methods.attempt_step import ACCEPTED, CHANGED, FULL, Clock, advance
+from fricmb.integrate.methods.backward_differences import History, history, spectrum, start_history
+from fricmb.integrate.methods.bdf_step import HANDOVER, bdf_step, note_loads
+from fricmb.integrate.methods.run_setup import Collector, accuracy, cost, one_step, run_loop, stages_for
+from fricmb.integrate.methods.time_loop import arrive, crowded, reached, set_window
+from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.output.recorder import Rows
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints, Problem, Start
+from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.step_matrix import Factor, forget, jacobians
+from fricmb.integrate.step.tableau import one_stage, radau
+from fricmb.integrate.trajectory import Trajectory
+
+
+@kernel
+def calm(packed: Packed, y: State, h: float) -> bool:
+    """Whether no slipping contact lands within a few steps h, nor has only begun to slip."""
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+            continue
+        r = 0.0
+        for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+            r += y.n[a] * y.g[a]
+        if r < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
+            return False
+    return True
+
+
+#: One-step steps to wait where BDF is not to be tried.
+NEVER = 1 << 60
+#: BDF steps after which the two methods are compared; first steps of the one-step method, in which its size settles.
+PATIENCE, SETTLE = 16, 8
+
+
+@kernel
+def give_up(hist: History) -> None:
+    """Leave the run to the one-step method, which gets on faster, for longer each time."""
+    hist.status[2] = 0
+    hist.status[7] = min(2000, max(50, 4 * hist.status[7]))
+    hist.status[4] = hist.status[7]
+
+
+@entry
+def drive_bdf(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy, hist: History,
+    r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
+) -> int:  # fmt: skip
+    """Step from y until the end of the span, or until the room for rows is used up."""
+    stop = set_window(clock, s, y.t[0])
+    while True:
+        if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
+            return FULL
+        left = stop - y.t[0]
+        if reached(y.t[0], stop):
+            code = arrive(packed, s, y, r, old, out, clock, stop, address)
+            stop = set_window(clock, s, y.t[0])
+            one.last[1] = 0.0
+            hist.status[2] = 0
+        elif hist.status[2] == 1:
+            code = bdf_step(packed, s, y, end, multi, acc, hist, out, left, address)
+            if code == ACCEPTED and hist.status[6] > PATIENCE and hist.h[0] * hist.cost[0] < clock.usual[0]:
+                give_up(hist)
+                clock.h[0] = clock.usual[0]
+            if code == HANDOVER:
+                hist.status[2] = 0
+                clock.h[0] = max(clock.h[0], hist.h[0])
+                # where it came to nothing it is not tried again at once
+                hist.status[5] = min(50, 2 * hist.status[5] + 1) if hist.status[6] < 8 else 0
+                hist.status[4] = hist.status[5]
+                if hist.status[6] > 4 * PATIENCE:
+                    hist.status[7] = 0
+                code = ACCEPTED
+        else:
+            code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
+            h = y.t[0] - end.t[0]
+            if code == CHANGED and hist.status[7] == 0:
+                hist.status[4] = 0
+            elif code == ACCEPTED and hist.status[4] > 0:
+                hist.status[4] -= 1
+            elif code == ACCEPTED and calm(packed, y, h):
+                usual = hist.good[0] if hist.good[0] > 0.0 else h
+                start_history(packed, s, end, y, one, hist, min(usual, 0.25 * h), address)
+                note_loads(packed, s, end, y, hist)
+                if packed.elements.address.shape[0] > 0:
+                    forget(multi.fac)
+        if code > CHANGED:
+            return code
+
+
+@entry
+def jacobian_at(packed: Packed, s: Scratch, y: State, fac: Factor) -> None:
+    """The Jacobian of the structure at a state, for the spectrum."""
+    set_time(packed.signals, s, y.t[0], y.q.shape[0])
+    set_state(s, y.q, y.v)
+    jacobians(packed, s, fac)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bdf(Integrator):
+    """BDF of order 1 to 5 for the implicit index-1 DAE of motion and contact, condensed to the contacts.
+
+    Every transition is located; around transitions, at starts and near landing Radau IIA of ``stages`` stages
+    steps, and wherever it gets on faster.
+    The spectrum limits the order at a step size where a lightly damped oscillation would grow.
+    Bodies that turn and joints are run on the index-reduced system, with constraints restored after every step.
+
+    Parameters
+    ----------
+    stages : int, optional
+        Of the one-step method, 2 to 9; by default from the tolerance (bodies that turn and joints: odd, 5).
+    """
+
+    name: ClassVar[str] = "bdf"
+    order: ClassVar[str] = "1 to 5"
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
+    pauses: ClassVar[bool] = True
+
+    stages: int | None = None
+
+    def refuses(self, problem: Problem) -> str | None:
+        """Why this integrator cannot run the problem, or None."""
+        return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> Trajectory:
+        """See :class:`Integrator`."""
+        if problem.mechanism is not None:
+            from fricmb.integrate import constrained
+
+            count = self.stages or constrained.MULTISTEP_STAGES
+            return constrained.run_mechanism(
+                problem, start, t_end, tolerance, count, progress, memory, multistep=True
+            )
+        stages = stages_for(problem, tolerance.rtol, self.stages)
+        run = Collector(problem, start, t_end, "start_history", "bdf_step")
+        acc = accuracy(run, tolerance)
+        one = one_step(problem, radau(stages), run.counts)
+        multi = one_step(problem, one_stage(), run.counts)
+        code = run.begin()
+        jacobian_at(run.packed, run.scratch, run.y, multi.fac)
+        spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
+        hist = history(problem, t_end - start.t, spectral, cost(problem, stages) / cost(problem, 1))
+        hist.status[4], hist.status[7] = SETTLE, 1
+        if np.any(problem.contacts.law == LAW_SMOOTH):
+            # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:
+            # as many steps of Radau are far more accurate there
+            hist.status[4], hist.status[7] = NEVER, 1
+
+        def go_on(clock: Clock) -> int:
+            return drive_bdf(
+                run.packed, run.scratch, run.y, run.end, one, multi, acc, hist, run.rest, run.old, run.rows, clock,
+                run.address,
+            )  # fmt: skip
+
+        return run_loop(run, code, go_on, memory, progress)

@@ -1,0 +1,221 @@
+"""Steps of the published scheme: BDF2 inside a mode, backward Euler where it changes, stick tried first.
+
+Kinkaid, O'Reilly and Papadopoulos (2005), Eqs. (12) to (14); see :mod:`_bdf2_paper`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.contact.event_location import copy_state, turned
+from fricmb.integrate.methods.attempt_step import DONE, FAIL_LAW, FAIL_STEP, FULL, incomplete
+from fricmb.integrate.methods.time_loop import crowded
+from fricmb.integrate.model.accelerations import State, complete, slip_speed
+from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
+from fricmb.integrate.model.law_values import break_away
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record, record_event
+from fricmb.integrate.problem import (
+    EVENT_CLOSE,
+    EVENT_OPEN,
+    EVENT_REVERSAL,
+    EVENT_SLIP,
+    EVENT_STICK,
+    LAW_SMOOTH,
+    OPEN,
+    SLIP,
+    STICK,
+    Codes,
+    Floats,
+    Ints,
+)
+from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances
+from fricmb.integrate.step.stages import solve_stages
+from fricmb.integrate.step.step_matrix import prepare
+
+
+class Last(NamedTuple):
+    """The step before: values ``y`` (n_y,), ``h`` (1,) its size (0: none), its modes and directions; trial modes."""
+
+    y: Floats
+    h: Floats
+    mode: Codes
+    n: Floats
+    trial: Codes
+
+
+@kernel
+def formula(y: State, one: OneStep, last: Last, h: float, two: bool) -> float:
+    """Put the history of the step into psi; returns b h, of BDF2 (``two``) or backward Euler."""
+    n = y.q.shape[0]
+    h0 = last.h[0]
+    a1, a2, b = 0.0, 1.0, 1.0
+    if two:
+        a1 = -h * h / (h0 * (h0 + 2.0 * h))
+        a2 = (h0 + h) ** 2 / (h0 * (h0 + 2.0 * h))
+        b = (h0 + h) / (h0 + 2.0 * h)
+    for i in range(n):
+        one.st.psi_q[i] = a1 * last.y[i] + a2 * y.q[i]
+        one.st.psi_v[i] = a1 * last.y[n + i] + a2 * y.v[i]
+    for i in range(y.z.shape[0]):
+        one.w.psi_z[i] = a1 * last.y[2 * n + i] + a2 * y.z[i]
+    return b * h
+
+
+@block
+def solve_with(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, last: Last, mode: Codes, h: float, address: Ints
+) -> bool:
+    """Solve the step for the given modes."""
+    st, w = one.st, one.w
+    same = last.h[0] > 0.0
+    for k in range(mode.shape[0]):
+        if mode[k] != last.mode[k]:
+            same = False
+    beta_h = formula(y, one, last, h, same)
+    again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
+    if again:
+        set_time(packed.signals, s, y.t[0], y.q.shape[0])
+        set_state(s, y.q, y.v)
+    if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
+        return False
+    st.t[0] = y.t[0] + h
+    st.hA[0, 0] = beta_h
+    for i in range(y.q.shape[0]):
+        st.V[0, i] = y.v[i]
+    for i in range(y.z.shape[0]):
+        w.z[0, i] = y.z[i]
+    for k in range(mode.shape[0]):
+        row0 = packed.ports.row[k]
+        w.N[0, k] = y.N[k]
+        w.r[0, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        for a in range(row0, packed.ports.row[k + 1]):
+            w.F[0, a] = y.F[a]
+            w.g[0, a] = y.g[a]
+            w.n[0, a] = y.n[a]
+    newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
+    one.counts[2] += 1
+    return solve_stages(packed, one.tab, s, one.fac, st, w, mode, one.tol, one.scale, address) > 0
+
+
+@kernel
+def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> bool:
+    """Change the modes that the solution just found contradicts; True where there are any."""
+    ports, w = packed.ports, one.w
+    changed = False
+    set_time(packed.signals, s, one.st.t[0], y.q.shape[0])
+    set_state(s, one.st.Q[0], one.st.V[0])
+    for k in range(mode.shape[0]):
+        row0 = ports.row[k]
+        d = ports.row[k + 1] - row0
+        if ports.var[k] >= 0:
+            N = normal_force(ports, packed.normals, k, s)
+            if (N <= 0.0) != (mode[k] == OPEN):
+                mode[k] = OPEN if N <= 0.0 else SLIP
+                changed = True
+                continue
+        if ports.law[k] == LAW_SMOOTH or mode[k] != STICK:
+            continue
+        size = slip_speed(w.F[0], row0, d)
+        if size > break_away(ports, packed.laws, k, s, w.N[0, k]) * w.N[0, k]:
+            mode[k] = SLIP
+            changed = True
+            for a in range(row0, row0 + d):
+                y.n[a] = -w.F[0, a] / size
+    return changed
+
+
+@kernel
+def note_changes(packed: Packed, y: State, last: Last, mode: Codes, n: Floats, t: float, out: Rows) -> bool:
+    """Record what has changed against the last step; True where anything has."""
+    some = False
+    for k in range(mode.shape[0]):
+        was, now = last.mode[k], mode[k]
+        kind = -1
+        if was != now:
+            kind = EVENT_STICK if now == STICK else EVENT_SLIP
+            if now == OPEN:
+                kind = EVENT_OPEN
+            elif was == OPEN:
+                kind = EVENT_CLOSE
+        elif turned(packed, k, now, n, last.n):
+            kind = EVENT_REVERSAL
+        if kind >= 0:
+            record_event(out, t, k, kind)
+            some = True
+    return some
+
+
+@entry
+def drive_paper(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, last: Last, out: Rows, h: float,
+    t_end: float, address: Ints,
+) -> int:  # fmt: skip
+    """Step from y to ``t_end``, or until the room for rows is used up."""
+    n = y.q.shape[0]
+    while True:
+        if stopped() or crowded(out, 2, y.mode.shape[0]):
+            return FULL
+        left = t_end - y.t[0]
+        if left <= 1e-12 * max(abs(t_end), abs(y.t[0])):
+            return DONE
+        step = h if left > h * (1.0 + 1e-9) else left
+        for k in range(y.mode.shape[0]):
+            last.trial[k] = SLIP if packed.ports.law[k] == LAW_SMOOTH else (OPEN if y.mode[k] == OPEN else STICK)
+        settled = False
+        for _ in range(3 * y.mode.shape[0] + 3):
+            if stopped() or not solve_with(packed, s, y, one, acc, last, last.trial, step, address):
+                return FAIL_STEP
+            if not revise(packed, s, y, one, last.trial):
+                settled = True
+                break
+        if not settled:
+            return FAIL_STEP
+        copy_state(y, end)
+        end.t[0] = y.t[0] + step if step < left else t_end
+        for i in range(n):
+            end.q[i] = one.st.Q[0, i]
+            end.v[i] = one.st.V[0, i]
+        for i in range(y.z.shape[0]):
+            end.z[i] = one.w.z[0, i]
+        for k in range(y.mode.shape[0]):
+            end.mode[k] = last.trial[k]
+        for a in range(y.n.shape[0]):
+            end.n[a] = one.w.n[0, a]
+        if not complete(packed, s, end, one.w.sizes, one.w.pivots, address):
+            return incomplete(end)
+        if end.fault[0] > 0.0:
+            return FAIL_LAW
+        for i in range(y.rate.shape[0]):
+            end.work[i] = y.work[i] + 0.5 * step * (y.rate[i] + end.rate[i])
+        # the published scheme takes the force from the step's own equations
+        for a in range(y.F.shape[0]):
+            end.F[a] = one.w.F[0, a]
+        if note_changes(packed, y, last, last.trial, end.n, end.t[0], out):
+            for k in range(y.mode.shape[0]):
+                end.mode[k] = y.mode[k]
+            record(out, end, BEFORE)
+            for k in range(y.mode.shape[0]):
+                end.mode[k] = last.trial[k]
+            record(out, end, AFTER)
+        else:
+            record(out, end, STEP)
+        for i in range(n):
+            last.y[i] = y.q[i]
+            last.y[n + i] = y.v[i]
+            acc.q[i] = max(acc.q[i], abs(end.q[i]))
+            acc.v[i] = max(acc.v[i], abs(end.v[i]))
+        for i in range(y.z.shape[0]):
+            last.y[2 * n + i] = y.z[i]
+        for k in range(y.mode.shape[0]):
+            last.mode[k] = end.mode[k]
+            row0 = packed.ports.row[k]
+            acc.r[k] = max(acc.r[k], slip_speed(end.g, row0, packed.ports.row[k + 1] - row0))
+        for a in range(y.n.shape[0]):
+            last.n[a] = end.n[a]
+        last.h[0] = step
+        one.counts[0] += 1
+        copy_state(end, y)

@@ -1,0 +1,66 @@
+"""Radau IIA with located transitions as an integrator: the one-step method for any scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
+from fricmb.integrate.methods.attempt_step import Clock
+from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step, run_loop, stages_for
+from fricmb.integrate.methods.time_loop import drive
+from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.step.tableau import radau
+from fricmb.integrate.trajectory import Trajectory
+
+
+@dataclass(frozen=True, kw_only=True)
+class Radau(Integrator):
+    """Radau IIA of ``stages`` stages, order 2 stages - 1, on linear and nonlinear structures.
+
+    Parameters
+    ----------
+    stages : int, optional
+        2 to 9; by default from the tolerance.
+    """
+
+    name: ClassVar[str] = "radau"
+    order: ClassVar[str] = "2s - 1"
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
+    pauses: ClassVar[bool] = True
+
+    stages: int | None = None
+
+    def refuses(self, problem: Problem) -> str | None:
+        """Why this integrator cannot run the problem, or None."""
+        return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> Trajectory:
+        """See :class:`Integrator`."""
+        if problem.mechanism is not None:
+            from fricmb.integrate import constrained
+
+            count = self.stages or constrained.stages_for(tolerance.rtol)
+            return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
+        run = Collector(problem, start, t_end)
+        acc = accuracy(run, tolerance)
+        one = one_step(problem, radau(stages_for(problem, tolerance.rtol, self.stages)), run.counts)
+
+        def go_on(clock: Clock) -> int:
+            return drive(
+                run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
+            )
+
+        return run_loop(run, run.begin(), go_on, memory, progress)

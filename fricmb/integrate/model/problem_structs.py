@@ -1,0 +1,121 @@
+"""A Problem as nested tuples of contiguous arrays: what kernels take."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.csr import Csr
+from fricmb.integrate.model.structure import Structure, pack_structure
+from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
+from fricmb.integrate.run.problem_cache import kept
+
+
+class Table(NamedTuple):
+    """Compiled functions with their parameters and the linear forms of their arguments (see Templates)."""
+
+    address: Ints
+    p_start: Ints
+    p: Floats
+    x_start: Ints
+    form_start: Ints
+    form_index: Ints
+    form_coefficient: Floats
+    form_constant: Floats
+
+
+class Ports(NamedTuple):
+    """Contacts.
+
+    ``var`` (n_c,) numbers those with a varying normal force, -1 for the others; ``acts``: both bodies feel it;
+    D = W^T M^-1 W; ``soft`` (1,) relative softening of stuck contacts whose forces would not be determined;
+    ``noise`` (n_c,) relative velocities that are nothing beside what the scene's forces bring (set at the start).
+    """
+
+    row: Ints
+    W: Floats2
+    w: Floats
+    Wu: Floats2
+    D: Floats2
+    law: Codes
+    mu_s: Floats
+    mu_0: Floats
+    z_start: Ints
+    N: Floats
+    Wn: Floats2
+    N0: Floats
+    var: Ints
+    acts: Codes
+    soft: Floats
+    noise: Floats
+
+
+class Spread(NamedTuple):
+    """Where the local forces of nonlinear elements act."""
+
+    f_start: Ints
+    start: Ints
+    dof: Ints
+    coefficient: Floats
+
+
+class Packed(NamedTuple):
+    """All of a problem."""
+
+    structure: Structure
+    ports: Ports
+    signals: Table
+    laws: Table
+    normals: Table
+    elements: Table
+    spread: Spread
+    breakpoints: Floats
+
+
+def _softness(D: Floats) -> float:
+    """Relative softening of stuck contacts: 0, or a trifle where rows of W depend on one another (least-norm force)."""
+    if len(D) == 0 or np.linalg.matrix_rank(D, hermitian=True) == len(D):
+        return 0.0
+    return 1e-7  # squared in two iterations below round-off; shares of a load differ by round-off over it
+
+
+def _table(templates: Templates) -> Table:
+    ints = [templates.address, templates.p_start, templates.x_start, templates.form_start, templates.form_index]
+    address, p_start, x_start, form_start, form_index = (np.ascontiguousarray(x, dtype=np.int64) for x in ints)
+    floats = [templates.p, templates.form_coefficient, templates.form_constant]
+    # one spare entry: kernels take the address of p[p_start], also of an empty block
+    p, coefficient, constant = (np.append(np.asarray(x, dtype=float), 0.0) for x in floats)
+    return Table(address, p_start, p, x_start, form_start, form_index, coefficient, constant)
+
+
+def packed_of(problem: Problem) -> Packed:
+    """The problem as the kernels take it, made once per problem object."""
+    return kept(problem, "packed", lambda: _pack(problem))
+
+
+def _pack(problem: Problem) -> Packed:
+    contacts = problem.contacts
+    solid = np.ascontiguousarray
+    structure = pack_structure(problem)
+    varies = contacts.normal != NORMAL_CONSTANT
+    var = np.where(varies, np.cumsum(varies) - 1, -1).astype(np.int64)
+    W = solid(contacts.W)
+    Minv = Csr((problem.n, problem.n), structure.Minv_start, structure.Minv_index, structure.Minv)
+    D = solid(W.T @ (Minv @ W))
+    ports = Ports(
+        solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu), D,
+        solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
+        np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
+        (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([_softness(D)]),
+        np.zeros(problem.n_c),
+    )  # fmt: skip
+    spread = Spread(
+        problem.elements.f_start, problem.elements.spread_start, problem.elements.spread_dof,
+        np.append(problem.elements.spread_coefficient, 0.0),
+    )  # fmt: skip
+    return room(Packed(
+        structure, ports, _table(problem.signals.table), _table(contacts.law_table), _table(contacts.normal_table),
+        _table(problem.elements.table), spread, np.sort(np.asarray(problem.signals.breakpoints, float)),
+    ))  # fmt: skip

@@ -1,0 +1,1 @@
+"""Rows that a run leaves, and motion between them."""

@@ -1,0 +1,264 @@
+"""Between rows: quintic Hermite polynomials in q, from values, velocities and accelerations at both ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.model.accelerations import State, complete, kinematics, slip_speed
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.output.recorder import INSIDE
+from fricmb.integrate.problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
+
+
+@kernel
+def hermite(left: Floats, right: Floats, h: float, x: float, n: int, q: Floats, v: Floats) -> None:
+    """Q and v at fraction x of a step h from rows that hold [t, q, v, a].
+
+    The mean velocity (q1 - q0)/h has the round-off of the two times over h: where the velocities of both ends and their
+    rates say the same but for that, they are taken.
+    """
+    grain = 2e-15 * max(abs(left[0]), abs(right[0])) / h
+    x2, x3 = x * x, x * x * x
+    x4, x5 = x2 * x2, x2 * x3
+    b1 = 10.0 * x3 - 15.0 * x4 + 6.0 * x5
+    s0 = x - 6.0 * x3 + 8.0 * x4 - 3.0 * x5
+    s1 = -4.0 * x3 + 7.0 * x4 - 3.0 * x5
+    c0 = 0.5 * (x2 - 3.0 * x3 + 3.0 * x4 - x5)
+    c1 = 0.5 * (x3 - 2.0 * x4 + x5)
+    d1 = 30.0 * x2 - 60.0 * x3 + 30.0 * x4
+    e0 = 1.0 - 18.0 * x2 + 32.0 * x3 - 15.0 * x4
+    e1 = -12.0 * x2 + 28.0 * x3 - 15.0 * x4
+    f0 = 0.5 * (2.0 * x - 9.0 * x2 + 12.0 * x3 - 5.0 * x4)
+    f1 = 0.5 * (3.0 * x2 - 8.0 * x3 + 5.0 * x4)
+    for i in range(n):
+        q0, v0, a0 = left[1 + i], left[1 + n + i], left[1 + 2 * n + i]
+        q1, v1, a1 = right[1 + i], right[1 + n + i], right[1 + 2 * n + i]
+        q[i] = q0 + b1 * (q1 - q0) + h * (s0 * v0 + s1 * v1) + h * h * (c0 * a0 + c1 * a1)
+        v[i] = d1 * (q1 - q0) / h + e0 * v0 + e1 * v1 + h * (f0 * a0 + f1 * a1)
+        alone = v0 + (3.0 * x2 - 2.0 * x3) * (v1 - v0) + h * ((x - 2.0 * x2 + x3) * a0 + (x3 - x2) * a1)
+        if abs(v[i] - alone) <= grain * max(abs(v0), abs(v1)):
+            v[i] = alone
+
+
+@kernel
+def cubic(left: Floats, right: Floats, at: int, rate: int, n: int, h: float, x: float, out: Floats) -> None:
+    """Cubic Hermite interpolation of n entries from ``at`` with rates from ``rate``, without overshoot.
+
+    Where a rate goes the way of the values, and the other one too or hardly at all, it counts at most three times their
+    mean: then the cubic goes that way throughout (Fritsch and Carlson 1980).  Motion that is resolved, turning points
+    included, is far from this; a state that meets its limit within a step would be drawn beyond it.
+    """
+    for i in range(n):
+        step = right[at + i] - left[at + i]
+        r0, r1 = h * left[rate + i], h * right[rate + i]
+        most = 3.0 * abs(step)
+        against = r0 * r1 > 0.0 and r0 * step <= 0.0  # two turning points in a step are none
+        first = r0 * step >= 0.0 and (r1 * step >= 0.0 or abs(r1) < 0.25 * abs(r0))
+        second = r1 * step >= 0.0 and (r0 * step >= 0.0 or abs(r0) < 0.25 * abs(r1))
+        if first or against:
+            r0 = 0.0 if against else min(max(r0, -most), most)
+        if second or against:
+            r1 = 0.0 if against else min(max(r1, -most), most)
+        out[i] = left[at + i] + x * (r0 + x * (3.0 * step - 2.0 * r0 - r1 + x * (r0 + r1 - 2.0 * step)))
+
+
+@kernel
+def relative_velocity(packed: Packed, s: Scratch, y: State) -> None:
+    """G at a row, whose forces are known: normal forces and modes stay."""
+    kept = y.N.copy()
+    kinematics(packed, s, y)
+    for k in range(kept.shape[0]):
+        y.N[k] = kept[k]
+
+
+@kernel
+def point_along_slip(packed: Packed, s: Scratch, y: State) -> None:
+    """Directions of two-dimensional slip from the interpolated velocities, where these say anything."""
+    relative_velocity(packed, s, y)
+    for c in range(y.mode.shape[0]):
+        row0 = packed.ports.row[c]
+        if packed.ports.row[c + 1] - row0 == 2 and y.mode[c] == SLIP:
+            r = slip_speed(y.g, row0, 2)
+            if r > 1e-12 * (y.size[row0] + y.size[row0 + 1]):
+                y.n[row0] = y.g[row0] / r
+                y.n[row0 + 1] = y.g[row0 + 1] / r
+
+
+@kernel
+def set_window_around(stops: Floats, s: Scratch, t: float) -> None:
+    """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
+    low, high = -np.inf, np.inf
+    for i in range(stops.shape[0]):
+        if stops[i] <= t:
+            low = max(low, stops[i] + 4e-16 * abs(stops[i]) + 1e-300)
+        else:
+            high = min(high, stops[i] - 4e-16 * abs(stops[i]) - 1e-300)
+    s.window[0] = low
+    s.window[1] = high
+
+
+@kernel
+def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
+    """Put a state into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    row[0] = y.t[0]
+    for i in range(n):
+        row[1 + i] = y.q[i]
+        row[1 + n + i] = y.v[i]
+    for i in range(nz):
+        row[1 + 2 * n + i] = y.z[i]
+    at = 1 + 2 * n + nz
+    for a in range(m):
+        row[at + a] = y.F[a]
+        row[at + m + nc + a] = y.g[a]
+    for c in range(nc):
+        row[at + m + c] = y.N[c]
+        modes[c] = y.mode[c]
+        if y.mode[c] == STICK:
+            for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+                row[at + m + nc + a] = 0.0
+    for i in range(nc + 2):
+        row[at + 2 * m + nc + i] = y.work[i]
+
+
+@kernel
+def complete_at(
+    packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, sizes: Pivots,
+    pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Make y the state at t between row k and the next one, with its forces and powers; ``work`` stays."""
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    at_z = 1 + 3 * n
+    at_F = at_z + 2 * nz
+    left, right = values[k], values[k + 1]
+    h = right[0] - left[0]
+    x = (t - left[0]) / h
+    y.t[0] = t
+    hermite(left, right, h, x, n, y.q, y.v)
+    cubic(left, right, at_z, at_z + nz, nz, h, x, y.z)
+    for c in range(nc):
+        y.mode[c] = modes[c]
+        y.N[c] = left[at_F + m + c]
+        force = 0.0
+        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+            force += left[at_F + a] ** 2
+        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
+            y.n[a] = -left[at_F + a] / np.sqrt(force) if force > 0.0 else 0.0
+    point_along_slip(packed, s, y)
+    complete(packed, s, y, sizes, pivots, address)
+
+
+@kernel
+def add_powers(
+    packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, out: Floats2,
+    sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Add integrals of the powers (row 0 of ``out``) and of their magnitudes (row 1) from row k to t, by Gauss."""
+    h = t - values[k, 0]
+    for g in range(3):
+        root = (g - 1.0) * np.sqrt(0.6)
+        weight = h * (4.0 / 9.0 if g == 1 else 5.0 / 18.0)
+        complete_at(packed, s, y, values, k, modes, values[k, 0] + 0.5 * h * (1.0 + root), sizes, pivots, address)
+        for i in range(y.rate.shape[0]):
+            out[0, i] += weight * y.rate[i]
+            out[1, i] += weight * abs(y.rate[i])
+
+
+@kernel
+def open_step(
+    packed: Packed, s: Scratch, y: State, values: Floats2, ends: Ints, modes: Codes2, part: Floats3,
+    sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Integrals of the powers from row ``ends[0]``, where a step starts, up to every row of it until ``ends[1]``."""
+    part[0] = 0.0
+    for k in range(ends[0], ends[1]):
+        part[k + 1 - ends[0]] = part[k - ends[0]]
+        add_powers(
+            packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots, address
+        )  # fmt: skip
+
+
+@kernel
+def ends_of_step(values: Floats2, kind: Codes, k: int, ends: Ints) -> bool:
+    """First and last row of the step in which row k is; whether that has changed."""
+    low, high = k, k + 1
+    while low > 0 and kind[low] == INSIDE:
+        low -= 1
+    while high < values.shape[0] - 1 and kind[high] == INSIDE:
+        high += 1
+    if low == ends[0] and high == ends[1]:
+        return False
+    ends[0], ends[1] = low, high
+    return True
+
+
+@kernel
+def work_at(
+    packed: Packed, s: Scratch, y: State, values: Floats2, at_w: int, ends: Ints, part: Floats3, k: int, modes: Codes,
+    t: float, sizes: Pivots, pivots: Pivots, address: Ints,
+) -> None:  # fmt: skip
+    """Energies at t after row k: those where the step starts and the integral of the powers of the dense output.
+
+    What that misses of the step's own energies at its end (less than the step errs by) is spread along with the
+    magnitude of the power: what is lost never comes back, and where there is no power nothing changes.
+    """
+    since = part[k - ends[0]].copy()
+    add_powers(packed, s, y, values, k, modes, t, since, sizes, pivots, address)
+    whole = part[ends[1] - ends[0]]
+    left, right = values[ends[0]], values[ends[1]]
+    for i in range(y.work.shape[0]):
+        missing = right[at_w + i] - left[at_w + i] - whole[0, i]
+        share = since[1, i] / whole[1, i] if whole[1, i] > 0.0 else (t - left[0]) / (right[0] - left[0])
+        y.work[i] = left[at_w + i] + since[0, i] + missing * share
+
+
+@kernel
+def state_of_row(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes, t: float) -> None:
+    """Make y the state of a row, as it was found."""
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    at_z = 1 + 3 * n
+    at_F = at_z + 2 * nz
+    y.t[0] = t
+    for i in range(n):
+        y.q[i] = row[1 + i]
+        y.v[i] = row[1 + n + i]
+    for i in range(nz):
+        y.z[i] = row[at_z + i]
+    for i in range(nc + 2):
+        y.work[i] = row[at_F + m + nc + i]
+    for c in range(nc):
+        y.mode[c] = modes[c]
+        y.N[c] = row[at_F + m + c]
+    for a in range(m):
+        y.F[a] = row[at_F + a]
+    relative_velocity(packed, s, y)
+
+
+@entry
+def sample_rows(
+    packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, modes: Codes2, stops: Floats, index: Ints,
+    t: Floats, side: Floats, part: Floats3, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots,
+    address: Ints,
+) -> None:  # fmt: skip
+    """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
+
+    ``side``: a time in the interval between breakpoints that each belongs to; ``part``: room for the rows of a step.
+    """
+    n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
+    at_F = 1 + 3 * n + 2 * nz
+    at_w = at_F + m + nc
+    ends = np.full(2, -1)
+    for j in range(t.shape[0]):
+        k = index[j]
+        left = values[k]
+        set_window_around(stops, s, side[j])
+        if t[j] > left[0] and k + 1 < values.shape[0] and values[k + 1, 0] > left[0]:
+            if ends_of_step(values, kind, k, ends):
+                open_step(packed, s, y, values, ends, modes, part, sizes, pivots, address)
+            work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots, address)
+            complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots, address)
+        else:
+            state_of_row(packed, s, y, left, modes[k], t[j])
+        write_sample(packed, y, out[j], out_mode[j])

@@ -1,0 +1,96 @@
+"""A run of the general method as rows, and its dense output."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.model.accelerations import State, state
+from fricmb.integrate.model.forces import scratch
+from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.output.hermite_output import sample_rows
+from fricmb.integrate.output.recorder import AFTER, INSIDE
+from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Ints, Problem, Start
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
+
+
+class RowTrajectory(Trajectory):
+    """A run kept as rows; ``values`` (n_r, width) as in Rows, ``kind``, ``mode`` (n_r, n_c)."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        values: Floats,
+        kind: Codes,
+        mode: Codes,
+        transitions: Transitions,
+        counters: Counters,
+        end: Start,
+        failure: str | None,
+    ) -> None:
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._values = values
+        self._mode = mode
+        self._kind = kind
+        self._times = np.ascontiguousarray(values[:, 0])
+        self._steps = np.flatnonzero(kind != INSIDE)
+
+    @property
+    def t(self) -> Floats:
+        """Times of the accepted steps."""
+        return self._times[self._steps]
+
+    def rows(self) -> Samples:
+        """Values at the accepted steps, as they were found."""
+        return self._sample(self.t, self._steps)
+
+    def sample(self, t: Floats) -> Samples:
+        """Dense output."""
+        t = np.ascontiguousarray(t, dtype=float)
+        return self._sample(t, np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0))
+
+    def _sample(self, t: Floats, index: Ints) -> Samples:
+        problem = self.problem
+        n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
+        out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
+        modes = np.zeros((len(t), nc), np.int8)
+        start = Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz))
+        index = index.astype(np.int64)
+        side = np.where(self._arriving[index] & (t <= self._times[index]), np.nextafter(t, -np.inf), self._times[index])
+        self._fill(state(problem, start), index, t, side, out, modes)
+        ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
+        _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])
+        return Samples(
+            t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T), friction_loss=friction,
+            damping_loss=damping[0], input=supply[0],
+        )  # fmt: skip
+
+    @cached_property
+    def _arriving(self) -> NDArray[np.bool_]:
+        """Rows that end what lies before their time: where a function of time jumps, they have not seen it yet."""
+        row = np.arange(len(self._times))
+        fresh = np.diff(self._times, prepend=-np.inf) > 0.0
+        first = np.maximum.accumulate(np.where(fresh, row, 0))
+        passed = np.maximum.accumulate(np.where(self._kind == AFTER, row, -1))
+        return passed < first
+
+    def _fill(self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2) -> None:
+        """Rows of values and modes at times within the rows ``index``; ``y`` is room for a state.
+
+        ``side``: a time on the side of a breakpoint on which each is.
+        """
+        packed, problem = packed_of(self.problem), self.problem
+        sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
+        rows = int(np.diff(self._steps).max(initial=1)) + 1
+        part = np.zeros((rows, 2, problem.n_c + 2))
+        sample_rows(
+            packed, scratch(problem), y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side, part,
+            out, modes, sizes, pivots, addresses("complete"),
+        )  # fmt: skip

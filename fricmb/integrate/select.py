@@ -1,0 +1,133 @@
+"""The integrators by name, and the choice of ``method="auto"``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from fricmb.integrate.collocation import Collocation
+from fricmb.integrate.collocation._prepare import is_single
+from fricmb.integrate.collocation._suits import against, port_rows, too_far_apart
+from fricmb.integrate.integrator import Integrator, Tolerance
+from fricmb.integrate.methods.bdf import Bdf
+from fricmb.integrate.methods.bdf2_paper import Bdf2Paper
+from fricmb.integrate.methods.free_vibration import Exact
+from fricmb.integrate.methods.radau import Radau
+from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.run.stop import ended
+from fricmb.integrate.taylor import Taylor
+from fricmb.integrate.taylor._prepare_coupled import is_coupled
+from fricmb.integrate.timestepping import TimeStepping
+from fricmb.integrate.trajectory import Trajectory
+
+#: Built-in integrators by the name that ``simulate(method=...)`` takes.
+integrators: dict[str, type[Integrator]] = {
+    kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor, TimeStepping)
+}
+
+
+class Guard(Integrator):
+    """An integrator as ``auto`` takes it: a run that it cannot finish is done by another, and says so."""
+
+    #: Who does such a run.
+    reserve: ClassVar[type[Integrator]]
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> Trajectory:
+        """See :class:`Integrator`."""
+        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
+        run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # that of the class behind
+        if run.failure is None or ended() is not None:
+            return run
+        other = self.reserve()
+        why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
+        instead = other.integrate(problem, start, t_end, **options)
+        instead.counters = replace(instead.counters, notes=(*instead.counters.notes, why))
+        instead.instead = (other.name, why)
+        return instead
+
+
+@dataclass(frozen=True, kw_only=True)
+class Guarded(Guard, Collocation):
+    """Collocation; in reserve the general method."""
+
+    reserve: ClassVar[type[Integrator]] = Bdf
+
+
+@dataclass(frozen=True, kw_only=True)
+class GuardedTaylor(Guard, Taylor):
+    """Taylor steps; in reserve, where transitions crowd, time stepping."""
+
+    reserve: ClassVar[type[Integrator]] = TimeStepping
+
+
+def many_rows(rtol: float) -> int:
+    """Rows of contacts above which time stepping is faster than the general method, twice over (measured).
+
+    On chains under Stribeck laws bdf / timestepping took, in seconds, at rtol 1e-3 with 15, 30, 50, 100 rows
+    0.026/0.004, 0.086/0.008, 0.43/0.010, 10/0.15 and at 1e-6 with the first three 0.050/0.040, 0.235/0.052,
+    0.99/0.094: the ratio goes with the 1.8th power of the rows, and time steps with the root of rtol.
+    """
+    return int(max(24.0, 30.0 * (1e-6 / rtol) ** 0.28))
+
+
+#: Degrees of freedom up to which steps with dense matrices are bearable, and from which on banded steps are faster than
+#: exact structure (measured with uncoupled modes).
+BEARABLE, WIDE = 1024, 100
+
+
+#: Contacts from which on Taylor steps are the fastest where contacts are coupled or friction depends on slip speed, and
+#: dofs to a contact from which on exact structure is: on two to fifty contacts under Stribeck laws, and on stacks, bdf
+#: took 1.5 to 2 times as long with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty.
+SEVERAL, DEEP = 4, 5
+
+
+def is_banded(problem: Problem) -> bool:
+    """Whether implicit steps keep banded factors."""
+    return int(packed_of(problem).structure.half[0]) >= 0
+
+
+def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
+    """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
+    if problem.mechanism is not None:
+        return Radau(), "bodies that turn or joints: one-step on the index-reduced system"
+    exact = Exact()
+    if exact.refuses(problem) is None:
+        return exact, "free vibration of a linear structure: closed form"
+    many = GuardedTaylor()
+    if problem.n_c > 1 and many.refuses(problem) is None:
+        if not is_coupled(problem):
+            return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+        if problem.n_c >= SEVERAL and problem.n < DEEP * problem.n_c:
+            return many, "contacts with friction of slip speed, or coupled by bodies: Taylor steps, local corrections"
+    if problem.n >= WIDE and 0 < problem.m + problem.n_v <= many_rows(rtol) and is_banded(problem):
+        return Bdf(), "few contacts on a structure that is a narrow band: the general method, transitions located"
+    fast = Guarded()
+    refusal = fast.refuses(problem) or too_far_apart(problem) if is_single(problem) else "several ports"
+    if refusal is None:
+        return fast, "linear structure with one contact under constant friction: exact structure, unknowns at the port"
+    # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
+    reason = against(problem, rtol) or fast.refuses(problem) or too_far_apart(problem)
+    if reason is None:
+        rows = port_rows(problem)
+        return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
+    stepping = TimeStepping()
+    # under normal forces that vary in time, time steps still make transitions that are none
+    if problem.m > many_rows(rtol) and problem.n_v == 0 and stepping.refuses(problem) is None:
+        crowd = f"{problem.m} rows of contacts, more than {many_rows(rtol)}: implicit steps over transitions"
+        return stepping, f"{crowd}; {many.refuses(problem)}"
+    if problem.n > BEARABLE and problem.n_c and not is_banded(problem) and stepping.refuses(problem) is None:
+        return stepping, f"{problem.n} degrees of freedom in no narrow band: implicit steps over transitions"
+    return Bdf(), f"the general method: {reason}"

@@ -1,0 +1,115 @@
+"""Implicit steps of a structure that is narrow in some order: banded factors in place of inverses.
+
+Cost and memory grow with the number of degrees of freedom, not with its square.
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block_places import CORE, PLACES
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lapack import BAND_FACTOR, BAND_SOLVE, addresses, call_lapack
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import Ints, Pivots
+from fricmb.integrate.step.contact_unknowns import PortState
+from fricmb.integrate.step.stages import Stages
+from fricmb.integrate.step.step_matrix import Factor, port_inputs, port_outputs
+from fricmb.integrate.step.tableau import Complexes, Complexes2, Tableau
+
+#: Blocks that know how the matrices are kept, and those that take their places for bands.
+STANDS_FOR = {"factorise": "factorise_band", "structure_correction": "correct_band"}
+
+
+def places_of(half: int, *further: str) -> Ints:
+    """Table of addresses of the blocks that a run needs with matrices kept so."""
+    names = [name for name in (*CORE, "structure_correction", *further) if half < 0 or name not in STANDS_FOR]
+    if half < 0:
+        return addresses(*names)
+    table = addresses(*names, *STANDS_FOR.values()).copy()
+    for name, stand_in in STANDS_FOR.items():
+        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
+    return table
+
+
+@kernel
+def factor_band(ab: Complexes2, pivots: Pivots, sizes: Pivots, address: Ints) -> bool:
+    """Factor in place, with row pivoting; False where the matrix is singular."""
+    n, kl, ku, ld, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[5:6]
+    call_lapack(address[BAND_FACTOR], (n, n, kl, ku, ab, ld, pivots, info))
+    return bool(sizes[5] == 0)
+
+
+@kernel
+def solve_band(ab: Complexes2, pivots: Pivots, sizes: Pivots, b: Complexes, address: Ints) -> None:
+    """Overwrite b by the solution."""
+    n, kl, ku, ld, one, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[4:5], sizes[5:6]
+    call_lapack(address[BAND_SOLVE], (sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
+
+
+@block
+def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState, address: Ints) -> bool:
+    """Fill the present slot for h from the Jacobian.  False where a matrix is singular."""
+    structure = packed.structure
+    start, index, place, M, K, C = (
+        structure.first, structure.column, structure.place, structure.M, fac.K, fac.C,
+    )  # fmt: skip
+    n = place.shape[0]
+    half = structure.half[0]
+    levels = tab.lam.shape[0]
+    for x in range(levels):
+        sigma = h * tab.lam[x]
+        which = fac.slot[0] * levels + x
+        ab = fac.Sinv[which]
+        ab[:, :] = 0.0
+        for i in range(n):
+            for e in range(start[i], start[i + 1]):
+                j = place[index[e]]
+                ab[j, 2 * half + place[i] - j] = M[e] + sigma * (C[e] + sigma * K[e])
+        pivots = fac.pivots[which * n : (which + 1) * n]
+        if not factor_band(ab, pivots, fac.sizes, address):
+            return False
+        for c in range(fac.X.shape[1]):
+            load_column(packed, c, sigma, fac.line)
+            solve_band(ab, pivots, fac.sizes, fac.line, address)
+            for i in range(n):
+                fac.X[x, c, i] = fac.line[place[i]]
+    port_inputs(tab, fac)
+    port_outputs(packed.ports.W, tab.A, h, fac)
+    return True
+
+
+@kernel
+def load_column(packed: Packed, c: int, weight: complex, line: Complexes) -> None:
+    """Weight times what a unit input of port c does to the degrees of freedom, in the order of the band."""
+    W, Wn, var, place = packed.ports.W, packed.ports.Wn, packed.ports.var, packed.structure.place
+    m = W.shape[1]
+    if c < m:
+        for i in range(W.shape[0]):
+            line[place[i]] = weight * W[i, c]
+        return
+    for k in range(var.shape[0]):
+        if var[k] == c - m:
+            for i in range(W.shape[0]):
+                line[place[i]] = weight * Wn[i, k]
+
+
+@block
+def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address: Ints) -> None:
+    """DV = -S^-1 res over all stages."""
+    T, Tinv, res, dV, line = tab.T, tab.Tinv, st.res, st.dV, fac.line
+    place = packed.structure.place
+    n = place.shape[0]
+    s = st.V.shape[0]
+    levels = tab.lam.shape[0]
+    dV[:, :] = 0.0
+    for x in range(levels):
+        which = fac.slot[0] * levels + x
+        for a in range(n):
+            value = 0.0 + 0.0j
+            for j in range(s):
+                value += Tinv[x, j] * res[j, a]
+            line[place[a]] = value
+        solve_band(fac.Sinv[which], fac.pivots[which * n : (which + 1) * n], fac.sizes, line, address)
+        for a in range(n):
+            for i in range(s):
+                dV[i, a] -= (T[i, x] * line[place[a]]).real

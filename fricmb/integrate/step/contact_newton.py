@@ -1,0 +1,390 @@
+"""The nonlinear problem left when an implicit step is condensed to its contacts.
+
+At every stage i the relative velocities are affine in the port forces of all stages, ``g_i = gb_i + sum_j G_ij dF_j``
+with dF = F - F_old, and so are varying normal forces.  Unknowns per contact: slip (dtheta, r) with g = r n and
+F = -mu(r) N n, which is regular at r = 0; stick F with g = 0; smooth law g and its states z; and N where it varies.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lu import lu_factor, lu_solve
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.problem_structs import Ports, Table
+from fricmb.integrate.problem import (
+    LAW_SMOOTH,
+    OPEN,
+    SLIP,
+    STICK,
+    Codes,
+    Floats,
+    Floats2,
+    Floats4,
+    Ints,
+)
+from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.contact_unknowns import PortState, evaluate_ports
+
+#: Angle to which directions of slip are found: close to landing they decide, and no velocity shows their error.
+DIRECTION = 1e-9
+#: Part of the tolerance of velocities that the force of a law's state may move a contact by without being looked at.
+UNFELT = 1e-6
+
+
+@kernel
+def port_residual(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
+    """Residuals of the port equations, negated, into rhs; unknowns stage by stage: rows, z, N."""
+    G, Fin, Fo, dF, rhs, gb = w.G, w.Fin, w.Fo, w.dF, w.rhs, w.gb
+    s = w.F.shape[0]
+    m = w.F.shape[1]
+    nz = w.z.shape[1]
+    mi = Fin.shape[1]
+    u1 = nz + mi
+    for j in range(s):
+        for c in range(mi):
+            dF[j * mi + c] = Fin[j, c] - Fo[j, c]
+    for i in range(s):
+        for k in range(mode.shape[0]):
+            row0 = ports.row[k]
+            d = ports.row[k + 1] - row0
+            smooth = ports.law[k] == LAW_SMOOTH
+            for a in range(d + 1 if ports.var[k] >= 0 else d):
+                out = row0 + a if a < d else m + ports.var[k]
+                at = i * u1 + (out if a < d else out + nz)
+                if mode[k] == OPEN and (a == d or not smooth):
+                    rhs[at] = 0.0
+                    continue
+                value = gb[i, out] - (w.g[i, out] if a < d else w.N[i, k])
+                gain = G[i * mi + out]
+                for c in range(dF.shape[0]):
+                    value += gain[c] * dF[c]
+                rhs[at] = value
+            for a in range(ports.z_start[k], ports.z_start[k + 1]):
+                value = w.psi_z[a] - w.z[i, a]
+                for j in range(s):
+                    value += hA[i, j] * w.zd[j, a]
+                rhs[i * u1 + m + a] = value
+
+
+@kernel
+def port_jacobian(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
+    """Jacobian of the port equations at the present unknowns."""
+    J, G, L, n = w.J, w.G, w.L, w.n
+    s = w.F.shape[0]
+    m = w.F.shape[1]
+    nz = w.z.shape[1]
+    mi = w.Fin.shape[1]
+    u1 = nz + mi
+    J[:, :] = 0.0
+    for i in range(s):
+        for k in range(mode.shape[0]):
+            row0 = ports.row[k]
+            d = ports.row[k + 1] - row0
+            z0 = ports.z_start[k]
+            nzk = ports.z_start[k + 1] - z0
+            smooth = ports.law[k] == LAW_SMOOTH
+            for a in range(d + 1 if ports.var[k] >= 0 else d):
+                out = row0 + a if a < d else m + ports.var[k]
+                at = i * u1 + (out if a < d else out + nz)
+                if mode[k] == OPEN and (a == d or not smooth):
+                    J[at, at] = 1.0
+                    continue
+                fill_row(ports, L, G[i * mi + out], J[at], mode, s, m, nz, mi)
+                if a == d or smooth:
+                    J[at, at] += 1.0
+                elif mode[k] == STICK:
+                    J[at, at] -= ports.soft[0] * G[i * mi + out, i * mi + out]
+                elif mode[k] == SLIP:
+                    J[at, i * u1 + row0 + d - 1] += n[i, out]
+                    if d == 2:
+                        tangent = -n[i, row0 + 1] if a == 0 else n[i, row0]
+                        # softened likewise: of redundant contacts at r = 0 only the sum of the forces is determined
+                        load = np.sqrt(L[i, k, 0, 0] ** 2 + L[i, k, 1, 0] ** 2)
+                        held = ports.soft[0] * G[i * mi + out, i * mi + out] * load
+                        J[at, i * u1 + row0] += (w.r[i, k] + held) * tangent
+            for a in range(nzk):
+                at = i * u1 + m + z0 + a
+                for j in range(s):
+                    for b in range(d):
+                        J[at, j * u1 + row0 + b] -= hA[i, j] * L[j, k, d + a, b]
+                    if ports.var[k] >= 0:
+                        J[at, j * u1 + m + nz + ports.var[k]] -= hA[i, j] * L[j, k, d + a, d]
+                    for b in range(nzk):
+                        J[at, j * u1 + m + z0 + b] -= hA[i, j] * L[j, k, d + a, d + 1 + b]
+                J[at, at] += 1.0
+
+
+@kernel
+def fill_row(
+    ports: Ports, L: Floats4, gains: Floats, line: Floats, mode: Codes, s: int, m: int, nz: int, mi: int
+) -> None:
+    """Subtract from a line of the Jacobian how one output follows the unknowns of all contacts and stages."""
+    u1 = nz + mi
+    for j in range(s):
+        gain = gains[j * mi : (j + 1) * mi]
+        into = line[j * u1 : (j + 1) * u1]
+        for k in range(mode.shape[0]):
+            smooth = ports.law[k] == LAW_SMOOTH
+            if mode[k] == OPEN and not smooth:
+                continue
+            row0 = ports.row[k]
+            d = ports.row[k + 1] - row0
+            for b in range(d):
+                x = gain[row0 + b]
+                if x == 0.0:
+                    continue
+                for c in range(d):
+                    into[row0 + c] -= x * L[j, k, b, c]
+                if ports.var[k] >= 0 and mode[k] != OPEN:
+                    into[m + nz + ports.var[k]] -= x * L[j, k, b, d]
+                if smooth:
+                    z0 = ports.z_start[k]
+                    for c in range(ports.z_start[k + 1] - z0):
+                        into[m + z0 + c] -= x * L[j, k, b, d + 1 + c]
+            if ports.var[k] >= 0 and mode[k] != OPEN:
+                into[m + nz + ports.var[k]] -= gain[m + ports.var[k]]
+
+
+@kernel
+def update_ports(ports: Ports, w: PortState, mode: Codes) -> float:
+    """Add the Newton correction in rhs to the unknowns; returns the largest turn of a direction (limited to 0.5)."""
+    m = w.F.shape[1]
+    nz = w.z.shape[1]
+    u1 = nz + w.Fin.shape[1]
+    turn = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            row0 = ports.row[k]
+            d = ports.row[k + 1] - row0
+            at = i * u1 + row0
+            if ports.law[k] == LAW_SMOOTH:
+                for a in range(d):
+                    w.g[i, row0 + a] += w.rhs[at + a]
+                for a in range(ports.z_start[k], ports.z_start[k + 1]):
+                    w.z[i, a] += w.rhs[i * u1 + m + a]
+            elif mode[k] == STICK:
+                for a in range(d):
+                    w.F[i, row0 + a] += w.rhs[at + a]
+            elif mode[k] == SLIP:
+                w.r[i, k] += w.rhs[at + d - 1]
+                if d == 2:
+                    angle = min(0.5, max(-0.5, w.rhs[at]))
+                    turn = max(turn, abs(w.rhs[at]))
+                    x = w.n[i, row0] - angle * w.n[i, row0 + 1]
+                    y = w.n[i, row0 + 1] + angle * w.n[i, row0]
+                    size = np.sqrt(x * x + y * y)
+                    w.n[i, row0] = x / size
+                    w.n[i, row0 + 1] = y / size
+            if ports.var[k] >= 0 and mode[k] != OPEN:
+                w.N[i, k] += w.rhs[i * u1 + m + nz + ports.var[k]]
+    return turn
+
+
+@kernel
+def round_off(w: PortState, i: int, mi: int, a: int, g: float) -> float:
+    """Round-off of a relative velocity g on row a at stage i: no tolerance below it can be met.
+
+    Forces at s nodes are known to the condition of the Radau IIA matrix, |A| |A^-1| = 1.8 s^2 in the largest row; from
+    eight nodes on that is more than the rest.
+    """
+    s = w.F.shape[0]
+    return float((2e-15 if s < 8 else 4e-16 * s * s) * (abs(g) + abs(w.Fin[i, a] * w.G[i * mi + a, i * mi + a])))
+
+
+@kernel
+def speed_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
+    """Largest correction of a slip speed in rhs, in units of its tolerance."""
+    mi = w.Fin.shape[1]
+    u1 = mi + w.z.shape[1]
+    change = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            if mode[k] == SLIP and ports.law[k] != LAW_SMOOTH:
+                at = ports.row[k + 1] - 1
+                change = max(change, abs(w.rhs[i * u1 + at]) / max(tol[k], round_off(w, i, mi, at, w.r[i, k])))
+    return change
+
+
+@kernel
+def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
+    """How far the port inputs have moved from ``gbuf``, as velocities in units of tol; inf where not finite.
+
+    Of redundant contacts that stick only sums are determined: see :func:`creep`.
+    """
+    G, Fin, last = w.G, w.Fin, w.gbuf
+    mi = Fin.shape[1]
+    change = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            shared = ports.soft[0] > 0.0 and mode[k] == STICK
+            for a in range(ports.row[k], ports.row[k + 1]):
+                moved = abs((Fin[i, a] - last[i, a]) * G[i * mi + a, i * mi + a])
+                if shared and moved < np.inf:
+                    continue
+                if not moved < np.inf:
+                    return np.inf
+                change = max(change, moved / max(tol[k], round_off(w, i, mi, a, w.g[i, a])))
+            if ports.var[k] >= 0:
+                a = ports.row[-1] + ports.var[k]
+                push = abs(G[i * mi + ports.row[k], i * mi + ports.row[k]])
+                change = max(change, abs(Fin[i, a] - last[i, a]) * push / tol[k])
+    return change
+
+
+@kernel
+def creep(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
+    """Largest slip velocity left, in units of its tolerance, where redundant contacts stick; rhs holds residuals.
+
+    The shares of a load that they hold together are known to round-off over the softening alone, and move from one
+    iteration to the next without an end; what they must not do is creep.
+    """
+    mi = w.Fin.shape[1]
+    u1 = mi + w.z.shape[1]
+    worst = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            if mode[k] != STICK:
+                continue
+            for a in range(ports.row[k], ports.row[k + 1]):
+                behind = abs(w.gb[i, a])
+                for b in range(mi):
+                    behind += abs(w.G[i * mi + a, i * mi + b] * w.Fin[i, b])
+                worst = max(worst, abs(w.rhs[i * u1 + a]) / max(tol[k], 4e-15 * behind))
+    return worst
+
+
+@kernel
+def state_miss(ports: Ports, w: PortState, hA: Floats2, tol: Floats, i: int, k: int, a: int, size: float) -> float:
+    """Residual ``size`` of state a of contact k at stage i, in units of what is allowed.
+
+    Allowed are the state's tolerance, a force that no velocity shows, and round-off of its rate: a stiff rate
+    (h dz'/dz large) divides a residual before it reaches the state.
+    """
+    row0, z0 = ports.row[k], ports.z_start[k]
+    d, nz = ports.row[k + 1] - row0, ports.z_start[k + 1] - z0
+    L, x, mi = w.L[i, k], a - z0, w.Fin.shape[1]
+    felt, rate = 1e-290, 0.0
+    for b in range(d):
+        felt = max(felt, abs(w.G[i * mi + row0 + b, i * mi + row0 + b] * L[b, d + 1 + x]))
+        rate += abs(L[d + x, b] * w.g[i, row0 + b])
+    for b in range(nz):
+        rate += abs(L[d + x, d + 1 + b] * w.z[i, z0 + b])
+    n_c = ports.row.shape[0] - 1
+    stiff = 1.0 + abs(hA[i, i] * L[d + x, d + 1 + x])
+    allowed = stiff * max(tol[n_c + a], UNFELT * tol[k] / felt)
+    return float(size / (allowed + 2e-15 * (abs(w.z[i, a]) + abs(hA[i, i]) * rate) + 1e-290))
+
+
+@kernel
+def smooth_miss(ports: Ports, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> float:
+    """Largest residual in ``rhs`` of the equations of smooth laws, in units of what is allowed.
+
+    Corrections alone do not tell: where a bristle is bent to its limit, none of its states follows the first
+    correction of the velocity, though this may have turned round.
+    """
+    m, nz, mi = w.F.shape[1], w.z.shape[1], w.Fin.shape[1]
+    u1 = nz + mi
+    miss = 0.0
+    for i in range(w.F.shape[0]):
+        for k in range(mode.shape[0]):
+            if ports.law[k] != LAW_SMOOTH:
+                continue
+            for a in range(ports.row[k], ports.row[k + 1]):
+                off = abs(w.rhs[i * u1 + a]) / max(tol[k], round_off(w, i, mi, a, w.g[i, a]))
+                miss = max(miss, off) if off < np.inf else np.inf
+            for a in range(ports.z_start[k], ports.z_start[k + 1]):
+                off = state_miss(ports, w, hA, tol, i, k, a, abs(w.rhs[i * u1 + m + a]))
+                miss = max(miss, off) if off < np.inf else np.inf
+    return float(miss)
+
+
+@block
+def solve_ports(
+    ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats, address: Ints
+) -> int:
+    """Newton on the port unknowns from their present values; ``tol`` (n_c + n_z,) on relative velocities and states.
+
+    The factors of the Jacobian are kept while directions hardly turn.  Returns the number of iterations, or -1 where
+    it does not converge.
+    """
+    if w.rhs.shape[0] == 0:
+        return 0
+    evaluate_ports(ports, laws, s, w, mode)
+    linear = all_linear(ports, mode)
+    smooth = some_smooth(ports)
+    renew = True
+    close = not some_stick(mode)
+    last, last_turn = np.inf, np.inf
+    for iteration in range(25):
+        if stopped():
+            return -1
+        port_residual(ports, w, hA, mode)
+        if renew:
+            port_jacobian(ports, w, hA, mode)
+            if not lu_factor(w.J, w.sizes, w.pivots, address):
+                return -1
+        lu_solve(w.J, w.rhs, w.sizes, w.pivots, address)
+        change = speed_change(ports, w, mode, tol)
+        turn = update_ports(ports, w, mode)
+        for i in range(w.F.shape[0]):
+            for c in range(w.Fin.shape[1]):
+                w.gbuf[i, c] = w.Fin[i, c]
+        evaluate_ports(ports, laws, s, w, mode)
+        change = max(change, force_change(ports, w, mode, tol))
+        if ports.soft[0] > 0.0:
+            port_residual(ports, w, hA, mode)
+            change = max(change, creep(ports, w, mode, tol))
+        if not change < np.inf:
+            return -1
+        # softening leaves a part of itself behind, which a second iteration takes away
+        if linear and (ports.soft[0] == 0.0 or iteration > 0):
+            return iteration + 1
+        rate = max(change / last, turn / last_turn) if iteration > 0 else 1.0
+        # what is left of the turns: the square of the last with new factors, a part of it with old ones
+        left = turn * (turn if renew else rate)
+        good = left < DIRECTION and (change < 1.0 or (rate < 0.1 and change * rate < 0.1))
+        if ports.soft[0] > 0.0:
+            # softened Jacobians are not exact, and converge as they do only where they are new
+            good = change < 1.0 and turn < 0.5
+        if good and smooth:
+            port_residual(ports, w, hA, mode)
+            good = smooth_miss(ports, w, hA, mode, tol) < 1.0
+        # what sticks must not creep by what the last iteration leaves
+        if good and close:
+            return iteration + 1
+        close = close or good
+        renew = ports.soft[0] > 0.0 or turn > 0.02 or (iteration > 0 and rate > 0.02)
+        last, last_turn = change, max(turn, 1e-300)
+    return -1
+
+
+@kernel
+def some_stick(mode: Codes) -> bool:
+    """Whether some contact sticks."""
+    found = False
+    for k in range(mode.shape[0]):
+        found = found or mode[k] == STICK
+    return bool(found)
+
+
+@kernel
+def some_smooth(ports: Ports) -> bool:
+    """Whether some contact has a law without stick."""
+    found = False
+    for k in range(ports.law.shape[0]):
+        found = found or ports.law[k] == LAW_SMOOTH
+    return bool(found)
+
+
+@kernel
+def all_linear(ports: Ports, mode: Codes) -> bool:
+    """Whether one iteration solves the port equations: stick, or one-dimensional slip under constant friction."""
+    for k in range(mode.shape[0]):
+        if ports.law[k] == LAW_SMOOTH or (ports.var[k] >= 0 and mode[k] == SLIP):
+            return False
+        if mode[k] == SLIP and (ports.law[k] != 0 or ports.row[k + 1] - ports.row[k] == 2):
+            return False
+    return True

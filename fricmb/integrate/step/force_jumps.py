@@ -1,0 +1,98 @@
+"""Forces of elements that jump within a step: where the two ends of a spring pass through each other.
+
+The direction of such a force turns over within no length.  Stages on both sides of it may hide it from an error
+estimate, which sees polynomials.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.forces import Scratch, gather, set_state, set_time
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import Floats, Floats2
+from fricmb.integrate.step.radau_step import Accuracy
+
+#: Halvings of the way from the start to the end of a step, each time towards the larger change of the force.
+HALVINGS = 10
+
+
+@kernel
+def put_arguments(packed: Packed, s: Scratch, k: int, t: float, q: Floats, v: Floats, x: Floats) -> int:
+    """Arguments of element k at an instant; returns their number."""
+    set_time(packed.signals, s, t, q.shape[0])
+    set_state(s, q, v)
+    return gather(packed.elements, k, s.X, x)
+
+
+@kernel
+def put_force(packed: Packed, s: Scratch, k: int, x: Floats, out: Floats) -> None:
+    """Force of element k and its slopes, for its arguments."""
+    elements = packed.elements
+    for a in range(x.shape[0]):
+        s.x[a] = x[a]
+    call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
+    for a in range(out.shape[0]):
+        out[a] = s.out[a]
+
+
+@kernel
+def change(a: Floats, b: Floats, n_f: int) -> float:
+    """Size of the difference of two forces."""
+    value = 0.0
+    for i in range(n_f):
+        value = max(value, abs(a[i] - b[i]))
+    return value
+
+
+@kernel
+def close_in(packed: Packed, s: Scratch, k: int, x: Floats2, f: Floats2, n_f: int) -> None:
+    """Halve the way between the arguments ``x[0]`` and ``x[1]`` to where the force (rows of ``f``) changes most."""
+    for _ in range(HALVINGS):
+        for a in range(x.shape[1]):
+            x[2, a] = 0.5 * (x[0, a] + x[1, a])
+        put_force(packed, s, k, x[2], f[2])
+        half = 0 if change(f[1], f[2], n_f) > change(f[0], f[2], n_f) else 1
+        x[half] = x[2]
+        f[half] = f[2]
+
+
+@kernel
+def jump_error(
+    packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float
+) -> float:
+    """What jumps of elements' forces between y and the state at the end of a step leave of velocities, over tolerance.
+
+    A jump is what the slopes at both ends of a short piece of the way do not explain.
+    """
+    elements, spread = packed.elements, packed.spread
+    worst = 0.0
+    for k in range(elements.address.shape[0]):
+        n_x = elements.x_start[k + 1] - elements.x_start[k]
+        x = np.zeros((3, n_x))
+        put_arguments(packed, s, k, y.t[0], y.q, y.v, x[0])
+        put_arguments(packed, s, k, t, q, v, x[1])
+        crosses = False
+        for a in range(n_x):
+            crosses = crosses or x[0, a] * x[1, a] < 0.0
+        if not crosses:
+            continue
+        n_f = spread.f_start[k + 1] - spread.f_start[k]
+        f = np.zeros((3, n_f * (1 + n_x)))
+        put_force(packed, s, k, x[0], f[0])
+        put_force(packed, s, k, x[1], f[1])
+        close_in(packed, s, k, x, f, n_f)
+        for b in range(n_f):
+            jump = f[1, b] - f[0, b]
+            for a in range(n_x):
+                at = n_f + b * n_x + a
+                jump -= 0.5 * (f[0, at] + f[1, at]) * (x[1, a] - x[0, a])
+            first = spread.f_start[k] + b
+            for j in range(spread.start[first], spread.start[first + 1]):
+                i = spread.dof[j]
+                push = abs(spread.coefficient[j] * jump) * packed.structure.mobility[i]
+                worst = max(worst, h * push / max(acc.v[i], abs(y.v[i]), acc.floor_v[i], 1e-290))
+    return float(worst / acc.rtol[0])

@@ -1,0 +1,220 @@
+"""One Radau IIA step of given modes: solve, estimate the error, look for transitions inside."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.accelerations import State, complete, slip_speed
+from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_state, set_time
+from fricmb.integrate.model.problem_structs import Packed, Ports
+from fricmb.integrate.problem import Floats, Floats2, Ints
+from fricmb.integrate.step.contact_unknowns import PortState
+from fricmb.integrate.step.exact_structure import Exact
+from fricmb.integrate.step.stage_predictor import start_at_rest, start_on_last
+from fricmb.integrate.step.stages import Stages, solve_stages
+from fricmb.integrate.step.step_matrix import Factor, prepare
+from fricmb.integrate.step.tableau import Tableau
+
+
+class Accuracy(NamedTuple):
+    """Tolerance and running scales: ``rtol`` (1,), maxima of |q|, |v| (n,), |z| (n_z,), slip speed (n_c,), floors.
+
+    ``grain`` (n,) round-off of velocities.
+    """
+
+    rtol: Floats
+    q: Floats
+    v: Floats
+    z: Floats
+    r: Floats
+    floor_q: Floats
+    floor_v: Floats
+    grain: Floats
+
+
+class OneStep(NamedTuple):
+    """All that a one-step method of one tableau needs.
+
+    ``last`` (2,) start and length of the step that the stages are of (0: of none), ``counts`` work done (see
+    Counters), ``power`` (s, n_c+2) powers at the stages, ``noise_z`` (n_z,) sizes of states that do not matter, ``N``
+    (s, n_c) normal forces at the stages before max(0, .), ``margin`` (s,) and ``series`` (s+1,) what is searched for
+    zeros, ``exact`` the structure where it is exact.
+    """
+
+    tab: Tableau
+    fac: Factor
+    st: Stages
+    w: PortState
+    tol: Floats
+    scale: Floats
+    last: Floats
+    counts: Ints
+    power: Floats2
+    noise_z: Floats
+    margin: Floats
+    series: Floats
+    N: Floats2
+    exact: Exact
+
+
+@kernel
+def widest(x: Floats) -> float:
+    """Largest entry of a scale, for floors."""
+    value = 0.0
+    for i in range(x.shape[0]):
+        value = max(value, x[i])
+    return value
+
+
+@kernel
+def newton_tolerances(ports: Ports, acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
+    """Accuracy to which a step is solved: of velocities (n,), of relative ones and states ``tol`` (n_c + n_z,)."""
+    top = widest(acc.v)
+    relative = max(part * acc.rtol[0], 1e-14)
+    moving = 0.0
+    for i in range(scale.shape[0]):
+        # what only begins to move is measured by what it may reach within the step
+        here = max(acc.v[i], abs(y.v[i]) + h * abs(y.a[i]), acc.floor_v[i], 1e-10 * top, 1e-290)
+        moving = max(moving, here)
+        scale[i] = relative * here
+    n_c = acc.r.shape[0]
+    for k in range(n_c):
+        tol[k] = relative * max(acc.r[k], 1e-8 * moving, ports.noise[k], 1e-290)
+    for a in range(y.z.shape[0]):
+        tol[n_c + a] = relative * max(acc.z[a], abs(y.z[a]) + h * abs(y.zd[a]))
+
+
+@block
+def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
+    """Solve the stages of a step h from y (values in ``one.st``, ``one.w``).  False without convergence."""
+    n = y.q.shape[0]
+    st, w, tab = one.st, one.w, one.tab
+    again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
+    if again:
+        set_time(packed.signals, s, y.t[0], n)
+        set_state(s, y.q, y.v)
+    if not prepare(packed, tab, s, one.fac, w, one.counts, h, again, on_ladder(h), address):
+        return False
+    for i in range(n):
+        st.psi_v[i] = y.v[i]
+        st.psi_q[i] = y.q[i]
+    for a in range(y.z.shape[0]):
+        w.psi_z[a] = y.z[a]
+    for i in range(tab.c.shape[0]):
+        st.t[i] = y.t[0] + tab.c[i] * h
+        for j in range(tab.c.shape[0]):
+            st.hA[i, j] = h * tab.A[i, j]
+    newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
+    found = start_on_last(packed, y, tab, st, w, one.last, h) and solve(packed, s, y, one, address)
+    if not found:
+        start_at_rest(packed, y, tab, st, w, h)
+        found = solve(packed, s, y, one, address)
+    one.last[0] = y.t[0]
+    one.last[1] = h if found else 0.0
+    if found and w.Fin.shape[1] > y.F.shape[0]:
+        for j in range(tab.c.shape[0]):
+            from_stage(packed, s, st, j)
+            for k in range(y.mode.shape[0]):
+                one.N[j, k] = normal_force(packed.ports, packed.normals, k, s)
+                found = found and abs(one.N[j, k]) < np.inf
+    return found
+
+
+@kernel
+def solve(packed: Packed, s: Scratch, y: State, one: OneStep, address: Ints) -> bool:
+    """Solve the stages from the values that stand in them."""
+    one.counts[2] += one.tab.c.shape[0]
+    return solve_stages(packed, one.tab, s, one.fac, one.st, one.w, y.mode, one.tol, one.scale, address) > 0
+
+
+@kernel
+def ladder(h: float) -> float:
+    """The step rounded down to a power of 2^(1/8)."""
+    return float(2.0 ** (0.125 * np.floor(8.0 * np.log2(h) + 1e-9)))
+
+
+@kernel
+def on_ladder(h: float) -> bool:
+    """Whether a step is one of the ladder's."""
+    return bool(h == ladder(h))
+
+
+@kernel
+def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
+    """Sizes of internal states that are noise: their force moves the contact by a trifle of its speed within h."""
+    ports, w = packed.ports, one.w
+    top = widest(acc.v)
+    for k in range(ports.law.shape[0]):
+        row0 = ports.row[k]
+        d = ports.row[k + 1] - row0
+        z0 = ports.z_start[k]
+        for i in range(ports.z_start[k + 1] - z0):
+            moved = 1e-290
+            for a in range(d):
+                slope = abs(w.L[w.F.shape[0] - 1, k, a, d + 1 + i])
+                moved = max(moved, h * ports.D[row0 + a, row0 + a] * slope)
+            one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, packed.ports.noise[k]) / moved, 1e290)
+
+
+@block
+def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
+    """Put the end of the step into y, with forces and accelerations."""
+    st, w, tab = one.st, one.w, one.tab
+    n_s = tab.c.shape[0]
+    y.t[0] = y.t[0] + h
+    for i in range(y.q.shape[0]):
+        way = y.low[i]
+        for j in range(n_s):
+            way += st.hA[n_s - 1, j] * st.V[j, i]
+        add_to_position(y, i, way)
+        v = st.V[n_s - 1, i]
+        # what rests would creep on in denormal numbers, which cost time and say nothing
+        y.v[i] = v if abs(v) > 1e-290 else 0.0
+    for a in range(y.z.shape[0]):
+        y.z[a] = w.z[n_s - 1, a]
+    for a in range(y.n.shape[0]):
+        y.n[a] = w.n[n_s - 1, a]
+    return complete(packed, s, y, w.sizes, w.pivots, address)
+
+
+@kernel
+def add_to_position(y: State, i: int, way: float) -> None:
+    """Move position i by ``way`` (which holds y.low); what round-off takes is kept for the next step (Kahan)."""
+    new = y.q[i] + way
+    y.low[i] = way - (new - y.q[i])
+    y.q[i] = new
+
+
+@kernel
+def update_scales(packed: Packed, y: State, one: OneStep, acc: Accuracy) -> None:
+    """Running maxima over the stages of an accepted step."""
+    for j in range(one.tab.c.shape[0]):
+        for i in range(y.q.shape[0]):
+            acc.q[i] = max(acc.q[i], abs(one.st.Q[j, i]))
+            acc.v[i] = max(acc.v[i], abs(one.st.V[j, i]))
+        for a in range(y.z.shape[0]):
+            acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
+        for k in range(y.mode.shape[0]):
+            row0 = packed.ports.row[k]
+            acc.r[k] = max(acc.r[k], slip_speed(one.w.g[j], row0, packed.ports.row[k + 1] - row0))
+
+
+@kernel
+def add_work(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> None:
+    """Powers at the stages of an accepted step, and the energies at its end y from them."""
+    for j in range(one.tab.c.shape[0]):
+        from_stage(packed, s, one.st, j)
+        powers(packed, s, one.w.F[j], one.w.N[j], one.w.g[j], one.power[j])
+        for k in range(y.rate.shape[0]):
+            y.work[k] += h * one.tab.b[j] * one.power[j, k]
+
+
+@kernel
+def from_stage(packed: Packed, s: Scratch, st: Stages, j: int) -> None:
+    """X at stage j."""
+    set_time(packed.signals, s, st.t[j], st.V.shape[1])
+    set_state(s, st.Q[j], st.V[j])

@@ -1,0 +1,107 @@
+"""Where a one-step step's Newton iterations start: on the polynomial of the stages solved last, or at its beginning."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.accelerations import State, slip_speed
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Floats2
+from fricmb.integrate.step.contact_unknowns import PortState
+from fricmb.integrate.step.stages import Stages
+from fricmb.integrate.step.tableau import Tableau
+
+#: Lengths of the last step over which its polynomial is continued.
+REACH = 2.6
+
+
+@kernel
+def start_at_rest(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortState, h: float) -> None:
+    """Stages from the values at the beginning of the step."""
+    for i in range(tab.c.shape[0]):
+        for a in range(y.q.shape[0]):
+            st.V[i, a] = y.v[a] + tab.c[i] * h * y.a[a]
+        for a in range(y.z.shape[0]):
+            w.z[i, a] = y.z[a]
+        for k in range(y.mode.shape[0]):
+            row0 = packed.ports.row[k]
+            w.N[i, k] = y.N[k]
+            w.r[i, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            for a in range(row0, packed.ports.row[k + 1]):
+                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
+                w.n[i, a] = y.n[a]
+                w.g[i, a] = y.g[a]
+
+
+@kernel
+def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortState, last: Floats, h: float) -> bool:
+    """Stages from the polynomial through those solved last (``last``: their t, h); False where it says nothing here."""
+    if last[1] == 0.0 or packed.ports.soft[0] > 0.0:
+        # of redundant contacts the sum alone is determined: their shares would drift from step to step
+        return False
+    shift = (y.t[0] - last[0]) / last[1]
+    ratio = h / last[1]
+    if not (shift >= -1e-9 and shift + ratio <= REACH):
+        return False
+    weight = st.weight
+    lagrange(tab.c, shift, ratio, weight)
+    if packed.elements.address.shape[0] > 0:
+        carry(st.V, weight, st.line)
+    else:
+        # a linear structure follows in one iteration; what is at rest stays there to the last digit
+        for i in range(tab.c.shape[0]):
+            for a in range(y.q.shape[0]):
+                st.V[i, a] = y.v[a] + tab.c[i] * h * y.a[a]
+    carry(w.z, weight, st.line)
+    carry(w.N, weight, st.line)
+    carry(w.r, weight, st.line)
+    carry(w.g, weight, st.line)
+    carry(w.n, weight, st.line)
+    for k in range(y.mode.shape[0]):
+        row0 = packed.ports.row[k]
+        for i in range(tab.c.shape[0]):
+            # constant values would bring round-off in, times the weights
+            if packed.ports.var[k] < 0:
+                w.N[i, k] = y.N[k]
+            for a in range(row0, packed.ports.row[k + 1]):
+                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
+        if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+            continue
+        for i in range(tab.c.shape[0]):
+            if packed.ports.row[k + 1] - row0 == 1:
+                w.n[i, row0] = y.n[row0]
+                continue
+            size = np.sqrt(w.n[i, row0] ** 2 + w.n[i, row0 + 1] ** 2)
+            if not 0.5 < size < 2.0:
+                return False
+            w.n[i, row0] /= size
+            w.n[i, row0 + 1] /= size
+    return True
+
+
+@kernel
+def lagrange(c: Floats, shift: float, ratio: float, weight: Floats2) -> None:
+    """Weights (s, s) of values at the nodes c for the points shift + ratio c."""
+    for i in range(c.shape[0]):
+        x = shift + ratio * c[i]
+        for j in range(c.shape[0]):
+            product = 1.0
+            for k in range(c.shape[0]):
+                if k != j:
+                    product *= (x - c[k]) / (c[j] - c[k])
+            weight[i, j] = product
+
+
+@kernel
+def carry(values: Floats2, weight: Floats2, line: Floats) -> None:
+    """Values (s, .) at the nodes become those at the points that the weights are for."""
+    s = values.shape[0]
+    for a in range(values.shape[1]):
+        for i in range(s):
+            x = 0.0
+            for j in range(s):
+                x += weight[i, j] * values[j, a]
+            line[i] = x
+        for i in range(s):
+            values[i, a] = line[i]

@@ -1,0 +1,227 @@
+"""Implicit stages of a structure with ports: one solver for Radau IIA and for every BDF step.
+
+    V_i = psi_v + sum_j hA_ij V'_j,   Q_i = psi_q + sum_j hA_ij V_j,   M V'_j = f(t_j, Q_j, V_j) + W F_j + Wn (N_j - N0)
+
+The matrix of the structure depends on h alone, not on modes and not on friction.  It is diagonalised over the stages;
+``Sinv`` are the inverses of M + sigma C + sigma^2 K, sigma = h lam.  They multiply corrections only, so that their
+round-off is relative to the correction.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.model.forces import (
+    Scratch,
+    belt_velocity,
+    normal_force,
+    set_state,
+    set_time,
+    structure_force,
+)
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Problem
+from fricmb.integrate.step.contact_newton import solve_ports
+from fricmb.integrate.step.contact_unknowns import PortState
+from fricmb.integrate.step.step_matrix import Factor
+from fricmb.integrate.step.tableau import Complexes2, Tableau
+
+
+class Stages(NamedTuple):
+    """Stage values V, Q (s, n), forces f, residuals; ``psi_v``, ``psi_q`` (n,), times ``t`` (s,).
+
+    ``weight`` (s, s), ``line`` (s,): room for starting values.
+    """
+
+    V: Floats2
+    Q: Floats2
+    f: Floats2
+    res: Floats2
+    dV: Floats2
+    t: Floats
+    psi_v: Floats
+    psi_q: Floats
+    hA: Floats2
+    y: Complexes2
+    weight: Floats2
+    line: Floats
+
+
+def stages(problem: Problem, tableau: Tableau) -> Stages:
+    """Room for the stages of one step."""
+    n, s = problem.n, len(tableau.c)
+    rooms = [np.zeros((s, n)) for _ in range(5)]
+    levels = len(tableau.lam)
+    history = [np.zeros(s), np.zeros(n), np.zeros(n), np.zeros((s, s)), np.zeros((levels, n), complex)]
+    history += [np.zeros((s, s)), np.zeros(s)]
+    return room(Stages._make([*rooms, *history]))
+
+
+@kernel
+def stage_residual(packed: Packed, s: Scratch, st: Stages, w: PortState, mode: Codes) -> None:
+    """Residual of the stages at V and the port forces; outputs of the ports there into ``w.gb``."""
+    n = st.V.shape[1]
+    ports = packed.ports
+    m = ports.row[-1]
+    for i in range(st.V.shape[0]):
+        for a in range(n):
+            value = st.psi_q[a]
+            for j in range(st.V.shape[0]):
+                value += st.hA[i, j] * st.V[j, a]
+            st.Q[i, a] = value
+        set_time(packed.signals, s, st.t[i], n)
+        set_state(s, st.Q[i], st.V[i])
+        structure_force(packed.structure, packed.elements, packed.spread, s, st.f[i])
+        for a in range(n):
+            for c in range(m):
+                st.f[i, a] += ports.W[a, c] * w.F[i, c]
+        for k in range(mode.shape[0]):
+            if ports.acts[k]:
+                for a in range(n):
+                    st.f[i, a] += ports.Wn[a, k] * (w.N[i, k] - ports.N0[k])
+            if ports.var[k] >= 0:
+                w.gb[i, m + ports.var[k]] = normal_force(ports, packed.normals, k, s)
+        for a in range(m):
+            value = -belt_velocity(ports, s, n, a)
+            for b in range(n):
+                value += ports.W[b, a] * st.V[i, b]
+            w.gb[i, a] = value
+    start, index, M = packed.structure.first, packed.structure.column, packed.structure.M
+    V, hA, f = st.V, st.hA, st.f
+    for i in range(V.shape[0]):
+        for a in range(n):
+            value = 0.0
+            for e in range(start[a], start[a + 1]):
+                value += M[e] * (V[i, index[e]] - st.psi_v[index[e]])
+            for j in range(V.shape[0]):
+                value -= hA[i, j] * f[j, a]
+            st.res[i, a] = value
+
+
+@block
+def structure_correction(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address: Ints) -> None:
+    """DV = -S^-1 res over all stages, by the inverses."""
+    n = st.V.shape[1]
+    s = st.V.shape[0]
+    T, Tinv, res, y, dV = tab.T, tab.Tinv, st.res, st.y, st.dV
+    levels = tab.lam.shape[0]
+    dV[:, :] = 0.0
+    for x in range(levels):
+        inverse = fac.Sinv[fac.slot[0] * levels + x]
+        for a in range(n):
+            value = 0.0 + 0.0j
+            for j in range(s):
+                value += Tinv[x, j] * res[j, a]
+            y[x, a] = value
+        for a in range(n):
+            value = 0.0 + 0.0j
+            for b in range(n):
+                value += inverse[a, b] * y[x, b]
+            for i in range(s):
+                dV[i, a] -= (T[i, x] * value).real
+
+
+#: Forces of the structure beside inertia over a step from which on one solution with the inverses is not enough, and
+#: how often it is refined then.
+STIFF, REFINEMENTS = 1e4, 4
+
+
+@kernel
+def is_stiff(packed: Packed, fac: Factor, hA: Floats2) -> bool:
+    """Whether rounding (of M + sigma C + sigma^2 K, of starts far from stiff motion) takes digits from soft motion."""
+    h = 0.0
+    for j in range(hA.shape[0]):
+        h += hA[hA.shape[0] - 1, j]
+    structure, K, C = packed.structure, fac.K, fac.C
+    for i in range(structure.f.shape[0]):
+        inertia = structure.M[structure.own[i]]
+        for e in range(structure.first[i], structure.first[i + 1]):
+            if h * (abs(C[e]) + h * abs(K[e])) > STIFF * inertia:
+                return True
+    return False
+
+
+@block
+def solve_stages(
+    packed: Packed,
+    tab: Tableau,
+    s: Scratch,
+    fac: Factor,
+    st: Stages,
+    w: PortState,
+    mode: Codes,
+    tol: Floats,
+    scale: Floats,
+    address: Ints,
+) -> int:
+    """Solve for V and the port unknowns from their present values (tol (n_c,), scale (n,): accuracy of velocities).
+
+    Returns the number of outer iterations (1 where the structure is linear), or -1 without convergence.
+    """
+    n = st.V.shape[1]
+    n_s = st.V.shape[0]
+    ports = packed.ports
+    m = ports.row[-1]
+    mi = w.Fin.shape[1]
+    linear = packed.elements.address.shape[0] == 0 and mi == m
+    once = linear and not is_stiff(packed, fac, st.hA)
+    last = np.inf
+    P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
+    w.G[:, :] = fac.G[fac.slot[0]]
+    for iteration in range(12):
+        stage_residual(packed, s, st, w, mode)
+        structure_correction(packed, tab, fac, st, address)
+        for i in range(n_s):
+            for c in range(m):
+                Fo[i, c] = w.F[i, c]
+                for a in range(n):
+                    gb[i, c] += ports.W[a, c] * dV[i, a]
+            for k in range(mode.shape[0]):
+                c = ports.var[k]
+                if c >= 0:
+                    Fo[i, m + c] = w.N[i, k]
+                    for a in range(n):
+                        gb[i, m + c] += fac.Nv[c, a] * dV[i, a]
+                        for j in range(n_s):
+                            gb[i, m + c] += st.hA[i, j] * fac.Nq[c, a] * dV[j, a]
+        if solve_ports(ports, packed.laws, s, w, st.hA, mode, tol, address) < 0:
+            return -1
+        change = 0.0
+        for j in range(n_s):
+            for c in range(mi):
+                w.dF[j * mi + c] = w.Fin[j, c] - Fo[j, c]
+        for i in range(n_s):
+            for a in range(n):
+                value = dV[i, a]
+                line = P[i * n + a]
+                for c in range(line.shape[0]):
+                    value += line[c] * w.dF[c]
+                V[i, a] += value
+                change = max(change, abs(value) / scale[a])
+        if not change < np.inf:
+            return -1
+        if once or (linear and (iteration == REFINEMENTS or change > 0.1 * last)):
+            break
+        rate = change / last
+        if change < 1e-3 or (iteration > 0 and rate < 0.9 and change * rate / (1.0 - rate) < 0.1):
+            break
+        if iteration > 1 and rate > 2.0:
+            return -1
+        last = change
+        if iteration == 11:
+            return -1
+    sound = 0.0
+    for i in range(n_s):
+        for a in range(n):
+            value = st.psi_q[a]
+            for j in range(n_s):
+                value += st.hA[i, j] * st.V[j, a]
+            st.Q[i, a] = value
+            sound += 0.0 * value
+    # comparisons pass over what is no number
+    return iteration + 1 if sound == 0.0 else -1

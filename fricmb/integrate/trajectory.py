@@ -1,0 +1,135 @@
+"""What an integrator returns: rows of accepted steps, transitions, dense output, counters."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import Any
+
+from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
+
+
+@dataclass(frozen=True, kw_only=True)
+class Samples:
+    """Everything a run knows at given times; time is the last axis.
+
+    ``q``, ``v`` (n, n_t), ``z`` (n_z, n_t), ``F`` and ``g`` (m, n_t) force on the contact's first end and relative
+    velocity, ``N`` (n_c, n_t), ``mode`` (n_c, n_t) int8, ``friction_loss`` (n_c, n_t), ``damping_loss`` and ``input``
+    (n_t,): energies cumulated from the start of the run.
+    """
+
+    t: Floats
+    q: Floats
+    v: Floats
+    z: Floats
+    F: Floats
+    g: Floats
+    N: Floats
+    mode: Codes
+    friction_loss: Floats
+    damping_loss: Floats
+    input: Floats
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transitions:
+    """Transitions in time order: ``t`` (n_e,), ``contact`` (n_e,) index, ``kind`` (n_e,) index into EVENT_KINDS."""
+
+    t: Floats
+    contact: Ints
+    kind: Ints
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counters:
+    """Work done: accepted and rejected steps, right-hand sides, Jacobians, factorisations; compile and wall seconds.
+
+    ``notes`` are sentences for the user (an outcome that hangs on round-off, an order that was held back).
+    """
+
+    n_steps: int = 0
+    n_rejected: int = 0
+    n_rhs: int = 0
+    n_jac: int = 0
+    n_lu: int = 0
+    notes: tuple[str, ...] = field(default=())
+
+
+class Trajectory(ABC):
+    """A run: rows of accepted steps (a transition's time twice, before and after) and everything in between.
+
+    Attributes
+    ----------
+    problem : Problem
+    transitions : Transitions
+    counters : Counters
+    end : Start
+        From which a further run goes on.
+    failure : str or None
+        Why the run stopped before its end, with the condition that failed.
+    instead : (name, why) or None
+        Who did the run in place of the integrator that was asked, which could not finish it.
+    """
+
+    problem: Problem
+    transitions: Transitions
+    counters: Counters
+    end: Start
+    failure: str | None
+    #: Degrees of freedom that move; None: all may.  The others keep their position, which is finite.
+    moving: Ints | None = None
+    instead: tuple[str, str] | None = None
+
+    @property
+    @abstractmethod
+    def t(self) -> Floats:
+        """Times of the rows (n_t,): non-decreasing, the first and last the ends of the run."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Ends of the run."""
+        return float(self.t[0]), float(self.t[-1])
+
+    @abstractmethod
+    def rows(self) -> Samples:
+        """Values at the rows; at a transition first the left, then the right-hand values."""
+
+    @abstractmethod
+    def sample(self, t: Floats) -> Samples:
+        """Values at times within the run, in any order; the right-hand value at a transition."""
+
+    def attach(self, problem: Problem) -> None:
+        """Take the problem again after unpickling.
+
+        A problem holds addresses that are valid in one process alone, so a trajectory pickles without it (a subclass
+        that keeps something else of the kind extends both methods).  Until it is attached, :meth:`rows` and
+        :meth:`sample` may not be called.
+        """
+        object.__setattr__(self, "problem", problem)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "problem"}
+
+
+class SampledTrajectory(Trajectory):
+    """A run that is kept as samples; what lies between them is for subclasses to say."""
+
+    def __init__(
+        self, problem: Problem, samples: Samples, transitions: Transitions, counters: Counters, end: Start,
+        failure: str | None,
+    ) -> None:  # fmt: skip
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._samples = samples
+
+    @property
+    def t(self) -> Floats:
+        """Times of the samples."""
+        return self._samples.t
+
+    def rows(self) -> Samples:
+        """The samples."""
+        return self._samples
