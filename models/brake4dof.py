@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import numbers
 from types import MappingProxyType
 
 import fricmb as fm
@@ -73,7 +72,11 @@ def brake4dof(
         raise fm.SceneError(f"brake4dof: case must be one of {', '.join(CASES)}; got {case!r}")
     if law is not None and mu_s_N is not None:
         raise fm.SceneError("brake4dof: mu_s_N belongs to the built-in Coulomb law; with law= leave it out")
-    if not isinstance(mass_ratio, numbers.Real) or not 0.0 < mass_ratio < math.inf:
+    try:
+        is_ratio = 0.0 < mass_ratio < math.inf
+    except TypeError:  # no number
+        is_ratio = False
+    if not is_ratio:
         raise fm.SceneError(f"brake4dof: mass_ratio must be a finite number > 0, got {mass_ratio!r}")
     Omega1, Omega2, delta = (
         given if given is not None else default
