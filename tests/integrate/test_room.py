@@ -138,7 +138,7 @@ def test_only_a_name_in_the_table_becomes_a_block():
 
 def test_a_block_is_called_through_the_table_of_addresses():
     # "complete" stands for any block: here it is one of this file, with arguments and result of its own
-    import fricmb.integrate.compile.room as module
+    import fricmb.integrate.compile.block as module
 
     kept = dict(module._blocks)
     try:

@@ -108,7 +108,14 @@ def root_between(run: Run, low: float, high: float) -> float:
 
 
 @kernel
-def first_stop(run: Run, r0: float, tol: float) -> float:
+def grain_of_r(run: Run, h: float) -> float:
+    """Round-off of r over a step: of what friction alone changes it by, many forces being about as large."""
+    last = run.flags[ROWS] - 1
+    return float(1e-14 * h * run.lim[MU_K] * max(run.con[D, 0, 0], run.con[D, last, last]))
+
+
+@kernel
+def first_stop(run: Run, r0: float, h: float, tol: float) -> float:
     """Part of the step after which r first is 0, or 2 + e if it stays positive.
 
     Nodes, the points half-way and minima between them are looked at; e is the error of this polynomial, which friction
@@ -125,7 +132,8 @@ def first_stop(run: Run, r0: float, tol: float) -> float:
     for i in range(s):
         low = min(low, run.wk[LINES, RHS, i])
         high = max(high, run.wk[LINES, RHS, i])
-    unresolved = tail_of_r(run, r0) / (high + 1e-300)
+    # slip that dies out ends in round-off, which has no smooth part to resolve
+    unresolved = max(0.0, tail_of_r(run, r0) - grain_of_r(run, h)) / (high + 1e-300)
     resolved = 2.0 + unresolved / min(0.03, max(tol, 1e-10))
     if unresolved < 1e-3 and low > 0.5 * (high - low):
         return float(resolved)
@@ -342,7 +350,10 @@ def nearly_stopped(run: Run, since: float, tol: float, r: float, h: float) -> bo
     if r * reach * max(run.wk[LINES, CHANGE, 0], run.wk[LINES, CHANGE, m - 1]) > 1e-5 * tol:
         return False
     rate = closing_rate(run, since)
-    if rate >= 0.0 or -r / rate > h:
+    if rate >= 0.0:
         return False
-    snap(run, r, -r / rate)
-    return True
+    if -r / rate <= h:
+        snap(run, r, -r / rate)
+        return True
+    # slip that dies out never gets to 0
+    return bool(r <= grain_of_r(run, h))

@@ -135,7 +135,7 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
         for a in range(m):
             r0 += run.sm[G, a] * run.sm[G, a]
         r0 = math.sqrt(r0)
-        stop = first_stop(run, r0, tol)
+        stop = first_stop(run, r0, h, tol)
         if stop < 1.5:
             gone = land(run, h, stop, since, tol, stiff, run.places)
             if gone > 0.0:
