@@ -86,6 +86,8 @@ def many_rows(rtol: float) -> int:
 #: Degrees of freedom up to which steps with dense matrices are bearable, and from which on banded steps are faster than
 #: exact structure (measured with uncoupled modes).
 BEARABLE, WIDE = 1024, 100
+#: Tolerance down to which time steps are right under normal forces that vary in time (judged by the oracle).
+LOOSE = 1e-4
 
 
 #: Contacts from which on Taylor steps are the fastest where contacts are coupled or friction depends on slip speed, and
@@ -124,10 +126,11 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
         rows = port_rows(problem)
         return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     stepping = TimeStepping()
-    # under normal forces that vary in time, time steps still make transitions that are none
-    if problem.m > many_rows(rtol) and problem.n_v == 0 and stepping.refuses(problem) is None:
+    # under normal forces that vary, time steps are right at loose tolerances alone
+    steps = (problem.n_v == 0 or rtol >= LOOSE) and stepping.refuses(problem) is None
+    if steps and problem.n_v == 0 and problem.m > many_rows(rtol):
         crowd = f"{problem.m} rows of contacts, more than {many_rows(rtol)}: implicit steps over transitions"
         return stepping, f"{crowd}; {many.refuses(problem)}"
-    if problem.n > BEARABLE and problem.n_c and not is_banded(problem) and stepping.refuses(problem) is None:
+    if steps and problem.n > BEARABLE and problem.n_c and not is_banded(problem):
         return stepping, f"{problem.n} degrees of freedom in no narrow band: implicit steps over transitions"
     return Bdf(), f"the general method: {reason}"

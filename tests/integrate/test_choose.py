@@ -10,6 +10,7 @@ import pytest
 import fricmb as fm
 from fricmb.bench._closed import free_oscillator
 from fricmb.bench.stability._structures import stiff_pair
+from fricmb.integrate import select
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.select import Guarded
 
@@ -33,6 +34,21 @@ def row(n, law, *, axes="x", contacts=None, **contact):
 
 COULOMB = fm.laws.Coulomb(mu_s=1.2, mu_k=1.0)
 STRIBECK = fm.laws.Stribeck(mu_s=1.2, mu_k=1.0, v_s=0.1)
+
+
+def test_time_steps_are_left_to_what_they_are_right_for(monkeypatch):
+    """A wide structure under a varying normal force goes to the general method where time steps have not passed."""
+    monkeypatch.setattr(select, "BEARABLE", 2)
+    monkeypatch.setattr(select, "is_banded", lambda problem: False)
+    plain, varying = row(3, STRIBECK, axes="xy"), row(3, STRIBECK, axes="xy", normal_force=1.0 + 0.2 * fm.t)
+    chosen = {
+        (scene is varying, rtol): fm.simulate(scene, t_end=0.01, rtol=rtol).stats.method
+        for scene in (plain, varying)
+        for rtol in (1e-3, 1e-6)
+    }
+    assert chosen == {
+        (False, 1e-3): "timestepping", (False, 1e-6): "timestepping", (True, 1e-3): "timestepping", (True, 1e-6): "bdf",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(
