@@ -38,6 +38,17 @@ def test_scene_moves_as_the_oracle_says(kind, seed):
     assert {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD} == {}
 
 
+@pytest.mark.parametrize(("kind", "seed"), [("stack", 10014), ("chain", 10003)])
+def test_what_was_released_first_holds_where_it_can(kind, seed):
+    """One comes to rest and cannot be held beside another that has rested; with that one gone it can."""
+    spec = generate(kind, seed)
+    true = truth(chain_case(spec) if isinstance(spec, Chain) else case_of(spec))
+    assert not true.marginal
+    verdicts = {method: judge(true, method) for method in METHODS if method != "timestepping"}
+    assert verdicts["auto"].kind == "right"
+    assert {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD} == {}
+
+
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "chain"])
 def test_a_seed_gives_one_scene_and_its_data_give_it_back(kind):
     spec = generate(kind, 5)

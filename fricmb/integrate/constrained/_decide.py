@@ -147,17 +147,10 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     for _ in range(4 * count + 4):
         if not ease(mech, k, w, y):
             break
-        scale = largest_acceleration(mech, k, y)
-        worst, most = -1, 0.0
-        for c in range(n_c):
-            if at_rest(mech, y, c, part):
-                beyond = wrong(mech, k, y, c, scale)
-                if c == forced and y.mode[c] != STICK and beyond < 1e-6:
-                    beyond = 0.0
-                first = worst >= 0 and part[c] < part[worst]  # it comes to rest, the other has rested
-                if beyond > 0.0 and (first or (beyond > most and (worst < 0 or part[c] == part[worst]))):
-                    worst, most = c, beyond
+        worst = find_wrong(mech, k, y, part, forced)
         if worst < 0:
+            if not hold_again(mech, k, w, y, part, forced):
+                break
             set_out(mech, y)
             return FOUND
         if y.mode[worst] == STICK:
@@ -165,6 +158,50 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
         else:
             y.mode[worst] = STICK
     return enumerate_modes(mech, k, w, y, part, count, mech.address)
+
+
+@kernel
+def find_wrong(mech: Mech, k: Moving, y: State, part: Codes, forced: int) -> int:
+    """The port whose mode is to be changed next; -1 where all hold.  What comes to rest goes before what has rested."""
+    scale = largest_acceleration(mech, k, y)
+    worst, most = -1, 0.0
+    for c in range(y.mode.shape[0]):
+        if at_rest(mech, y, c, part):
+            beyond = wrong(mech, k, y, c, scale)
+            if c == forced and y.mode[c] != STICK and beyond < 1e-6:
+                beyond = 0.0
+            first = worst >= 0 and part[c] < part[worst]
+            if beyond > 0.0 and (first or (beyond > most and (worst < 0 or part[c] == part[worst]))):
+                worst, most = c, beyond
+    return worst
+
+
+@kernel
+def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
+    """Where several were released, hold those that need not slip, what has rested first; False without convergence.
+
+    A port that was released first may be able to stick once another has let go.
+    """
+    count = 0
+    for c in range(y.mode.shape[0]):
+        if at_rest(mech, y, c, part) and y.mode[c] != STICK:
+            count += 1
+    changed = False
+    for which in (RESTED, ARRIVES):
+        for c in range(y.mode.shape[0]):
+            if count < 2 or c == forced or part[c] != which or y.mode[c] == STICK or not at_rest(mech, y, c, part):
+                continue
+            direction = y.n[mech.port.row[c]]
+            hold(mech, y, c, False)
+            if ease(mech, k, w, y) and find_wrong(mech, k, y, part, forced) < 0:
+                count -= 1
+                changed = False
+                continue
+            changed = True
+            release(mech, k, y, c)
+            if not plane(mech, c):
+                y.n[mech.port.row[c]] = direction
+    return not changed or ease(mech, k, w, y)
 
 
 @kernel

@@ -114,25 +114,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
     for trial in range(6 * nc + 10):
         if stopped() or not try_modes(y, r, s, address):
             break
-        if ports.soft[0] > 0.0:
-            for k in range(nc):
-                held[k] = ports.mu_s[k] * y.N[k]
-            share(ports, r.mode, held, w.F[0], y.way)
-        worst, back, excess = -1, -1, 1.0 + MARGIN
-        for k in range(nc):
-            row0 = ports.row[k]
-            d = ports.row[k + 1] - row0
-            if r.mode[k] == STICK:
-                size = slip_speed(w.F[0], row0, d)
-                limit = ports.mu_s[k] * y.N[k]
-                ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
-                # what comes to rest lets go before what has rested
-                first = worst >= 0 and r.rested[k] < r.rested[worst]
-                later = worst >= 0 and r.rested[k] > r.rested[worst]
-                if ratio > 1.0 + MARGIN and (first or (ratio > excess and not later)):
-                    excess, worst = ratio, k
-            elif r.mode[k] == SLIP and w.r[0, k] < least * big and r.part[k] == 1:
-                back = k
+        worst, back = find_wrong(y, r, held, least * big)
         if worst >= 0:
             row0 = ports.row[worst]
             size = slip_speed(w.F[0], row0, ports.row[worst + 1] - row0)
@@ -141,6 +123,8 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
             r.mode[worst] = SLIP
         elif back >= 0:
             r.mode[back] = STICK
+        elif not hold_again(y, r, s, held, least * big, address):
+            break
         else:
             take_modes(packed, y, r, w.n[0], w.F[0])
             return trial + 1
@@ -149,6 +133,61 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         return -1
     take_modes(packed, y, r, y.n, y.F)
     return 1
+
+
+@kernel
+def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]:
+    """The contact that is to be released next, being beyond its cone, and one that would slip against its force.
+
+    Either is -1 where there is none.  What comes to rest is released before what has rested.
+    """
+    ports, w = r.ports, r.w
+    if ports.soft[0] > 0.0:
+        for k in range(r.mode.shape[0]):
+            held[k] = ports.mu_s[k] * y.N[k]
+        share(ports, r.mode, held, w.F[0], y.way)
+    worst, back, excess = -1, -1, 1.0 + MARGIN
+    for k in range(r.mode.shape[0]):
+        row0 = ports.row[k]
+        if r.mode[k] == STICK:
+            size = slip_speed(w.F[0], row0, ports.row[k + 1] - row0)
+            limit = ports.mu_s[k] * y.N[k]
+            ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
+            first = worst >= 0 and r.rested[k] < r.rested[worst]
+            later = worst >= 0 and r.rested[k] > r.rested[worst]
+            if ratio > 1.0 + MARGIN and (first or (ratio > excess and not later)):
+                excess, worst = ratio, k
+        elif r.mode[k] == SLIP and w.r[0, k] < least and r.part[k] == 1:
+            back = k
+    return worst, back
+
+
+@kernel
+def hold_again(y: State, r: Rest, s: Scratch, held: Floats, least: float, address: Ints) -> bool:
+    """Where several were released, hold those that need not slip, what has rested first; False without convergence.
+
+    A contact that was released first may be able to stick once another has let go.
+    """
+    count = 0
+    for k in range(r.mode.shape[0]):
+        if r.mode[k] == SLIP and r.part[k] == 1:
+            count += 1
+    if count < 2:
+        return True
+    for rested in (1, 0):
+        for k in range(r.mode.shape[0]):
+            if r.mode[k] != SLIP or r.part[k] != 1 or r.rested[k] != rested or count < 2:
+                continue
+            r.mode[k] = STICK
+            holds = try_modes(y, r, s, address)
+            if holds:
+                worst, back = find_wrong(y, r, held, least)
+                holds = worst < 0 and back < 0
+            if holds:
+                count -= 1
+            else:
+                r.mode[k] = SLIP
+    return try_modes(y, r, s, address)
 
 
 @kernel

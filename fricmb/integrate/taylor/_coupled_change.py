@@ -190,6 +190,18 @@ def keep_net_event(net: Net, t: float, c: int, kind: int) -> None:
     keep_event(net, t, c, kind)
 
 
+@kernel
+def ask_again(net: Net, c: int, tau: float, t: float) -> None:
+    """Of those that have just turned round: now that contact c has let go they may be able to stick."""
+    at = net.i[N_EVENTS] - 1
+    while at >= 0 and net.events[at, 0] == t:
+        other = int(net.events[at, 1])
+        turned = net.events[at, 2] == EVENT_REVERSAL and net.mode[other] == SLIP
+        if turned and net.coupled.group[other] == net.coupled.group[c]:
+            push_due(net, other, tau)
+        at -= 1
+
+
 @block
 def coupled_change(net: Net, c: int, tau: float, places: Ints) -> int:
     """Contact c changes its mode at tau; returns 0, or 1 where the correction would touch too many dofs."""
@@ -222,4 +234,6 @@ def coupled_change(net: Net, c: int, tau: float, places: Ints) -> int:
     for slot in range(net.i[N_TOUCHED]):
         push_due(net, co.here[slot], taylor_search(net, co.here[slot], tau, places))
     forget(net, count)
+    if kind == EVENT_SLIP:
+        ask_again(net, c, tau, net.x[TIME] + tau * h)
     return 0
