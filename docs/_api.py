@@ -167,4 +167,4 @@ def _latex(expression) -> str:
         plain = sympy.latex(sympy.Symbol(name))
         is_letter = "\\" in plain or head.rstrip("0123456789")[1:] == ""
         words[symbol] = plain if is_letter else rf"\mathrm{{{head}}}" + (f"_{{{below}}}" if below else "")
-    return sympy.latex(expression.xreplace(tiny), symbol_names=words)
+    return sympy.latex(expression.xreplace(tiny), symbol_names=words, mul_symbol=r" \, ")
