@@ -149,7 +149,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
             break
         worst = find_wrong(mech, k, y, part, forced)
         if worst < 0:
-            if not hold_again(mech, k, w, y, part, forced):
+            # what breaks away takes along whom it will; what arrives may have been released for another's sake
+            if forced < 0 and not hold_again(mech, k, w, y, part):
                 break
             set_out(mech, y)
             return FOUND
@@ -177,8 +178,8 @@ def find_wrong(mech: Mech, k: Moving, y: State, part: Codes, forced: int) -> int
 
 
 @kernel
-def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
-    """Where several were released, hold those that need not slip, what has rested first; False without convergence.
+def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
+    """Where several were released, hold those that come to rest and need not slip; False without convergence.
 
     A port that was released first may be able to stick once another has let go.
     """
@@ -187,20 +188,19 @@ def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced:
         if at_rest(mech, y, c, part) and y.mode[c] != STICK:
             count += 1
     changed = False
-    for which in (RESTED, ARRIVES):
-        for c in range(y.mode.shape[0]):
-            if count < 2 or c == forced or part[c] != which or y.mode[c] == STICK or not at_rest(mech, y, c, part):
-                continue
-            direction = y.n[mech.port.row[c]]
-            hold(mech, y, c, False)
-            if ease(mech, k, w, y) and find_wrong(mech, k, y, part, forced) < 0:
-                count -= 1
-                changed = False
-                continue
-            changed = True
-            release(mech, k, y, c)
-            if not plane(mech, c):
-                y.n[mech.port.row[c]] = direction
+    for c in range(y.mode.shape[0]):
+        if count < 2 or part[c] != ARRIVES or y.mode[c] == STICK or not at_rest(mech, y, c, part):
+            continue
+        direction = y.n[mech.port.row[c]]
+        hold(mech, y, c, False)
+        if ease(mech, k, w, y) and find_wrong(mech, k, y, part, -1) < 0:
+            count -= 1
+            changed = False
+            continue
+        changed = True
+        release(mech, k, y, c)
+        if not plane(mech, c):
+            y.n[mech.port.row[c]] = direction
     return not changed or ease(mech, k, w, y)
 
 

@@ -164,29 +164,31 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
 
 @kernel
 def hold_again(y: State, r: Rest, s: Scratch, held: Floats, least: float, address: Ints) -> bool:
-    """Where several were released, hold those that need not slip, what has rested first; False without convergence.
+    """Where several were released, hold those that come to rest and need not slip; False without convergence.
 
-    A contact that was released first may be able to stick once another has let go.
+    A contact that was released first may be able to stick once another has let go.  What breaks away (part 2) takes
+    along whom it will.
     """
     count = 0
     for k in range(r.mode.shape[0]):
+        if r.part[k] == 2:
+            return True
         if r.mode[k] == SLIP and r.part[k] == 1:
             count += 1
     if count < 2:
         return True
-    for rested in (1, 0):
-        for k in range(r.mode.shape[0]):
-            if r.mode[k] != SLIP or r.part[k] != 1 or r.rested[k] != rested or count < 2:
-                continue
-            r.mode[k] = STICK
-            holds = try_modes(y, r, s, address)
-            if holds:
-                worst, back = find_wrong(y, r, held, least)
-                holds = worst < 0 and back < 0
-            if holds:
-                count -= 1
-            else:
-                r.mode[k] = SLIP
+    for k in range(r.mode.shape[0]):
+        if r.mode[k] != SLIP or r.part[k] != 1 or r.rested[k] == 1 or count < 2:
+            continue
+        r.mode[k] = STICK
+        holds = try_modes(y, r, s, address)
+        if holds:
+            worst, back = find_wrong(y, r, held, least)
+            holds = worst < 0 and back < 0
+        if holds:
+            count -= 1
+        else:
+            r.mode[k] = SLIP
     return try_modes(y, r, s, address)
 
 
