@@ -191,16 +191,15 @@ def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool
     for c in range(y.mode.shape[0]):
         if count < 2 or part[c] != ARRIVES or y.mode[c] == STICK or not at_rest(mech, y, c, part):
             continue
-        direction = y.n[mech.port.row[c]]
+        forces, reactions, directions, mode = y.F.copy(), y.lam.copy(), y.n.copy(), y.mode[c]
         hold(mech, y, c, False)
         if ease(mech, k, w, y) and find_wrong(mech, k, y, part, -1) < 0:
             count -= 1
             changed = False
             continue
         changed = True
-        release(mech, k, y, c)
-        if not plane(mech, c):
-            y.n[mech.port.row[c]] = direction
+        y.mode[c] = mode
+        y.F[:], y.lam[:], y.n[:] = forces, reactions, directions
     return not changed or ease(mech, k, w, y)
 
 
