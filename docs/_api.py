@@ -93,12 +93,15 @@ def run(code: str):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
+    import fricmb as fm
+
     module = types.ModuleType("api_example")  # what it declares can be pickled
     sys.modules[module.__name__] = module
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
         exec(compile(code, "example", "exec"), module.__dict__)
     plt.close("all")
+    fm.plot.use(None)  # an example may have chosen a theme: the next one starts as a user does
     return out.getvalue(), module.__dict__.get("figure")
 
 

@@ -52,7 +52,7 @@ def test_formulas_are_those_of_the_laws():
     stribeck = "\n".join(_api.formula(fm.laws.Stribeck))
     assert r"e^{- \left(\frac{r}{v_{s}}\right)^{\mathrm{exponent}}}" in stribeck
     dahl = "\n".join(_api.formula(fm.laws.Dahl))
-    assert r"\dot {z} = v - \frac{\sigma_{0} z \left|{v}\right|}{\mu}" in dahl
+    assert r"\dot {z} = v - \frac{\sigma_{0} \, z \, \left|{v}\right|}{\mu}" in dahl
     assert "10^{-200}" not in dahl
     typeset = [name for name in fm.laws.names if _api.formula(getattr(fm.laws, name))]
     assert len(typeset) >= 28
