@@ -35,7 +35,7 @@ def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = N
                     for kind in ("stick", "slip", "open", "close", "reversal")
                 },
                 "stick_share": stick_share(sol, name),
-                "rest_share": float(np.diff(sol.rest_spans(name)).sum() / (sol.t_end - sol.t_start)),
+                "rest_share": sol.rest_share(name),
                 "friction_loss": float(energy.friction_loss_by_contact[k, -1]),
             }
             for k, name in enumerate(sol.contact_names)

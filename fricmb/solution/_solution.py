@@ -8,6 +8,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.errors import IntegrationError, unknown_name
 from fricmb.integrate import Samples, Start
@@ -15,7 +16,7 @@ from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Events
 from fricmb.solution._names import Names
-from fricmb.solution._rest import rest_spans
+from fricmb.solution._rest import resting
 from fricmb.solution._run import Record, Run, first_bad, is_finite
 from fricmb.solution._stats import Stats
 from fricmb.solution._stored import Stored
@@ -230,8 +231,14 @@ class Solution:
 
         That is so of joints of a mechanism which others hold: what sticks there is enough to stop them all.
         """
-        k, row = self.names.contact(contact), self.names.row
-        return rest_spans(self._rows, slice(row[k], row[k + 1]), k)
+        t, rests = self._resting
+        mine = rests[self.names.contact(contact)]
+        return np.column_stack((t[:-1][mine], t[1:][mine]))
+
+    def rest_share(self, contact: str) -> float:
+        """Share of the run that a contact is at rest without sticking."""
+        length = self.t_end - self.t_start
+        return float(np.diff(self.rest_spans(contact)).sum() / length) if length > 0.0 else 0.0
 
     @property
     def _rows(self) -> Samples:
@@ -241,6 +248,11 @@ class Solution:
     def _rows_of_modes(self) -> tuple[Codes, Floats]:
         samples = self._rows
         return samples.mode[:, :-1], np.diff(samples.t)
+
+    @cached_property
+    def _resting(self) -> tuple[Floats, NDArray[np.bool_]]:
+        samples = self._rows
+        return samples.t, resting(samples, self.names.row)
 
     @property
     def run(self) -> Run:

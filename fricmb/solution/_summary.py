@@ -63,7 +63,7 @@ def _contacts(sol: Solution) -> list[str]:
             + (", ".join(counts) or "no transitions")
             + f"; stick {_share(sol, group, STICK)} of the time"
             + (f", open {opened}" if (opened := _share(sol, group, OPEN)) != "0.0%" else "")
-            + (f", at rest without sticking {rest:.1%}" if only and (rest := _rest(sol, only)) >= 5e-4 else "")
+            + (f", at rest without sticking {rest:.1%}" if only and (rest := sol.rest_share(only)) >= 5e-4 else "")
             + f"; {lost} lost to friction"
         )
     return lines
@@ -72,12 +72,6 @@ def _contacts(sol: Solution) -> list[str]:
 def _lost(sol: Solution, places: list[int]) -> float:
     """Energy that contacts have lost to friction at the end."""
     return float(sol.energy.friction_loss_by_contact[places, -1].sum())
-
-
-def _rest(sol: Solution, contact: str) -> float:
-    """Share of the run that a contact is at rest without sticking."""
-    spans = sol.rest_spans(contact)
-    return float(np.diff(spans).sum() / (sol.t_end - sol.t_start)) if sol.t_end > sol.t_start else 0.0
 
 
 def _share(sol: Solution, group: tuple[str, ...], mode: int) -> str:
