@@ -21,11 +21,13 @@ HALVINGS = 10
 
 
 @kernel
-def put_arguments(packed: Packed, s: Scratch, k: int, t: float, q: Floats, v: Floats, x: Floats) -> int:
-    """Arguments of element k at an instant; returns their number."""
+def put_arguments(packed: Packed, s: Scratch, t: float, q: Floats, v: Floats, x: Floats) -> None:
+    """Arguments of all elements at an instant, one element's after the other's."""
     set_time(packed.signals, s, t, q.shape[0])
     set_state(s, q, v)
-    return gather(packed.elements, k, s.X, x)
+    start = packed.elements.x_start
+    for k in range(start.shape[0] - 1):
+        gather(packed.elements, k, s.X, x[start[k] :])
 
 
 @kernel
@@ -70,16 +72,22 @@ def jump_error(
     """
     elements, spread = packed.elements, packed.spread
     worst = 0.0
-    for k in range(elements.address.shape[0]):
-        n_x = elements.x_start[k + 1] - elements.x_start[k]
-        x = np.zeros((3, n_x))
-        put_arguments(packed, s, k, y.t[0], y.q, y.v, x[0])
-        put_arguments(packed, s, k, t, q, v, x[1])
+    n_e = elements.address.shape[0]
+    if n_e == 0:
+        return 0.0
+    ends = np.zeros((2, elements.x_start[n_e]))
+    put_arguments(packed, s, y.t[0], y.q, y.v, ends[0])
+    put_arguments(packed, s, t, q, v, ends[1])
+    for k in range(n_e):
+        first_x = elements.x_start[k]
+        n_x = elements.x_start[k + 1] - first_x
         crosses = False
-        for a in range(n_x):
-            crosses = crosses or x[0, a] * x[1, a] < 0.0
+        for a in range(first_x, first_x + n_x):
+            crosses = crosses or ends[0, a] * ends[1, a] < 0.0
         if not crosses:
             continue
+        x = np.zeros((3, n_x))
+        x[:2] = ends[:, first_x : first_x + n_x]
         n_f = spread.f_start[k + 1] - spread.f_start[k]
         f = np.zeros((3, n_f * (1 + n_x)))
         put_force(packed, s, k, x[0], f[0])
