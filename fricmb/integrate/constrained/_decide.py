@@ -171,8 +171,8 @@ def find_wrong(mech: Mech, k: Moving, y: State, part: Codes, forced: int) -> int
             beyond = wrong(mech, k, y, c, scale)
             if c == forced and y.mode[c] != STICK and beyond < 1e-6:
                 beyond = 0.0
-            first = worst >= 0 and part[c] < part[worst]
-            if beyond > 0.0 and (first or (beyond > most and (worst < 0 or part[c] == part[worst]))):
+            first = worst < 0 or part[c] < part[worst]
+            if beyond > 0.0 and (first or (part[c] == part[worst] and beyond > most)):
                 worst, most = c, beyond
     return worst
 
@@ -193,13 +193,12 @@ def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool
             continue
         forces, reactions, directions, mode = y.F.copy(), y.lam.copy(), y.n.copy(), y.mode[c]
         hold(mech, y, c, False)
-        if ease(mech, k, w, y) and find_wrong(mech, k, y, part, -1) < 0:
+        changed = not ease(mech, k, w, y) or find_wrong(mech, k, y, part, -1) >= 0
+        if changed:
+            y.mode[c] = mode
+            y.F[:], y.lam[:], y.n[:] = forces, reactions, directions
+        else:
             count -= 1
-            changed = False
-            continue
-        changed = True
-        y.mode[c] = mode
-        y.F[:], y.lam[:], y.n[:] = forces, reactions, directions
     return not changed or ease(mech, k, w, y)
 
 

@@ -15,7 +15,7 @@ from fricmb.integrate.constrained._codes import (
     FAIL_SINGULAR,
     FULL,
 )
-from fricmb.integrate.constrained._decide import FOUND, SEVERAL, decide, mark_rest
+from fricmb.integrate.constrained._decide import FOUND, SEVERAL, SLIPS_ON, decide, mark_rest
 from fricmb.integrate.constrained._kinks import mark_bends
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import project_velocities
@@ -42,8 +42,8 @@ def begin(
     mark_rest(mech, y, small, part)
     if given:
         for i in range(part.shape[0]):
-            if y.mode[i] == SLIP and part[i] != 0:
-                part[i] = 0
+            if y.mode[i] == SLIP:
+                part[i] = SLIPS_ON
     code = decide(mech, k, w, y, part, -1, mech.address)
     if code != FOUND:
         if margins(mech, k, w, y, out, True, mech.address) <= 0.0:

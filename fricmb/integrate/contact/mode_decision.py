@@ -153,9 +153,8 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
             size = slip_speed(w.F[0], row0, ports.row[k + 1] - row0)
             limit = ports.mu_s[k] * y.N[k]
             ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
-            first = worst >= 0 and r.rested[k] < r.rested[worst]
-            later = worst >= 0 and r.rested[k] > r.rested[worst]
-            if ratio > 1.0 + MARGIN and (first or (ratio > excess and not later)):
+            first = worst < 0 or r.rested[k] < r.rested[worst]
+            if ratio > 1.0 + MARGIN and (first or (r.rested[k] == r.rested[worst] and ratio > excess)):
                 excess, worst = ratio, k
         elif r.mode[k] == SLIP and w.r[0, k] < least and r.part[k] == 1:
             back = k
@@ -175,21 +174,20 @@ def hold_again(y: State, r: Rest, s: Scratch, held: Floats, least: float, addres
             return True
         if r.mode[k] == SLIP and r.part[k] == 1:
             count += 1
-    if count < 2:
-        return True
+    changed = False
     for k in range(r.mode.shape[0]):
         if r.mode[k] != SLIP or r.part[k] != 1 or r.rested[k] == 1 or count < 2:
             continue
         r.mode[k] = STICK
-        holds = try_modes(y, r, s, address)
-        if holds:
+        changed = not try_modes(y, r, s, address)
+        if not changed:
             worst, back = find_wrong(y, r, held, least)
-            holds = worst < 0 and back < 0
-        if holds:
-            count -= 1
-        else:
+            changed = worst >= 0 or back >= 0
+        if changed:
             r.mode[k] = SLIP
-    return try_modes(y, r, s, address)
+        else:
+            count -= 1
+    return not changed or try_modes(y, r, s, address)
 
 
 @kernel
