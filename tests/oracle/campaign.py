@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from .judge import LEAST, Truth, Verdict, Worker, judge, truth
+from .judge import LEAST, Truth, Verdict, Worker, end_with_parent, judge, truth
 from .mechanisms import Chain
 from .mechanisms import case_of as chain_case
 from .problem import OracleError
@@ -58,6 +58,7 @@ def gathered(options: argparse.Namespace, start: float) -> Iterator[Found]:
 
 def part(options: argparse.Namespace, number: int, start: float, done: Any) -> None:
     """What one of several processes does."""
+    end_with_parent()
     for found in tried(options, number, start):
         done.put(found)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import threading
 import time
 import warnings
 from collections import Counter
@@ -133,8 +134,16 @@ class Worker:
             self.process = None
 
 
+def end_with_parent() -> None:
+    """This process ends when the one that began it does, however that happens: killed, it could not tell us."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
+
+
 def serve(pipe: Any) -> None:
     """What the process does."""
+    end_with_parent()
     while True:
         try:
             arguments = pipe.recv()
