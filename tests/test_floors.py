@@ -21,7 +21,7 @@ FLOORS = (
     {"simulate", "sweep"},
     {"analysis", "audit"},
     {"plot"},
-    {"models", "testing", "bench"},
+    {"models", "testing", "bench", "precompile"},
     {"cli"},
 )
 #: Inside `integrate`, imports inside functions counted: what a problem is and what a run returns; compilation; what

@@ -110,6 +110,7 @@ def parser() -> argparse.ArgumentParser:
     _add_bench(commands)
     _add_figures(commands)
     _add_plot(commands)
+    _add_compile(commands)
     return top
 
 
@@ -213,6 +214,15 @@ def _add_plan(commands: _Commands) -> None:
         "_show:show_plan",
         model=True,
     )
+
+
+def _add_compile(commands: _Commands) -> None:
+    sub = _command(commands, "compile", "compile all kernels ahead of use, into the cache", "_compile:compile_ahead")
+    sub.add_argument(
+        "--processes", type=_threads, metavar="N", help="so many at once (default: as many as there are processors)"
+    )
+    sub.add_argument("--into", type=Path, metavar="DIR", help="a folder that gets a copy of all that was made")
+    sub.add_argument("--quiet", action="store_true", help="say nothing")
 
 
 def _add_bench(commands: _Commands) -> None:

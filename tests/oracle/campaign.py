@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import multiprocessing
 import queue
+import signal
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from .judge import LEAST, Truth, Verdict, Worker, end_with_parent, judge, truth
@@ -18,6 +20,9 @@ from .shrink import BAD, shrunk
 from .spec import case_of
 from .table import LAWS, SITUATIONS
 from .table import case as cell
+
+#: How long the oracle itself may take for a scene; most take one or two.
+SECONDS = 120.0
 
 Found = tuple[str, dict[str, Any], str, list[tuple[str, Verdict, dict[str, Any]]]]
 
@@ -72,7 +77,8 @@ def tried(options: argparse.Namespace, number: int, start: float) -> Iterator[Fo
         if (time.monotonic() - start) / 60.0 > options.minutes:
             break
         try:
-            true = truth(make(where, spec))
+            with limited(SECONDS):
+                true = truth(make(where, spec))
         except OracleError as error:
             yield kind, where, str(error), []
             continue
@@ -81,6 +87,22 @@ def tried(options: argparse.Namespace, number: int, start: float) -> Iterator[Fo
         else:
             yield kind, where, "judged", list(runs(true, spec, worker, options))
     worker.stop()
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """An error where what is inside takes longer (of this process's processor time)."""
+
+    def too_long(number: int, frame: Any) -> None:
+        raise OracleError(f"the oracle takes longer than {seconds:g} s")
+
+    before = signal.signal(signal.SIGPROF, too_long)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def runs(true: Truth, spec: Any, worker: Worker, options: argparse.Namespace) -> Iterator[tuple[str, Verdict, Any]]:

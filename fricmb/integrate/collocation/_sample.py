@@ -31,7 +31,7 @@ from fricmb.integrate.collocation._layout import (
 )  # fmt: skip
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.integrate.problem import SLIP, Floats, Floats2, Floats3, Ints
 
 
 @entry
@@ -98,8 +98,8 @@ def block_in_slip(
 
 @entry
 def sample_rows(
-    run: Run, at: Ints, tau: Floats, t_of: Floats, hold: Floats, load: Floats, polynomial: Floats, x: Floats,
-    q: Floats, v: Floats, F: Floats, g: Floats, mode: Ints, loss: Floats,
+    run: Run, at: Ints, tau: Floats, t_of: Floats, hold: Floats3, load: Floats2, polynomial: Floats2, x: Floats2,
+    q: Floats2, v: Floats2, F: Floats2, g: Floats2, mode: Ints, loss: Floats,
 ) -> None:  # fmt: skip
     """Fill q, v (n, n_t), F, g (m, n_t), mode, loss (n_t,) at ``tau`` after the start of each row ``at``.
 

@@ -16,10 +16,10 @@ from numba.extending import intrinsic
 from fricmb.integrate.compile.block_places import PLACES
 from fricmb.integrate.compile.content import describe_signature
 from fricmb.integrate.compile.kernel_cache import kept
-from fricmb.integrate.compile.room import annotations_of, array_type, room_type
+from fricmb.integrate.compile.linked import MachineCompiler
+from fricmb.integrate.compile.room import annotations_of, argument_types
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
-_SCALARS = {"int": types.int64, "float": types.float64, "bool": types.boolean, "None": types.void}
 
 _blocks: dict[str, Any] = {}
 
@@ -27,20 +27,15 @@ _blocks: dict[str, Any] = {}
 def block(function: _Function) -> _Function:
     """Compile ``function`` on its own and let kernels call it through the table of addresses, its last argument.
 
-    Argument types are read from the annotations: rooms, Floats (Floats2, ...), Ints, Codes, Pivots, int, float, bool.
+    Argument types are read from the annotations (:func:`fricmb.integrate.compile.room.argument_types`).
     """
     if config.DISABLE_JIT:
         return function
     index = PLACES.index(function.__name__)
-    around = function.__globals__
     notes = annotations_of(function)
     wanted = notes.pop("return")
-
-    def resolve(note: str) -> Any:
-        return _SCALARS.get(note) or array_type(note) or room_type(around[note])
-
-    compiled = kept(njit(error_model="numpy", no_cpython_wrapper=True)(function))
-    signature_of = lambda: (tuple(resolve(note) for note in notes.values()), resolve(wanted))  # noqa: E731
+    compiled = kept(njit(error_model="numpy", no_cpython_wrapper=True, pipeline_class=MachineCompiler)(function))
+    signature_of = lambda: argument_types(function)  # noqa: E731
     _blocks[function.__name__] = (compiled, signature_of)
 
     def typer(typingctx: Any, *args: Any) -> Any:
@@ -73,6 +68,11 @@ def block_address(name: str) -> int:
         compiled.compile(result(*arguments))
     overload = compiled.overloads[tuple(arguments)]
     return int(overload.library.get_pointer_to_function(overload.fndesc.llvm_cfunc_wrapper_name))
+
+
+def block_names() -> list[str]:
+    """Names of all blocks whose modules are imported."""
+    return list(_blocks)
 
 
 def was_compiled(name: str) -> bool:

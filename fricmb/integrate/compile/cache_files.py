@@ -1,5 +1,7 @@
 """Files that can be made again: machine code and derived templates, in the user's cache folder.
 
+What was made when the package was installed stands in the package itself and is read from there.
+
 Every file is checked before it is used; one that is damaged is said, removed and made again.  A folder that cannot be
 written is read all the same (a warm cache in an image); what is new goes to a temporary folder of this process, and
 where that fails, too, stays in memory.  Nothing here ever stops a run.
@@ -20,6 +22,17 @@ from pathlib import Path
 #: Files that no run has used for so long are removed.
 _DAYS = 60
 _DAY = 86_400.0
+#: What is installed with the package.
+_SHIPPED = Path(__file__).parents[2] / "_made"
+#: Names of the files that this process has read or written, room by room.
+_used: dict[str, set[str]] = {}
+
+
+def used_files() -> dict[str, list[str]]:
+    """Names of the files that this process has read or written since it was last asked, room by room."""
+    found = {room: sorted(names) for room, names in _used.items() if names}
+    _used.clear()
+    return found
 
 
 def cache_folder(room: str) -> Path:
@@ -88,9 +101,10 @@ class CacheFiles:
 
     def read(self, name: str) -> bytes | None:
         """What is kept under a name, or None."""
+        _used.setdefault(self._room, set()).add(name)
         if name in self._memory:
             return self._memory[name]
-        for folder in (self.folder, self._other):
+        for folder in (self.folder, self._other, _SHIPPED / self._room):
             if folder is not None and (held := self._read(folder / name)) is not None:
                 return held
         return None

@@ -8,9 +8,11 @@ from typing import Any, TypeVar, cast
 from numba import njit
 
 from fricmb.integrate.compile.kernel_cache import kept
-from fricmb.integrate.compile.linked import LinkedCompiler
+from fricmb.integrate.compile.linked import LinkedCompiler, MachineCompiler
+from fricmb.integrate.compile.room import argument_types
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
+_entries: dict[str, Any] = {}
 
 
 def kernel(function: _Function) -> _Function:
@@ -25,4 +27,17 @@ def kernel(function: _Function) -> _Function:
 
 def entry(function: _Function) -> _Function:
     """Compile ``function`` on its first call from Python; kept in the disk cache with all that it calls."""
-    return cast(_Function, kept(njit(error_model="numpy", no_cfunc_wrapper=True)(function)))
+    compiled = kept(njit(error_model="numpy", no_cfunc_wrapper=True, pipeline_class=MachineCompiler)(function))
+    _entries[f"{function.__module__}:{function.__name__}"] = compiled
+    return cast(_Function, compiled)
+
+
+def entry_names() -> list[str]:
+    """Module and name of all entries whose modules are imported."""
+    return list(_entries)
+
+
+def compile_entry(name: str) -> None:
+    """Compile an entry, or load it from the cache, for the types that its annotations name."""
+    compiled = _entries[name]
+    compiled.compile(argument_types(compiled.py_func)[0])

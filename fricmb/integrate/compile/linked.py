@@ -1,4 +1,4 @@
-"""Compilation of kernels that only other kernels call: to LLVM's intermediate code, and no further.
+"""Compilation of kernels that only other kernels call: to LLVM's intermediate code, and no further; and of the rest.
 
 Numba makes machine code of every function that it compiles, also of those that are only ever linked into others, and
 optimises each of them again inside each of its callers.  Here such a function is lowered and handed on; what is
@@ -7,6 +7,9 @@ optimised, and becomes machine code, is the entry or block at the top, once.
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from numba import _dynfunc
@@ -18,6 +21,9 @@ from numba.core.typed_passes import NativeLowering
 
 class _LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
     """The code of one kernel with that of the kernels it calls, to be linked into callers."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Nothing: it is optimised with its callers."""
 
     def finalize(self) -> None:
         """Gather the code; leave it as it is, since the caller's is optimised with it."""
@@ -51,14 +57,64 @@ class _LowerForLinking(NativeLowering):  # type: ignore[misc]
         return True
 
 
-class LinkedCompiler(CompilerBase):  # type: ignore[misc]
-    """Numba's passes, with :class:`_LowerForLinking` in the place of its lowering."""
+class _MachineLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The code of an entry or block with all that it calls, made machine code."""
+
+    def _optimize_final_module(self) -> None:
+        """Optimise once, at LLVM's second level: what numba does beyond that costs compilation and gains no run."""
+        passes, builder = self._codegen._module_pass_manager(opt=2, loop_vectorize=False, slp_vectorize=False)
+        passes.run(self._final_module, builder)
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerToMachineCode(NativeLowering):  # type: ignore[misc]
+    """Numba's lowering, into a library of our own."""
+
+    _name = "lower_to_machine_code"
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower, and make machine code."""
+        state.library = _MachineLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return bool(super().run_pass(state))
+
+
+def _passes(state: Any, lowering: Any) -> list[Any]:
+    """Numba's passes with another lowering in the place of its own."""
+    passes = DefaultPassBuilder.define_nopython_pipeline(state)
+    passes.passes = [(lowering if made is NativeLowering else made, about) for made, about in passes.passes]
+    passes.finalize()
+    return [passes]
+
+
+@contextmanager
+def _few_collections() -> Iterator[None]:
+    """Let Python look for unreachable objects less often: compilation makes millions that stay, a fifth of its time."""
+    before = gc.get_threshold()
+    gc.set_threshold(200_000, 20, 50)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+
+
+class _Compiler(CompilerBase):  # type: ignore[misc]
+    def _compile_core(self) -> Any:
+        with _few_collections():
+            return super()._compile_core()
+
+
+class MachineCompiler(_Compiler):
+    """Compiles entries and blocks."""
 
     def define_pipelines(self) -> list[Any]:
         """The passes, in their order."""
-        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [
-            (_LowerForLinking if made is NativeLowering else made, about) for made, about in passes.passes
-        ]
-        passes.finalize()
-        return [passes]
+        return _passes(self.state, _LowerToMachineCode)
+
+
+class LinkedCompiler(_Compiler):
+    """Compiles kernels that only kernels call."""
+
+    def define_pipelines(self) -> list[Any]:
+        """The passes, in their order."""
+        return _passes(self.state, _LowerForLinking)

@@ -29,6 +29,7 @@ from numba.extending import (
 _Tuple = TypeVar("_Tuple")
 _WORD = 8
 
+_SCALARS = {"int": types.int64, "float": types.float64, "bool": types.boolean, "None": types.void}
 _DTYPES = {"Floats": types.float64, "Complexes": types.complex128, "Ints": types.int64, "Codes": types.int8}
 
 
@@ -75,6 +76,18 @@ def annotations_of(annotated: Any) -> dict[str, str]:
     """The annotations of a function or named tuple, as they are written."""
     notes = annotated.__annotations__
     return {name: getattr(note, "__forward_arg__", note) for name, note in notes.items()}
+
+
+def argument_types(function: Any) -> tuple[tuple[Any, ...], Any]:
+    """Numba's types of a function's arguments and of its result, read from its annotations.
+
+    Those are rooms, Floats (Floats2, ...), Ints, Codes, Pivots, int, float, bool.
+    """
+    around = function.__globals__
+    *arguments, result = (
+        _SCALARS.get(note) or array_type(note) or room_type(around[note]) for note in annotations_of(function).values()
+    )
+    return tuple(arguments), result
 
 
 class Room:

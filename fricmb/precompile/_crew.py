@@ -1,0 +1,79 @@
+"""Several processes that work off one list of tasks."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any
+
+from fricmb.errors import FricmbError
+
+#: What is called after each task: the task, and its answer.
+Report = Callable[[str, dict[str, Any]], None]
+
+
+class Shares:
+    """Tasks in as many stretches as there are workers; who is done takes from the end of the longest one left.
+
+    Neighbours in the list call the same kernels, which each process lowers once: so each keeps to its stretch.
+    """
+
+    def __init__(self, tasks: Sequence[str], workers: int) -> None:
+        ends = [len(tasks) * k // workers for k in range(workers + 1)]
+        self._left = [list(tasks[a:b]) for a, b in pairwise(ends)]
+        self._lock = threading.Lock()
+
+    def next(self, worker: int) -> str | None:
+        """The next task of a worker; None where all are taken."""
+        with self._lock:
+            if self._left[worker]:
+                return self._left[worker].pop(0)
+            longest = max(self._left, key=len)
+            return longest.pop() if longest else None
+
+
+def work_off(tasks: Sequence[str], workers: int, report: Report) -> None:
+    """Do all tasks in ``workers`` processes.
+
+    Raises
+    ------
+    FricmbError
+        A process died; the message names the task that it was at.
+    """
+    shares, lock = Shares(tasks, workers), threading.Lock()
+    failed: list[str] = []
+
+    def serve(number: int) -> None:
+        with _worker() as process:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            while not failed and (task := shares.next(number)) is not None:
+                print(task, file=process.stdin, flush=True)
+                answer = process.stdout.readline()
+                if not answer:
+                    failed.append(f"compile: the process that was at {task!r} ended; its last words are above")
+                    return
+                with lock:
+                    report(task, json.loads(answer))
+            process.stdin.close()
+
+    threads = [threading.Thread(target=serve, args=(number,)) for number in range(workers)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    if failed:
+        raise FricmbError(failed[0])
+
+
+def _worker() -> subprocess.Popen[str]:
+    # numba tries overloads by letting them fail, and would set each message in colours
+    plain = {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
+    alone = {**os.environ, "FRICMB_COMPILE_PROCESSES": "1", "FRICMB_QUIET": "1", **plain}
+    command = [sys.executable, "-m", "fricmb.precompile._worker"]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=alone)

@@ -1,0 +1,90 @@
+"""Kernels compiled ahead of use: all of them, in several processes, found again where they were put."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+import fricmb as fm
+from fricmb.integrate.compile.kernel import _entries
+from fricmb.integrate.compile.room import argument_types
+from fricmb.precompile import _compile, _tasks, compile_all
+from fricmb.precompile._crew import Shares, work_off
+
+TASKS = ["block find_open", "block mark_rest", "entry fricmb.system._evaluate:_each"]
+SHIPPED = """
+import sys
+from pathlib import Path
+from fricmb.integrate.compile import cache_files
+cache_files._SHIPPED = Path(sys.argv[1])
+import fricmb.integrate.methods.run_setup
+from fricmb.integrate.compile.block import block_address, was_compiled
+block_address("find_open")
+print(was_compiled("find_open"))
+"""
+
+
+@pytest.fixture
+def few(monkeypatch, tmp_path):
+    monkeypatch.setenv("FRICMB_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setattr(_compile, "kernels", lambda: TASKS)
+    monkeypatch.setattr(_compile, "runs", lambda: ["model friction_oscillator"])
+    return tmp_path
+
+
+def test_each_task_is_taken_once_and_the_idle_help_from_the_end():
+    shares = Shares([f"{i}" for i in range(7)], workers=2)
+    assert [shares.next(0) for _ in range(3)] == ["0", "1", "2"]
+    assert [shares.next(0), shares.next(1), shares.next(0)] == ["6", "3", "5"]
+    assert [shares.next(1), shares.next(1), shares.next(0)] == ["4", None, None]
+
+
+@pytest.mark.slow
+def test_what_is_made_is_copied_reported_and_found(few):
+    seen = []
+    files = compile_all(processes=2, into=few / "made", report=lambda *told: seen.append(told))
+    assert sorted(task for task, _, _ in seen) == sorted([*TASKS, "model friction_oscillator"])
+    assert [done for _, done, _ in seen] == [1, 2, 3, 4]
+    assert {total for _, _, total in seen} == {4}
+    there = {f"{path.parent.name}/{path.name}" for path in (few / "made").rglob("*") if path.is_file()}
+    assert there == set(files)
+    assert {name.partition("-")[0] for name in files} >= {"kernels/find_open", "kernels/mark_rest", "kernels/_each"}
+    assert any(name.startswith("templates/") for name in files)
+    empty = {**os.environ, "FRICMB_CACHE_DIR": str(few / "other")}
+    command = [sys.executable, "-c", SHIPPED]
+    for folder, compiled in ((few / "made", "False"), (few / "nothing", "True")):
+        told = subprocess.run([*command, str(folder)], env=empty, capture_output=True, text=True, check=True)
+        assert told.stdout.strip() == compiled
+
+
+def test_a_process_that_dies_is_named_by_its_task(capfd):
+    with pytest.raises(fm.FricmbError, match="block no_such_block"):
+        work_off(["block no_such_block"], 1, lambda task, answer: None)
+    assert "no_such_block" in capfd.readouterr().err
+
+
+def test_all_kernels_are_listed():
+    tasks = _tasks.kernels()
+    assert len(tasks) == len(set(tasks)) > 100
+    assert {"block solve_ports", "block taylor_series", "entry fricmb.integrate.methods.time_loop:drive"} <= set(tasks)
+    assert len(_tasks.runs()) == len(fm.models.catalogue) + 1
+
+
+@pytest.mark.slow
+def test_annotations_of_entries_are_the_types_of_their_calls():
+    """Else a kernel compiled ahead of use would not be the one that is called."""
+    times = [0.1, 0.2]
+    for method in ("auto", "bdf", "radau", "collocation", "taylor", "timestepping"):
+        fm.simulate(fm.models.stick_slip_chain(3), t_end=0.3, t_eval=times, rtol=1e-4, method=method)
+    fm.simulate(fm.models.brake4dof(), t_end=0.3, t_eval=times)
+    fm.simulate(fm.models.belt_oscillator(), t_end=0.3, step=0.01, method="bdf2-paper")
+    for method in ("bdf", "radau"):
+        fm.simulate(fm.models.slider_crank(), t_end=0.01, t_eval=[0.005], method=method)
+    _tasks.kernels()
+    own = {name: made for name, made in _entries.items() if name.startswith(("fricmb.integrate", "fricmb.system"))}
+    called = {name: made for name, made in own.items() if made.overloads}
+    assert len(called) >= len(own) - 2, sorted(set(own) - set(called))
+    for name, made in called.items():
+        assert set(made.overloads) == {argument_types(made.py_func)[0]}, name
