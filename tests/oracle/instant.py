@@ -84,7 +84,7 @@ def decide(
     one_of: frozenset[int] = frozenset(),
     tiny: float = 1e-11,
 ) -> list[tuple[frozenset[int], np.ndarray]]:
-    """Consistent sets among contacts at rest, those with the most contacts stuck.
+    """Consistent sets among contacts at rest, those of which no part is one; with the most contacts stuck first.
 
     ``b``: relative accelerations without their friction; ``static``, ``slipping``: radii of the cones for break-away
     and for r -> 0; ``released``: contacts that may not stick; ``one_of``: at least one of these slips.  Each answer is
@@ -93,17 +93,17 @@ def decide(
     k = len(rows)
     held = np.abs(D).max(initial=0.0) * np.abs(static).max(initial=0.0)
     size = tiny * max(np.abs(b).max(initial=0.0), held, 1e-300)
+    found: list[tuple[frozenset[int], np.ndarray]] = []
     for n_slip in range(k + 1):
-        found = []
         for slips in itertools.combinations(range(k), n_slip):
             if not released <= set(slips) or (one_of and not one_of & set(slips)):
+                continue
+            if any(less <= set(slips) for less, _ in found):
                 continue
             F = consistent(D, b, static, slipping, rows, slips, size)
             if F is not None:
                 found.append((frozenset(slips), F))
-        if found:
-            return found
-    return []
+    return found
 
 
 def consistent(
