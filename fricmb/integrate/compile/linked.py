@@ -1,4 +1,4 @@
-"""Compilation of kernels that only other kernels call: to LLVM's intermediate code, and no further; and of the rest.
+"""Compilation of kernels that only other kernels call: to LLVM's intermediate code, and no further.
 
 Numba makes machine code of every function that it compiles, also of those that are only ever linked into others, and
 optimises each of them again inside each of its callers.  Here such a function is lowered and handed on; what is
@@ -21,9 +21,6 @@ from numba.core.typed_passes import NativeLowering
 
 class _LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
     """The code of one kernel with that of the kernels it calls, to be linked into callers."""
-
-    def _optimize_functions(self, ll_module: Any) -> None:
-        """Nothing: it is optimised with its callers."""
 
     def finalize(self) -> None:
         """Gather the code; leave it as it is, since the caller's is optimised with it."""
@@ -57,36 +54,6 @@ class _LowerForLinking(NativeLowering):  # type: ignore[misc]
         return True
 
 
-class _MachineLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """The code of an entry or block with all that it calls, made machine code."""
-
-    def _optimize_final_module(self) -> None:
-        """Optimise once, at LLVM's second level: what numba does beyond that costs compilation and gains no run."""
-        passes, builder = self._codegen._module_pass_manager(opt=2, loop_vectorize=False, slp_vectorize=False)
-        passes.run(self._final_module, builder)
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _LowerToMachineCode(NativeLowering):  # type: ignore[misc]
-    """Numba's lowering, into a library of our own."""
-
-    _name = "lower_to_machine_code"
-
-    def run_pass(self, state: Any) -> bool:
-        """Lower, and make machine code."""
-        state.library = _MachineLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
-        return bool(super().run_pass(state))
-
-
-def _passes(state: Any, lowering: Any) -> list[Any]:
-    """Numba's passes with another lowering in the place of its own."""
-    passes = DefaultPassBuilder.define_nopython_pipeline(state)
-    passes.passes = [(lowering if made is NativeLowering else made, about) for made, about in passes.passes]
-    passes.finalize()
-    return [passes]
-
-
 @contextmanager
 def _few_collections() -> Iterator[None]:
     """Let Python look for unreachable objects less often: compilation makes millions that stay, a fifth of its time."""
@@ -108,13 +75,18 @@ class MachineCompiler(_Compiler):
     """Compiles entries and blocks."""
 
     def define_pipelines(self) -> list[Any]:
-        """The passes, in their order."""
-        return _passes(self.state, _LowerToMachineCode)
+        """Numba's own passes."""
+        return [DefaultPassBuilder.define_nopython_pipeline(self.state)]
 
 
 class LinkedCompiler(_Compiler):
-    """Compiles kernels that only kernels call."""
+    """Numba's passes, with :class:`_LowerForLinking` in the place of its lowering."""
 
     def define_pipelines(self) -> list[Any]:
         """The passes, in their order."""
-        return _passes(self.state, _LowerForLinking)
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [
+            (_LowerForLinking if made is NativeLowering else made, about) for made, about in passes.passes
+        ]
+        passes.finalize()
+        return [passes]
