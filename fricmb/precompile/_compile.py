@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from fricmb.integrate.compile.cache_files import cache_folder
+from fricmb.errors import FricmbError
+from fricmb.integrate.compile.cache_files import find_file
 from fricmb.precompile._crew import work_off
 from fricmb.precompile._tasks import kernels, runs
 
@@ -35,7 +36,7 @@ def compile_all(
     Raises
     ------
     FricmbError
-        A process that compiles died.
+        A process that compiles died, or what it made could not be kept.
     """
     workers = processes or os.cpu_count() or 1
     stages = (kernels(), runs())
@@ -54,11 +55,14 @@ def compile_all(
         work_off(tasks, min(workers, len(tasks)), take)
     if into is not None:
         for room, names in found.items():
-            _copy(cache_folder(room), Path(into) / room, names)
+            _copy(room, names, Path(into) / room)
     return sorted(f"{room}/{name}" for room, names in found.items() for name in names)
 
 
-def _copy(source: Path, target: Path, names: set[str]) -> None:
+def _copy(room: str, names: set[str], target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
     for name in names:
-        shutil.copyfile(source / name, target / name)
+        source = find_file(room, name)
+        if source is None:
+            raise FricmbError(f"compile: {room}/{name} could not be kept; expected a cache folder that can be written")
+        shutil.copyfile(source, target / name)

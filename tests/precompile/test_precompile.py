@@ -7,6 +7,7 @@ import sys
 import pytest
 
 import fricmb as fm
+from fricmb.integrate.compile import cache_files
 from fricmb.integrate.compile.kernel import _entries
 from fricmb.integrate.compile.room import argument_types
 from fricmb.precompile import _compile, _tasks, compile_all
@@ -57,6 +58,19 @@ def test_what_is_made_is_copied_reported_and_found(few):
     for folder, compiled in ((few / "made", "False"), (few / "nothing", "True")):
         told = subprocess.run([*command, str(folder)], env=empty, capture_output=True, text=True, check=True)
         assert told.stdout.strip() == compiled
+
+
+def test_what_the_package_carries_is_copied_too(monkeypatch, tmp_path):
+    """An installed package with its kernels in it has nothing in the cache folder."""
+    monkeypatch.setenv("FRICMB_CACHE_DIR", str(tmp_path / "empty"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setattr(cache_files, "_SHIPPED", tmp_path / "made")
+    (tmp_path / "made" / "kernels").mkdir(parents=True)
+    (tmp_path / "made" / "kernels" / "one.nbc").write_bytes(b"code")
+    _compile._copy("kernels", {"one.nbc"}, tmp_path / "copy")
+    assert (tmp_path / "copy" / "one.nbc").read_bytes() == b"code"
+    with pytest.raises(fm.FricmbError, match=r"kernels/two\.nbc could not be kept"):
+        _compile._copy("kernels", {"two.nbc"}, tmp_path / "copy")
 
 
 def test_a_process_that_dies_is_named_by_its_task(capfd):

@@ -44,6 +44,12 @@ def cache_folder(room: str) -> Path:
     return _folder(room, numba, os.environ.get("FRICMB_CACHE_DIR"))
 
 
+def find_file(room: str, name: str) -> Path | None:
+    """Where a kept file is: in the cache folder, in the package, or (None) nowhere that outlives a process."""
+    places = (cache_folder(room) / name, _SHIPPED / room / name)
+    return next((path for path in places if path.is_file()), None)
+
+
 @cache
 def _folder(room: str, numba: str | None, ours: str | None) -> Path:
     if numba:
