@@ -9,6 +9,7 @@ import numpy as np
 
 import fricmb as fm
 from fricmb.errors import IntegrationError, Interrupted
+from fricmb.integrate import STICK
 
 
 def as_text(sol: fm.Solution) -> str:
@@ -34,7 +35,7 @@ def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = N
                     kind: sum(e.kind == kind and e.contact == name for e in sol.events)
                     for kind in ("stick", "slip", "open", "close", "reversal")
                 },
-                "stick_share": stick_share(sol, name),
+                "stick_share": sol.time_share(name, STICK),
                 "rest_share": sol.rest_share(name),
                 "friction_loss": float(energy.friction_loss_by_contact[k, -1]),
             }
@@ -55,10 +56,3 @@ def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = N
         },
         "stats": asdict(sol.stats),
     }
-
-
-def stick_share(sol: fm.Solution, contact: str) -> float:
-    """Share of the run that a contact sticks."""
-    bounds = np.array([sol.t_start, *(e.t for e in sol.events if e.contact == contact), sol.t_end])
-    stuck = sol.at(0.5 * (bounds[:-1] + bounds[1:])).mode(contact) == 0
-    return float(np.diff(bounds)[stuck].sum() / (sol.t_end - sol.t_start))
