@@ -70,9 +70,10 @@ def part(options: argparse.Namespace, number: int, start: float, done: Any) -> N
 
 def tried(options: argparse.Namespace, number: int, start: float) -> Iterator[Found]:
     """Every so many scenes, from ``number`` on: kind, where from, judged, marginal or why not decided, verdicts."""
-    worker = Worker(options.limit)
+    worker, kinds = Worker(options.limit), len(options.kinds.split(","))
     for i, (kind, where, spec) in enumerate(scenes(options)):
-        if i % options.processes != number:
+        # shifted by one from seed to seed: each process gets scenes of every kind, whatever their number
+        if (i + i // kinds) % options.processes != number:
             continue
         if (time.monotonic() - start) / 60.0 > options.minutes:
             break
