@@ -66,6 +66,10 @@ def describe_signature(signature: Any) -> str:
     return f"({', '.join(map(describe, signature.args))}) -> {describe(signature.return_type)}"
 
 
+#: Instructions: one that takes a name from the module, and one that holds the upper bits of the next one's argument.
+_GLOBAL, _EXTENDED = dis.opmap["LOAD_GLOBAL"], dis.opmap["EXTENDED_ARG"]
+
+
 class _Reader:
     """Lines that say what a function is made of, each thing once, in the order in which they are met."""
 
@@ -168,8 +172,17 @@ class _Reader:
 
 
 def _globals_of(code: CodeType) -> set[str]:
-    """Names that a code takes from its module; an attribute may have the name of something there and be another."""
-    return {str(step.argval) for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
+    """Names that a code takes from its module; an attribute may have the name of something there and be another.
+
+    Read from the bytes, two an instruction: :mod:`dis` describes every instruction, at ten times the cost.
+    """
+    names, high = set(), 0
+    for operation, low in zip(code.co_code[::2], code.co_code[1::2], strict=True):
+        argument = high << 8 | low
+        high = argument if operation == _EXTENDED else 0
+        if operation == _GLOBAL:
+            names.add(code.co_names[argument >> 1])  # its lowest bit says whether a call follows
+    return names
 
 
 def _own(module: str) -> bool:

@@ -11,6 +11,7 @@ import pickle
 from typing import Any
 
 from numba.core.caching import Cache, CompileResultCacheImpl
+from numba.core.runtime import rtsys
 
 from fricmb.integrate.compile.cache_files import CacheFiles, remove, say
 from fricmb.integrate.compile.content import content_digest
@@ -52,7 +53,8 @@ class KernelCache(Cache):  # type: ignore[misc]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The kernel for one signature, or None where there is no sound file of it."""
-        target_context.refresh()
+        # machine code needs numba's run time alone; what compiling needs beside it is loaded when something is compiled
+        rtsys.initialize(target_context)
         name = self._file(sig, target_context.codegen())
         payload = _files.read(name)
         if payload is not None:
