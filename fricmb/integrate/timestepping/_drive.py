@@ -34,6 +34,7 @@ from fricmb.integrate.timestepping._layout import (
     TIME,
     WHOLE,
 )  # fmt: skip
+from fricmb.integrate.timestepping._review import slide_radius
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._step import forces_at_start, take_step
 
@@ -175,6 +176,7 @@ def arrive(run: Run, t: float) -> None:
 @kernel
 def jump(run: Run, t: float) -> None:
     """Signals behind a breakpoint; a belt whose velocity jumps ends what sticks, forces that hold may jump."""
+    run.w[MIDDLE, :] = run.w[HERE]
     set_signals(run, HERE, t)
     for i in range(run.load.shape[0]):
         run.top_v[i] = max(run.top_v[i], abs(run.v[HERE, i]))
@@ -191,6 +193,26 @@ def jump(run: Run, t: float) -> None:
                     run.mode[HERE, c] = SLIP
                     keep_event(run, t, c, EVENT_SLIP)
     probe(run, t)
+    keep_behind(run, t)
+
+
+@kernel
+def keep_behind(run: Run, t: float) -> None:
+    """A second row where the velocity of a belt jumps: as things are behind it."""
+    jumps = False
+    for c in range(run.mode.shape[1]):
+        row0 = run.row[c]
+        d = run.row[c + 1] - row0
+        for a in range(row0, row0 + d):
+            size = max(abs(run.w[HERE, a]), abs(run.w[MIDDLE, a]))
+            jumps = jumps or abs(run.w[HERE, a] - run.w[MIDDLE, a]) > ROUND_OFF * size
+        speed = length(run.g[HERE], row0, d)
+        if run.mode[HERE, c] == SLIP and speed > 0.0:
+            radius = slide_radius(run, c, speed, run.push[HERE, c])
+            for a in range(row0, row0 + d):
+                run.ends[HERE, a] = -radius * run.g[HERE, a] / speed
+    if jumps:
+        keep_row(run, HERE, HERE, t)
 
 
 @kernel

@@ -146,6 +146,22 @@ def test_contacts_in_the_band_and_condensed_are_the_same():
     assert np.abs(runs[0].v - runs[1].v).max() < 1e-7
 
 
+def test_a_belt_that_jumps_leaves_a_row_before_and_one_behind():
+    velocity = sympy.Piecewise((0.1, fm.t < 5), (-0.3, True))
+    belt, mass = fm.Driven("belt", velocity={"x": velocity}), fm.Body("mass", mass=1.0)
+    law = fm.laws.Coulomb(mu_s=1.5, mu_k=1.0)
+    contact = fm.Contact("sole", mass, belt, law=law, normal_force=1.0)
+    scene = fm.Scene("jump", [belt, mass, fm.Spring("k", mass, axis="x", stiffness=1.0), contact])
+    sol = fm.simulate(scene, t_end=7.0, method="timestepping")
+    before, behind = np.flatnonzero(sol.t == 5.0)
+    # held at the belt's velocity until then, at 0.4 against the new one and under mu_k N from then on
+    assert sol.mode("sole")[[before, behind]].tolist() == [0, 1]
+    assert np.abs(sol.relative_velocity("sole")[0, [before, behind]] - [0.0, 0.4]).max() < 1e-9
+    assert sol.force("sole")[0, behind] == -1.0
+    assert sol.at([5.0]).mode("sole").tolist() == [1]
+    assert sol.audit().ok
+
+
 def test_redundant_contacts_share_the_load():
     held = fm.Body("held", mass=1.0, axes="xy")
     force = [fm.Force("fx", held, axis="x", value=0.15 * fm.t), fm.Force("fy", held, axis="y", value=0.2 * fm.t)]
