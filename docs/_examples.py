@@ -256,6 +256,17 @@ print(fm.analysis.pull(law).force[-1], fm.analysis.settling_distance(law))
              'runs = [{"belt.velocity.x": v} for v in (0.1, 0.2, 0.4)]\n'
              "count = lambda sol: len(sol.events)\n"
              "print(fm.sweep(scene, runs, t_end=50.0, workers=1, progress=False, reduce=count))\n",
+    "SweepResults": """
+import numpy as np
+
+scene = fm.models.belt_oscillator()
+runs = [{"belt.velocity.x": v} for v in np.linspace(0.05, 0.6, 12)]
+times = np.linspace(0.0, 100.0, 4001)
+reach = lambda sol: sol["mass.x"].max()
+found = fm.sweep(scene, runs, t_end=100.0, t_eval=times, workers=1, progress=False, reduce=reach)
+print(found.to_pandas().head(3))
+found.plot(label="reach of the mass")
+""",
     "Solution": _RUN + 'print(sol["mass.x"][-1], sol.at([1.0, 2.0])["mass.x"])\n'
                 "print(sol.events[0], sol.energy.residual[-1])\n",
     "solve_dae": """

@@ -6,6 +6,7 @@ from . import normal as normal
 from . import plot as plot
 from . import testing as testing
 from ._simulate import simulate as simulate
+from ._sweep import SweepResults as SweepResults
 from ._sweep import sweep as sweep
 from .dae import solve_dae as solve_dae
 from .errors import FricmbError as FricmbError

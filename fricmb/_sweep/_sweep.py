@@ -8,6 +8,7 @@ from os import PathLike
 from typing import Any
 
 import fricmb
+from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
 from fricmb.errors import IntegrationError, SceneError
@@ -27,7 +28,7 @@ def sweep(
     parameters: Mapping[str, Any] | None = None,
     run_limit: float | None = None,
     **options: Any,
-) -> list[Any]:
+) -> SweepResults:
     """Simulate a scene once for each set of values, on all cores or on a cluster.
 
     Parameters
@@ -59,9 +60,9 @@ def sweep(
 
     Returns
     -------
-    list
-        In the order of ``runs``: solutions, what ``reduce`` made of them, or, for a run that failed, its
-        IntegrationError.
+    SweepResults
+        A list in the order of ``runs``: solutions, what ``reduce`` made of them, or, for a run that failed, its
+        IntegrationError.  It knows the values of each run, as a table and in pictures.
 
     Raises
     ------
@@ -71,7 +72,8 @@ def sweep(
         After Ctrl-C, once the runs under way are done (at once after a second one); its ``results`` are those that
         were made, None for others.
     """
-    values = [{**(parameters or {}), **_checked(run, i)} for i, run in enumerate(runs)]
+    own = [dict(_checked(run, i)) for i, run in enumerate(runs)]
+    values = [{**(parameters or {}), **run} for run in own]
     for value in values:
         scene.with_parameters(value)
     if reduce is not None and not callable(reduce):
@@ -80,7 +82,7 @@ def sweep(
         raise SceneError(f"run_limit: got {run_limit!r}; expected a number of seconds > 0, or None")
     job = Job(scene=scene, reduce=reduce, options={"t_end": t_end, **options})
     kept = None if store is None else Store(store, (fricmb.__version__, scene, reduce, job.options))
-    results: list[Any] = [None] * len(values)
+    results = SweepResults([None] * len(values), values=own)
     missing = dict(enumerate(values))
     if kept is not None:
         for i, value in enumerate(values):

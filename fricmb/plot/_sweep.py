@@ -1,0 +1,51 @@
+"""Pictures of sweeps: a measure over one parameter or two."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fricmb.errors import SceneError
+from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
+
+#: More runs than this along a curve are not marked one by one.
+_MARKED = 60
+
+
+@drawn
+def draw_sweep(
+    axes: tuple[np.ndarray[Any, Any], ...], held: np.ndarray[Any, Any], *, names: tuple[str, ...], label: str,
+    ax: Axes | None,
+) -> Figure:  # fmt: skip
+    """A curve over one axis, a map over two; places without a number are marked, and left empty in a map."""
+    if held.ndim not in (1, 2):
+        raise SceneError(f"over: got {len(names)} parameters ({', '.join(names)}); a picture has one or two: name them")
+    (panel,) = panels(1, ax, height=3.6)
+    if held.ndim == 1:
+        _draw_curve(panel, axes[0], held)
+        finish(panel, x=names[0], y=label)
+    else:
+        _draw_map(panel, axes, held, label)
+        panel.set_xlabel(names[0])
+        panel.set_ylabel(names[1])
+    return figure_of([panel])
+
+
+def _draw_curve(panel: Axes, x: np.ndarray[Any, Any], y: np.ndarray[Any, Any]) -> None:
+    there = np.isfinite(y)
+    panel.plot(x, y, marker="o" if x.size <= _MARKED else None, markersize=3, **line(0))
+    for value in x[~there]:
+        panel.axvline(value, color=paint().quiet, linewidth=0.8, linestyle=":")
+
+
+def _draw_map(panel: Axes, axes: tuple[np.ndarray[Any, Any], ...], held: np.ndarray[Any, Any], label: str) -> None:
+    low, high = paint().shades
+    import matplotlib as mpl
+    from matplotlib.colors import ListedColormap
+
+    shades = ListedColormap(mpl.colormaps["cividis"](np.linspace(low, high, 256)))
+    mesh = panel.pcolormesh(*axes, np.ma.masked_invalid(held.T), cmap=shades, shading="nearest")
+    panel.figure.colorbar(mesh, ax=panel, label=label)
