@@ -265,7 +265,7 @@ times = np.linspace(0.0, 100.0, 4001)
 reach = lambda sol: sol["mass.x"].max()
 found = fm.sweep(scene, runs, t_end=100.0, t_eval=times, workers=1, progress=False, reduce=reach)
 print(found.to_pandas().head(3))
-found.plot(label="reach of the mass")
+figure = found.plot(label="reach of the mass")
 """,
     "Solution": _RUN + 'print(sol["mass.x"][-1], sol.at([1.0, 2.0])["mass.x"])\n'
                 "print(sol.events[0], sol.energy.residual[-1])\n",
