@@ -3,6 +3,8 @@
 What an example leaves in ``figure`` is its picture.  Names that belong together share one.
 """
 
+import _examples_space
+
 import fricmb as fm
 from fricmb.models import catalogue
 
@@ -327,7 +329,7 @@ figure = fm.plot.stability(found)
     "analysis.energy_ledger": _RUN + "ledger = fm.analysis.energy_ledger(sol)\nprint(ledger.phases(\"sole\")[:2])\n"
         "figure = sol.plot.energy()\n",
     "analysis.modal_energy": _BRAKE + "print(fm.analysis.modal_energy(sol).omega)\n",
-}
+} | _examples_space.EXAMPLES
 SHARED = {
     "Parameter": "parameter", "coordinate": "Force", "speed": "Force", "PointDamper": "PointSpring",
     "normal.Spring": "normal.NormalLaw", "normal.Constant": "Contact", "ground_point": "Rod", "Gravity": "RigidBody",
@@ -341,7 +343,7 @@ SHARED = {
     "analysis.Eigenvalues": "analysis.complex_eigenvalues", "analysis.Crossing": "analysis.complex_eigenvalues",
     "analysis.StabilityMap": "analysis.stability_map", "analysis.EnergyLedger": "analysis.energy_ledger",
     "analysis.Phase": "analysis.energy_ledger", "analysis.ModalEnergy": "analysis.modal_energy",
-}  # fmt: skip
+} | _examples_space.SHARED  # fmt: skip
 
 
 def example(name: str) -> str | None:

@@ -4,6 +4,7 @@ from . import laws as laws
 from . import models as models
 from . import normal as normal
 from . import plot as plot
+from . import space as space
 from . import testing as testing
 from ._simulate import simulate as simulate
 from ._sweep import SweepResults as SweepResults

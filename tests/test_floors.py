@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[1]
 FLOORS = (
     {"dae", "errors", "integrate", "reduction", "solution", "values"},
     {"laws", "normal"},
-    {"scene"},
+    {"scene", "space"},
     {"plan"},
     {"equations"},
     {"system"},

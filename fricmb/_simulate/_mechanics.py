@@ -16,8 +16,8 @@ from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import Samples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
-from fricmb.scene import Scene
-from fricmb.solution import Flags, Motion, Names, Origin, builder
+from fricmb.scene import Scene, SpaceBody
+from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
 
 
@@ -124,7 +124,7 @@ class SceneMechanics:
 
     def reactions(self, samples: Samples) -> dict[str, Floats]:
         """Reactions of all joints by name."""
-        return {} if self.whole is None or not self.placed.joints else self.whole.system.reactions(samples)
+        return {} if self.whole is None or not self.placed.is_mechanism else self.whole.system.reactions(samples)
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_driven, n_t), in the order of ``names.signals``."""
@@ -154,6 +154,7 @@ class SceneMechanics:
             states=tuple(states for _, states in labels),
             scale=tuple(row_scale(contact) for contact in contacts),
             motions=_points(self.placed, self.plan.dofs),
+            vectors=_vectors(self.placed, {name: i for i, name in enumerate(self.plan.dofs)}),
             signals={name: i for i, name in enumerate(self.driven.names)},
         )
 
@@ -206,7 +207,30 @@ def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:
             if all(dof in index for dof, _ in terms):
                 places = np.array([index[dof] for dof, _ in terms], dtype=np.int64)
                 found[name] = Motion(index=places, coefficient=np.array([c for _, c in terms], dtype=float))
-    return found | _turning_points(scene, index) | _joint_motions(scene, index)
+    return found | _turning_points(scene, index) | _space_points(scene, index) | _joint_motions(scene, index)
+
+
+def _space_points(scene: Scene, index: Mapping[str, int]) -> dict[str, Motion]:
+    """Points of bodies in space."""
+    found = {}
+    for name, point in scene.space_points.items():
+        for letter in point.letters:
+            form = point.motion(letter)
+            if all(dof in index for dof in form.motions):
+                places = np.array([index[dof] for dof in form.motions], dtype=np.int64)
+                coefficient = np.array([c for _, c in form.terms], dtype=float)
+                found[f"{name}.{letter}"] = Motion(index=places, coefficient=coefficient)
+    return found
+
+
+def _vectors(scene: Scene, index: Mapping[str, int]) -> dict[str, Vector]:
+    """Orientation and angular velocity of bodies in space."""
+    found: dict[str, Vector] = {}
+    for body in scene.bodies:
+        if isinstance(body, SpaceBody) and all(dof in index for dof in body.dof_names):
+            places = np.array([index[dof] for dof in body.dof_names[3:]], dtype=np.int64)
+            found |= {f"{body.name}.{name}": Vector(kind=kind, index=places) for name, kind in body.seen.items()}
+    return found
 
 
 def _turning_points(scene: Scene, index: Mapping[str, int]) -> dict[str, Motion]:

@@ -11,7 +11,7 @@ from fricmb.audit._functions import Given, element_function, joint_function
 from fricmb.audit._motions import Moment, Row
 from fricmb.equations import numbers
 from fricmb.integrate.problem import Floats
-from fricmb.scene import Body, Force, Gravity, Joint, MatrixElement, ModalBody, RigidBody, modal_matrices
+from fricmb.scene import Body, Force, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody, modal_matrices
 from fricmb.values import value_of
 
 
@@ -180,6 +180,8 @@ def masses(scene: Any, parts: set[str], index: dict[str, int]) -> tuple[Floats, 
         if isinstance(part, RigidBody):
             m, J = float(value_of(part.mass)), float(value_of(part.inertia))
             held = dict(zip(part.dof_names, (m, m, J), strict=True))
+        elif isinstance(part, SpaceBody):
+            held = dict(zip(part.dof_names, part.masses(), strict=True))
         elif isinstance(part, Body):
             held = dict.fromkeys(part.dof_names, float(value_of(part.mass)))
         elif isinstance(part, ModalBody):
@@ -193,6 +195,16 @@ def masses(scene: Any, parts: set[str], index: dict[str, int]) -> tuple[Floats, 
             if name in index:
                 diagonal[index[name]] += value
     return diagonal, matrices
+
+
+def least_masses(scene: Any, index: dict[str, int]) -> Floats:
+    """What coordinates of bodies in space count at least where changes are measured (n,)."""
+    least = np.zeros(len(index))
+    for body in scene.bodies:
+        for name, value in zip(body.dof_names, body.least_masses(), strict=True) if isinstance(body, SpaceBody) else ():
+            if name in index:
+                least[index[name]] = value
+    return least
 
 
 def acting(scene: Any, part: Any, index: dict[str, int], contact: int | None, own: int) -> Acting | None:
@@ -220,7 +232,7 @@ def acting(scene: Any, part: Any, index: dict[str, int], contact: int | None, ow
 def _pull(scene: Any, gravity: Gravity, index: dict[str, int]) -> list[tuple[int, float]]:
     found = []
     for body in scene.bodies:
-        for letter, value in gravity.acceleration.items() if isinstance(body, Body | RigidBody) else ():
+        for letter, value in gravity.acceleration.items() if isinstance(body, Body | RigidBody | SpaceBody) else ():
             i = index.get(f"{body.name}.{letter}")
             if i is not None:
                 found.append((i, float(value_of(body.mass)) * float(value_of(value))))

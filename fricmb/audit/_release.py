@@ -49,7 +49,7 @@ def holding(
         free.F[names.row[c] : names.row[c + 1]] = 0.0
     found = statements.found(free)
     rows = [row for c in held for row in found.rows[c]] + [row for j in joints for row in found.phi_rows[j]]
-    if max(n, len(rows)) > MOST:
+    if max(n, len(rows)) > MOST or not statements.mass.all():  # (an axis of a flat body has no mass)
         return None
     M = np.diag(statements.mass)
     for at, part in statements.mass_matrices:

@@ -8,10 +8,11 @@ import numpy as np
 
 from fricmb.audit._contacts import Presses, Rubs
 from fricmb.audit._motions import Frame, Moment
-from fricmb.audit._parts import Acting, Found, Joins, acting, masses
+from fricmb.audit._parts import Acting, Found, Joins, acting, least_masses, masses
 from fricmb.integrate.problem import SLIP, Floats
 from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Contact, Joint
+from fricmb.scene._space_body import with_inner
 
 
 class Statements:
@@ -21,6 +22,8 @@ class Statements:
     ----------
     mass : (n,)
         Diagonal of the mass matrix.
+    weight : (n,)
+        What changes are measured by: the same, and above 0 also where a coordinate has no mass.
     contacts : dict of int to Rubs
         By place in the run.
     """
@@ -34,13 +37,12 @@ class Statements:
         self.scene = scene
         self.frame = Frame(scene=scene, index=index, driven=self._driven)
         self.mass, self.mass_matrices = masses(scene, held, index)
+        self.weight = np.maximum(self.mass, least_masses(scene, index))
         numbers = self.names.contact_index
         self.contacts: dict[int, Rubs] = {}
         self.acting: list[Acting] = []
         self.joints: list[Joins] = []
-        for part in scene.parts:
-            if part.name not in held:
-                continue
+        for part in with_inner(part for part in scene.parts if part.name in held):
             k = numbers.get(part.name)
             if k is not None and isinstance(part, Contact | Joint) and part.law is not None:
                 self.contacts[k] = Rubs(part.name, part.law)
@@ -119,7 +121,7 @@ class Statements:
             loss.append((step[own] * speed[own]).sum(axis=0) * h)
         states = np.zeros((sum(len(self.states_of(k)) for k in self.contacts), h.size))
         losses = np.array(loss).reshape(len(loss), h.size)
-        return np.concatenate([push, np.abs(push) / self.mass[:, None] * h, states, losses])
+        return np.concatenate([push, np.abs(push) / self.weight[:, None] * h, states, losses])
 
     def states_of(self, k: int) -> range:
         """Rows of the states of a contact's law."""

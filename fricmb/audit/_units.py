@@ -75,7 +75,7 @@ def at_rest(units: Units, statements: Statements, rows: Samples) -> Units:
         for r, row in enumerate(own):
             for i, c in row:
                 push[i] += abs(float(np.ravel(c)[0])) * units.F[statements.names.row[k] + r]
-    v = push / np.where(statements.mass > 0.0, statements.mass, np.inf) * h
+    v = push / np.where(statements.weight > 0.0, statements.weight, np.inf) * h
     # of what moves its own size counts, however little friction it would take to move it
     v = np.where(units.v < RESTS * v, v, 0.0)
     loss = (

@@ -74,7 +74,7 @@ class Weak:
 
     def _unit(self) -> Floats:
         u, s = self.units, self.statements
-        momentum = s.mass * u.v
+        momentum = s.weight * u.v
         for rows, M in s.mass_matrices:
             momentum[rows] += abs(M) @ u.v[rows]
         return np.concatenate([momentum, u.q, u.z[self.z_rows], u.loss[self.contacts]])

@@ -13,7 +13,7 @@ from fricmb.equations._friction import Friction, law_terms
 from fricmb.equations._joint import joint_math
 from fricmb.equations._latex import typeset
 from fricmb.equations._names import coordinate_symbols, subscript
-from fricmb.scene import Body, Gravity, Joint, RigidBody
+from fricmb.scene import Body, Gravity, Joint, RigidBody, SpaceBody
 from fricmb.values import is_expression, value_of
 
 
@@ -43,10 +43,17 @@ def add_rigid_body(collector: Collector, body: RigidBody, index: Mapping[str, in
         M[index[name], index[name]] += value
 
 
+def add_space_body(collector: Collector, body: SpaceBody, index: Mapping[str, int], M: Any) -> None:
+    """Mass and moments of inertia of a body in space."""
+    masses = body.masses(lambda path, value: collector.number(body, path, value))
+    for name, value in zip(body.dof_names, masses, strict=True):
+        M[index[name], index[name]] += value
+
+
 def add_gravity(collector: Collector, gravity: Gravity, index: Mapping[str, int], rhs: Any) -> None:
     """Weight of all bodies."""
     for body in collector.scene.bodies:
-        if not isinstance(body, Body | RigidBody):
+        if not isinstance(body, Body | RigidBody | SpaceBody):
             continue
         for letter, value in gravity.acceleration.items():
             if f"{body.name}.{letter}" in index and float(value_of(value)) != 0.0:

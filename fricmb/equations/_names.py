@@ -7,13 +7,14 @@ from typing import Any
 
 import sympy
 
-from fricmb.scene import Body, Contact, Damper, Force, ModalBody, PointDamper, PointSpring, RigidBody, Spring
+from fricmb.scene import Body, Contact, Damper, Force, ModalBody, PointDamper, PointSpring, RigidBody, SpaceBody, Spring
 from fricmb.values import Parameter, is_expression
 
 #: Letters for slots by type; other slots keep their name.
 _LETTERS = {
     Body: {"mass": "m"},
     RigidBody: {"mass": "m", "inertia": "J"},
+    SpaceBody: {"mass": "m", "inertia": "J", "inertia_across": "A", "inertia_axial": "C"},
     Spring: {"stiffness": "k", "cubic": "kappa", "length": "L"},
     PointSpring: {"stiffness": "k", "length": "L", "anchor": "a"},
     Damper: {"damping": "c"},

@@ -13,7 +13,7 @@ from fricmb.equations._authors import element_math
 from fricmb.equations._collector import Collector, exact
 from fricmb.equations._friction import Friction, friction
 from fricmb.equations._latex import typeset
-from fricmb.equations._mechanism import Constraint, add_gravity, add_joint, add_rigid_body
+from fricmb.equations._mechanism import Constraint, add_gravity, add_joint, add_rigid_body, add_space_body
 from fricmb.equations._names import coordinate_symbols, subscript
 from fricmb.equations._tree import in_joint_coordinates
 from fricmb.scene import (
@@ -27,7 +27,9 @@ from fricmb.scene import (
     MatrixElement,
     ModalBody,
     RigidBody,
+    SpaceBody,
 )
+from fricmb.scene._space_body import with_inner
 from fricmb.values import is_expression, value_of
 
 
@@ -130,8 +132,10 @@ def _derive(scene: Any) -> SceneEquations:
     index = {name: i for i, name in enumerate(scene.dof_names)}
     contacts = []
     constraints: list[Constraint] = []
-    for part in scene.parts:
-        if isinstance(part, RigidBody):
+    for part in with_inner(scene.parts):
+        if isinstance(part, SpaceBody):
+            add_space_body(collector, part, index, M)
+        elif isinstance(part, RigidBody):
             add_rigid_body(collector, part, index, M)
         elif isinstance(part, Gravity):
             add_gravity(collector, part, index, rhs)

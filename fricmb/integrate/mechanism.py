@@ -80,6 +80,9 @@ class Joints:
         1: its single multiplier pushes only (lam >= 0); where it would pull, contact is lost.
     hands_over : (k,) int8
         1: where contact is lost the joint opens and the run goes on.
+    inner : (k,) int8
+        1: what ties the coordinates of one body together, named after it.  It holds no part to another, and reactions
+        and reports leave it out.
     names : tuple of str
     dropped : (m,) int8
         1: a constraint that follows from the others; its multiplier is 0.  2: a joint that is open.
@@ -90,6 +93,7 @@ class Joints:
     port: Ints = field(default_factory=lambda: _i(0))
     one_sided: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     hands_over: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    inner: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     names: tuple[str, ...] = ()
     dropped: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
 
@@ -104,6 +108,8 @@ class Mechanism:
         Degrees of freedom and further extended coordinates.
     M : Entries
         Mass matrix over the degrees of freedom.
+    least_mass : (n,) or (0,)
+        What changes of a coordinate are measured by where its own mass is less: an axis of a flat body has none.
     K, C, B : Entries
         Stiffness and damping over [y, u]; force on y per unit of signal.
     f : (n_y + n_u,)
@@ -124,6 +130,7 @@ class Mechanism:
     places: Places
     joints: Joints
     slip: Templates
+    least_mass: Floats = field(default_factory=lambda: _f(0))
 
     @property
     def n_y(self) -> int:

@@ -23,6 +23,7 @@ from fricmb.scene import (
     Part,
     RigidBody,
     Scene,
+    SpaceBody,
 )
 from fricmb.scene._lines import MOVING, Rows, lines_of, parts_at
 from fricmb.values import value_of
@@ -146,7 +147,7 @@ def _single(scene: Scene, others: list[int], place: dict[str, int]) -> tuple[lis
             links.extend(weights)
             at.extend([i] * len(weights))
             continue
-        if not isinstance(part, Element | Contact | MatrixElement | Joint) and not couples_modes(part):
+        if not isinstance(part, Element | Contact | MatrixElement | Joint | SpaceBody) and not couples_modes(part):
             continue
         found = shared.get(part.name)
         if found is None or found.part is not part:
@@ -181,7 +182,7 @@ def _weights(scene: Scene, gravity: Gravity, place: dict[str, int]) -> list[Link
     """Gravity acts on every body alone, and ties none to another."""
     links = []
     for body in scene.bodies:
-        if isinstance(body, Body | RigidBody):
+        if isinstance(body, Body | RigidBody | SpaceBody):
             held = [f"{body.name}.{c}" for c, value in gravity.acceleration.items() if value_of(value) != 0.0]
             acts = tuple(place[name] for name in held if name in place)
             if acts:
@@ -199,7 +200,7 @@ def _motions(scene: Scene, part: Part) -> tuple[set[str], set[str]]:
     """Names of dofs and prescribed motions that a part acts on, and that its expressions read."""
     if isinstance(part, MatrixElement):
         return set(part.dofs), set()
-    if isinstance(part, ModalBody):
+    if isinstance(part, ModalBody | SpaceBody):
         return set(part.dof_names), set()
     if isinstance(part, Contact):
         normal = part.normal_direction()

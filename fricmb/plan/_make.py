@@ -114,6 +114,8 @@ def _targets(scene: Scene, names: tuple[str, ...]) -> Wanted:
             point = scene.points[name]
             forms = [scene.motion(f"{name}.{letter}") for letter in point.letters]
             wanted.dofs |= {place[dof] for form in forms for dof in form.motions}
+        elif name in scene.space_points:
+            wanted.dofs |= {place[dof] for dof in scene.space_points[name].body.dof_names}
         elif name in scene.rigid_points:
             wanted.dofs |= {place[dof] for dof in scene.rigid_points[name].body.dof_names}
         elif name in scene:

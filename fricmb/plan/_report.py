@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.plan._links import Flags, Links
 from fricmb.plan._plan import Island, Omission, short_list
-from fricmb.scene import Body, Contact, Driven, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene
+from fricmb.scene import Body, Contact, Driven, Joint, MatrixElement, ModalBody, Part, RigidBody, Scene, SpaceBody
 
 
 def counts(parts: Iterable[Part], links: Links, inside: Flags, n: int, islands: int, still: int) -> dict[str, int]:
@@ -27,7 +27,7 @@ def counts(parts: Iterable[Part], links: Links, inside: Flags, n: int, islands: 
     joints = number(Joint)
     dry = [part for part in parts if isinstance(part, Joint) and part.friction is not None] if joints else []
     return {
-        "bodies": number(Body, ModalBody, RigidBody),
+        "bodies": number(Body, ModalBody, RigidBody, SpaceBody),
         "driven bodies": number(Driven),
         "degrees of freedom": n,
         "linear elements": sum(k for f, k in facts if not f.nonlinear and (f.stiffness or f.damping or f.constant)),
@@ -35,9 +35,9 @@ def counts(parts: Iterable[Part], links: Links, inside: Flags, n: int, islands: 
         "matrix elements": number(MatrixElement),
         "forces of time": sum(k for f, k in facts if f.signal),
         "contacts": len(contacts) + len(dry),
-        "contact rows": sum(rows) + len(dry),
+        "contact rows": sum(rows) + sum(joint.slip_rows for joint in dry),
         "law states": sum(c.law.n_states(d) for d, c in zip(rows, contacts, strict=True) if c.law.states)  # type: ignore
-        + sum(joint.friction.n_states(1) for joint in dry if joint.friction is not None),
+        + sum(joint.friction.n_states(joint.slip_rows) for joint in dry if joint.friction is not None),
         "islands": islands,
         "islands at rest": still,
         **({"joints": joints} if joints else {}),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Set
 from typing import Any
 
-from fricmb.scene import Contact, Element, Joint, ModalBody, Part, Scene, expression_uses
+from fricmb.scene import Contact, Element, Joint, ModalBody, Part, Scene, SpaceBody, expression_uses
 from fricmb.values import value_of
 
 
@@ -25,7 +25,7 @@ def can_start(scene: Scene, part: Part, facts: Any, prescribed: Set[str], reads:
     """
     if isinstance(part, Contact):
         return _contact_can_start(scene, part, prescribed)
-    if isinstance(part, Joint):
+    if isinstance(part, Joint | SpaceBody):
         return True
     if not isinstance(part, Element):
         return False  # matrices give forces in proportion to position and velocity

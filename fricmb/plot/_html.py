@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Scenes of more bodies are not drawn.
-_DRAWN = 60
 
 
 def block(*parts: str) -> str:
@@ -52,12 +50,13 @@ def _short(value: Any) -> str:
 def scene_html(scene: Any) -> str:
     """A scene: its drawing, parts and parameters."""
     from fricmb.plot._animation import draw_scene
+    from fricmb.plot._make_sketch import is_drawn
 
     parts = [(part.name, type(part).__name__) for part in scene.parts]
     values = [(name, _short(value)) for name, value in scene.parameters.items()]
     return block(
         f"<b>{escape(scene.name)}</b> ({len(scene.dof_names)} degrees of freedom)<br>",
-        _image(lambda: draw_scene(scene)) if len(scene.bodies) <= _DRAWN else "",
+        _image(lambda: draw_scene(scene)) if is_drawn(scene) else "",
         f"<details><summary>{len(parts)} parts</summary>{_table(parts)}</details>",
         f"<details><summary>{len(values)} parameters</summary>{_table(values)}</details>",
     )

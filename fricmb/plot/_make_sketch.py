@@ -12,7 +12,7 @@ from fricmb.plot._contact import OPEN, static_limit
 from fricmb.plot._fine import Floats, span_of, window_of
 from fricmb.plot._linkage import linkage
 from fricmb.plot._sketch import Motion, Sketch, motions_at_start, motions_of
-from fricmb.scene import Contact, RigidBody
+from fricmb.scene import Contact, RigidBody, SpaceBody
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -40,10 +40,21 @@ def sketch_of_run(sol: Solution, times: Floats, magnify: float | None = None) ->
     return sketch
 
 
+def is_drawn(scene: Any) -> bool:
+    """Whether there are pictures of a scene: of the plane, and not of too many bodies."""
+    flat = not any(isinstance(body, SpaceBody) for body in scene.bodies)
+    return flat and len(scene.bodies) + len(scene.driven) <= DRAWN
+
+
 def _sketch(scene: Any, position: Motion, t: Floats, magnify: float | None) -> Sketch:
     count = len(scene.bodies) + len(scene.driven)
     if count > DRAWN:
         raise AnalysisError(f"a scene of {count} bodies is not drawn; at most {DRAWN} are")
+    if any(isinstance(body, SpaceBody) for body in scene.bodies):
+        raise AnalysisError(
+            "a scene with bodies in space is not drawn: pictures of scenes are of the plane; sol['rod.x'] and"
+            " sol['rod.rotation'] hold what to draw with matplotlib"
+        )
     if any(isinstance(body, RigidBody) for body in scene.bodies) or scene.joints:
         return linkage(scene, position, t)
     return boxes(scene, position, t, magnify)

@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.plot._contact import STICK, phases
 from fricmb.plot._fine import Floats
 from fricmb.plot._html import block, resource
-from fricmb.plot._make_sketch import DRAWN, PICTURES, shown_span, sketch_of_run
+from fricmb.plot._make_sketch import DRAWN, PICTURES, is_drawn, shown_span, sketch_of_run
 from fricmb.plot._sketch import Sketch, Touch
 from fricmb.solution._stored import Stored
 
@@ -35,7 +35,7 @@ def solution_html(
     begin, end, pictures = shown_span(sol, t_start, t_end)
     times = _times(sol, begin, end, len(names))
     every = sol.at(times).columns()
-    drawn = len(sol.scene.bodies) + len(sol.scene.driven) <= DRAWN
+    drawn = is_drawn(sol.scene)
     data = {
         "t": _rounded(times, 9),
         "span": [begin, end],

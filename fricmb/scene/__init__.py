@@ -22,6 +22,7 @@ from fricmb.scene._point import PointDamper, PointSpring
 from fricmb.scene._rigid import GroundPoint, RigidBody, RigidPoint, ground_point
 from fricmb.scene._rollers import RollerOnCircle, RollerOnLine
 from fricmb.scene._scene import Scene
+from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.scene._spring import Spring
 from fricmb.scene._symbols import coordinate, speed
 from fricmb.scene._turning import Gravity, Torque, TorsionDamper, TorsionSpring
@@ -62,6 +63,8 @@ __all__ = [
     "RollerOnCircle",
     "RollerOnLine",
     "Scene",
+    "SpaceBody",
+    "SpacePoint",
     "Spring",
     "Torque",
     "TorsionDamper",

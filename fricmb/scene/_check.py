@@ -9,6 +9,8 @@ from fricmb.errors import SceneError, UnknownNameError, unknown_name
 from fricmb.scene._expressions import Uses
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._part import GROUND, End, Ground, Part
+from fricmb.scene._space_body import SpaceBody
+from fricmb.scene._turning import Gravity, PlaneDefault
 
 if TYPE_CHECKING:
     from fricmb.scene._scene import Scene
@@ -30,12 +32,24 @@ def check_scene(scene: Scene) -> None:
         for end in part.ends():
             if held.get(end.owner.name) is not end.owner:
                 _check_end(scene, part, end, label)
+    if any(isinstance(part, SpaceBody) for part in scene.parts):
+        _check_gravity(scene)
     values: dict[str, float] = {}
     for part in scene.parts:
         uses = part.uses()
         if uses or isinstance(part, MatrixElement):
             _check_motions(scene, part, uses)
             _check_parameters(part, uses, values, label)
+
+
+def _check_gravity(scene: Scene) -> None:
+    """In space nobody can guess which way is down."""
+    for part in scene.parts:
+        if isinstance(part, Gravity) and isinstance(part.acceleration, PlaneDefault):
+            raise SceneError(
+                f"{part._label()}: in a scene with bodies in space acceleration has to be given, such as"
+                " {'z': -9.81}"
+            )
 
 
 def _check_end(scene: Scene, part: Part, end: End, label: str) -> None:

@@ -55,6 +55,8 @@ class Joint(Part):
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b")
     #: Whether the joint has slip and load.
     takes_friction: ClassVar[bool] = False
+    #: Number of directions of slip.
+    slip_rows: ClassVar[int] = 1
     #: Whether its constraints depend on the motion of its ends relative to one another alone: they stay satisfied where
     #: both ends are moved and turned as one.
     only_relative: ClassVar[bool] = False
@@ -81,8 +83,9 @@ class Joint(Part):
                 self._refuse("friction", self.friction, "left out: this joint has no slip")
             if not isinstance(self.friction, FrictionLaw):
                 self._refuse("friction", self.friction, "a friction law, such as fm.laws.Coulomb(mu_s=0.5)")
-            if 1 not in self.friction.dimensions:
-                self._refuse("friction", self.friction, "a law of one direction of slip")
+            if self.slip_rows not in self.friction.dimensions:
+                words = "one direction" if self.slip_rows == 1 else f"{self.slip_rows} directions"
+                self._refuse("friction", self.friction, f"a law of {words} of slip")
             if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:
                 self.friction.check()
 

@@ -13,7 +13,7 @@ import numpy as np
 from fricmb.errors import SceneError, unknown_name
 from fricmb.scene._bodies import Body, check_keys
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._part import GROUND, End, Part, PartEnd, PointEnd
+from fricmb.scene._part import GROUND, LETTERS, End, Part, PartEnd, PointEnd
 from fricmb.values import is_plain, value_of
 
 PLANE = ("x", "y")
@@ -221,7 +221,7 @@ def angle_of(owner: Part, argument: str, end: Any) -> LinearForm:
     if isinstance(end, End) and end.owner is GROUND:
         return LinearForm()
     shown = end.end_name if isinstance(end, End) else end
-    accepted = "a RigidBody, one of its points, or GROUND"
+    accepted = "a RigidBody of the plane, one of its points, or GROUND"
     raise SceneError(f"{owner._label()}: {argument} must turn ({accepted}), got {shown!r}")
 
 
@@ -235,6 +235,8 @@ def plane_motion(owner: Part, argument: str, end: Any) -> tuple[LinearForm, Line
     """X and y of an end."""
     if not isinstance(end, End):
         owner._refuse(argument, end, "a RigidBody, a point, a Body, a Driven or GROUND")
+    if getattr(end.owner, "turning", None) is not None or (end.owner is GROUND and end.letters == LETTERS):
+        owner._refuse(argument, end.end_name, "an end in the plane; for bodies in space take the joints of fm.space")
     if isinstance(end, Body) and set(end.axes) != set(PLANE):
         owner._refuse(argument, end.end_name, f"an end with the axes 'xy' (it has {end.axes!r})")
     return end.motion("x"), end.motion("y")

@@ -21,11 +21,12 @@ from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
+from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.values import DIMENSIONS, Units, value_of
 from fricmb.values._pause import no_collection
 
 #: Parts with degrees of freedom.
-BODIES = (Body, ModalBody, RigidBody)
+BODIES = (Body, ModalBody, RigidBody, SpaceBody)
 
 
 class Scene:
@@ -107,9 +108,9 @@ class Scene:
         return name in self._by_name
 
     @property
-    def bodies(self) -> tuple[Body | ModalBody | RigidBody, ...]:
+    def bodies(self) -> tuple[Body | ModalBody | RigidBody | SpaceBody, ...]:
         """Parts with degrees of freedom."""
-        return tuple([part for part in self.parts if isinstance(part, (Body, ModalBody, RigidBody))])
+        return tuple([part for part in self.parts if isinstance(part, BODIES)])
 
     @property
     def driven(self) -> tuple[Driven, ...]:
@@ -148,7 +149,7 @@ class Scene:
     @property
     def is_mechanism(self) -> bool:
         """Whether bodies turn or joints tie them, so that kinematics is not linear."""
-        return any(isinstance(part, RigidBody | Joint) for part in self.parts)
+        return any(isinstance(part, RigidBody | SpaceBody | Joint) for part in self.parts)
 
     @property
     def points(self) -> dict[str, Point]:
@@ -174,6 +175,24 @@ class Scene:
                     raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
         return found
 
+    @property
+    def space_points(self) -> dict[str, SpacePoint]:
+        """Points of bodies in space by name: those declared, and those that parts refer to.
+
+        Raises
+        ------
+        SceneError
+            If one name stands for two places.
+        """
+        bodies = [part for part in self.parts if isinstance(part, SpaceBody)]
+        found = {f"{body.name}.{name}": SpacePoint(body, name) for body in bodies for name in body.offsets}
+        for part in self.parts if bodies else ():
+            for end in part.ends():
+                if isinstance(end, SpacePoint) and found.setdefault(end.end_name, end).offset != end.offset:
+                    held = found[end.end_name].offset
+                    raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
+        return found
+
     # -- motions ------------------------------------------------------------------------------------------------
     @property
     def motion_names(self) -> tuple[str, ...]:
@@ -189,6 +208,8 @@ class Scene:
                     motions[f"{point.end_name}.{c}"] = point.body.modal_form(point.point, c)
             for name in self.rigid_points:
                 motions |= {f"{name}.{c}": LinearForm(((f"{name}.{c}", 1.0),)) for c in PLANE}
+            for name, fixed in self.space_points.items():
+                motions |= {f"{name}.{c}": fixed.motion(c) for c in LETTERS}
             for body in self.driven:
                 for c in body.letters or LETTERS:
                     motions[f"{body.name}.{c}"] = body.motion(c)
@@ -239,7 +260,7 @@ class Scene:
         values = np.zeros((2, len(names)))
         for name in dict.fromkeys(name.partition(".")[0] for name in names):
             body = self._by_name[name]
-            if not isinstance(body, Body | ModalBody | RigidBody):
+            if not isinstance(body, BODIES):
                 continue
             for row, argument in zip(values, ("position", "velocity"), strict=True):
                 for key, value in body.start_values(argument).items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar
@@ -124,22 +124,37 @@ class Torque(Force):
         return (own, *(LinearForm.of({name: 1.0}) for name in expression_uses(self.value).motions))
 
 
+class PlaneDefault(Mapping[str, Any]):
+    """What gravity is where nothing is said: downward along y, which is so in the plane alone."""
+
+    def __getitem__(self, letter: str) -> float:
+        return {"y": -9.81}[letter]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter("y")
+
+    def __len__(self) -> int:
+        return 1
+
+
 @dataclass(frozen=True, eq=False)
 class Gravity(Part):
-    """Weight of every Body and RigidBody of the scene.
+    """Weight of every Body and RigidBody of the scene, those of ``fm.space`` included.
 
     Parameters
     ----------
     name : str
     acceleration : dict of axis to float
-        Default ``{"y": -9.81}``.
+        Default ``{"y": -9.81}``; where there are bodies in space it has to be given.
     """
 
     _: KW_ONLY
-    acceleration: Mapping[str, Any] = field(default_factory=lambda: {"y": -9.81})
+    acceleration: Mapping[str, Any] = field(default_factory=PlaneDefault)
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if isinstance(self.acceleration, PlaneDefault):
+            return
         given = check_keys(self, "acceleration", self.acceleration, LETTERS)
         checked = {c: self._number(f"acceleration[{c!r}]", value) for c, value in given.items()}
         self._set("acceleration", MappingProxyType(checked))

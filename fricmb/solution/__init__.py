@@ -3,7 +3,7 @@
 from fricmb.integrate.run.chunked_run import take
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Event, Events
-from fricmb.solution._names import Motion, Names
+from fricmb.solution._names import Motion, Names, Vector
 from fricmb.solution._run import Flags, Mechanics, Origin, Piece, Record, Run, first_bad, times_inside
 from fricmb.solution._solution import Solution
 from fricmb.solution._stats import IslandStats, Stats
@@ -25,6 +25,7 @@ __all__ = [
     "Run",
     "Solution",
     "Stats",
+    "Vector",
     "builder",
     "first_bad",
     "take",

@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.errors import FricmbError
 from fricmb.integrate import EVENT_KINDS
-from fricmb.solution._names import Names
+from fricmb.solution._names import VECTORS, Names
 from fricmb.solution._run import ROUND_OFF
 from fricmb.solution._stats import IslandStats, Stats
 
@@ -86,6 +86,10 @@ def _check_names(names: Names, held: Mapping[str, Any]) -> None:
         fits = index.ndim == 1 and index.shape == motion.coefficient.shape and -1 <= motion.angle < n
         if not fits or (index.size and not 0 <= index.min() <= index.max() < n) or len(motion.arm) != 2:
             raise FricmbError(f"entry 'about': the motion {name!r} does not fit {n} degrees of freedom")
+    for name, vector in names.vectors.items():
+        index, n = vector.index, len(names.dofs)
+        if index.shape != (VECTORS.get(vector.kind, -1),) or not 0 <= index.min() <= index.max() < n:
+            raise FricmbError(f"entry 'about': the vector {name!r} does not fit {n} degrees of freedom")
     if not all(type(index) is int for index in names.signals.values()):
         raise FricmbError("entry 'about': signals are no numbers of driven bodies")
 

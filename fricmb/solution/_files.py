@@ -29,7 +29,7 @@ from fricmb.solution._data import TYPES
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._formulas import NotStored
-from fricmb.solution._names import Motion, Names
+from fricmb.solution._names import Motion, Names, Vector
 from fricmb.solution._run import Record
 from fricmb.solution._solution import Solution, restore
 from fricmb.solution._stats import IslandStats, Stats
@@ -151,6 +151,7 @@ def _words(sol: Solution) -> dict[str, Any]:
             name: {**asdict(motion), "index": motion.index.tolist(), "coefficient": motion.coefficient.tolist()}
             for name, motion in names.motions.items()
         },
+        "vectors": {name: [vector.kind, *vector.index.tolist()] for name, vector in names.vectors.items()},
         "signals": dict(names.signals),
         "stats": asdict(sol.stats),
         "t_start": sol.t_start,
@@ -270,6 +271,10 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
                 arm=tuple(motion.get("arm", (0.0, 0.0))),
             )
             for name, motion in about["motions"].items()
+        },
+        vectors={
+            name: Vector(kind=kind, index=np.array(index, dtype=np.int64))
+            for name, (kind, *index) in about.get("vectors", {}).items()
         },
         signals=about["signals"],
     )

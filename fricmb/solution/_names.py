@@ -43,6 +43,39 @@ class Motion:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Vector:
+    """What several coordinates of a body in space say together; ``index`` (k,) of those that turn.
+
+    ``kind``: "rotation", the matrix whose columns are the body's axes; "axis", that of a rotor; "directors", "rotor"
+    and "ball", the angular velocity along the axes of space.
+    """
+
+    kind: str
+    index: Ints
+
+    def value(self, q: Floats, v: Floats) -> Floats:
+        """(3, n_t), of a rotation (3, 3, n_t), for q and v (n, n_t)."""
+        x, rate = q[self.index], v[self.index]
+        found: Floats
+        if self.kind == "rotation":
+            found = x.reshape(3, 3, -1).transpose(1, 0, 2)
+        elif self.kind == "axis":
+            found = x[:3]
+        elif self.kind == "ball":
+            found = rate
+        elif self.kind == "rotor":
+            found = np.cross(x[:3], rate[:3], axis=0) + rate[3] * x[:3]
+        else:
+            turns = (np.cross(x[i : i + 3], rate[i : i + 3], axis=0) for i in (0, 3, 6))
+            found = 0.5 * np.sum(list(turns), axis=0)
+        return found
+
+
+#: Number of coordinates behind each kind of vector.
+VECTORS = {"rotation": 9, "axis": 4, "ball": 3, "rotor": 4, "directors": 9}
+
+
+@dataclass(frozen=True, kw_only=True)
 class Names:
     """Names of degrees of freedom, contacts, directions and law states of a run.
 
@@ -56,6 +89,8 @@ class Names:
         By contact: labels of the internal states of its law.
     motions : mapping of str to Motion
         Further motions: points of modal and rigid bodies, relative motions of joints.
+    vectors : mapping of str to Vector
+        Orientation and angular velocity of bodies in space.
     signals : mapping of str to int
         Motions of driven bodies by the index of their signal.
     scale : tuple of tuple of float
@@ -67,6 +102,7 @@ class Names:
     directions: tuple[tuple[str, ...], ...] = ()
     states: tuple[tuple[str, ...], ...] = ()
     motions: Mapping[str, Motion] = field(default_factory=dict)
+    vectors: Mapping[str, Vector] = field(default_factory=dict)
     signals: Mapping[str, int] = field(default_factory=dict)
     scale: tuple[tuple[float, ...], ...] = ()
 
@@ -108,8 +144,8 @@ class Names:
         return self.directions[self.contact(contact)]
 
     def known_motions(self) -> list[str]:
-        """All names of motions: degrees of freedom, points, driven bodies."""
-        return [*self.dofs, *self.motions, *self.signals]
+        """All names of motions: degrees of freedom, points, vectors of bodies in space, driven bodies."""
+        return [*self.dofs, *self.motions, *self.vectors, *self.signals]
 
 
 def _starts(groups: tuple[tuple[str, ...], ...]) -> Ints:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import IntegrationError, unknown_name
+from fricmb.errors import IntegrationError, SceneError, unknown_name
 from fricmb.integrate import Samples, Start
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._energy import Energy, Reference
@@ -97,7 +97,10 @@ class Solution:
         return self.names.contacts
 
     def __getitem__(self, name: str) -> Floats:
-        """Position (n_t,) of a degree of freedom, a point ("plate.tip.x") or a driven body ("belt.x")."""
+        """Position (n_t,) of a degree of freedom, a point ("plate.tip.x") or a driven body ("belt.x").
+
+        Of bodies in space also "rod.rotation" (3, 3, n_t), "rod.omega" and "axle.axis" (3, n_t).
+        """
         return self._motion(name, 0)
 
     def velocity(self, name: str) -> Floats:
@@ -112,6 +115,10 @@ class Solution:
             if name in names.motions:
                 motion = names.motions[name]
                 return motion.velocity(self.q, self.v) if derivative else motion.position(self.q)
+            if name in names.vectors:
+                if derivative:
+                    raise SceneError(f"velocity: {name!r} is no coordinate whose rate is kept; sol[{name!r}] has it")
+                return names.vectors[name].value(self.q, self.v)
             if name in names.signals:
                 return self.run.signal(names.signals[name], self.t)[derivative]
         except TypeError:  # an unhashable name

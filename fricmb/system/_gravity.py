@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from fricmb.scene import Body, Gravity, RigidBody
+from fricmb.scene import Body, Gravity, RigidBody, SpaceBody
 from fricmb.system._structure import Store, Structure
 from fricmb.system._tables import Row
 from fricmb.values import value_of
@@ -16,7 +16,7 @@ def add_gravity(gravity: Gravity, parts: Iterable[Any], structure: Structure, in
     rows: list[Row] = []
     f: list[tuple[int, int, float]] = []
     for body in parts:
-        if not isinstance(body, Body | RigidBody):
+        if not isinstance(body, Body | RigidBody | SpaceBody):
             continue
         mass = float(value_of(body.mass))
         for letter, value in gravity.acceleration.items():

@@ -13,7 +13,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.mechanism import Entries, Joints, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import topology
-from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody
+from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
@@ -35,11 +35,12 @@ class JointArrays:
     port: list[int] = field(default_factory=list)
     one_sided: list[int] = field(default_factory=list)
     hands_over: list[int] = field(default_factory=list)
+    inner: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     forms: list[tuple[Row, ...]] = field(default_factory=list)
 
-    def add(self, joint: Joint) -> None:
-        """Append a joint, and its friction to the contacts."""
+    def add(self, joint: Joint, *, inner: bool = False) -> None:
+        """Append a joint, and its friction to the contacts; ``inner``: of one body alone."""
         template = joint_template(joint)
         rows = [self.motions.row(form) for form in joint.local_coordinates()]
         rows += [self._drive(joint, i, drive) for i, drive in enumerate(joint.drives())]
@@ -47,6 +48,7 @@ class JointArrays:
         self.rows.append(self.rows[-1] + int(template.facts["rows"]))
         self.one_sided.append(int(joint.one_sided))
         self.hands_over.append(int(joint.hands_over))
+        self.inner.append(int(inner))
         self.names.append(joint.name)
         self.forms.append(tuple(rows))
         self.port.append(-1)
@@ -74,6 +76,7 @@ class JointArrays:
             port=np.array(self.port, dtype=np.int64),
             one_sided=np.array(self.one_sided, dtype=np.int8),
             hands_over=np.array(self.hands_over, dtype=np.int8),
+            inner=np.array(self.inner, dtype=np.int8),
             names=tuple(self.names),
             dropped=np.zeros(self.rows[-1], dtype=np.int8),
         )
@@ -118,6 +121,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         places=_places(scene, points, index),
         joints=joints.build(n_y, n_u),
         slip=contacts.slip_table(n_y, n_u),
+        least_mass=_least_mass(parts, index, n),
     )
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)
@@ -149,14 +153,15 @@ def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     """The problem with constraints marked that follow from others; friction needs reactions that are determined."""
     from fricmb.integrate.constrained._independent import redundancy
 
-    groups = topology(scene, problem.mechanism.joints.names).groups if problem.mechanism else ()
+    groups = _with_bodies(scene, topology(scene, problem.mechanism.joints.names).groups) if problem.mechanism else ()
     found = redundancy(problem, start, groups)
     mechanism = problem.mechanism
     if not found.rows.size or mechanism is None:
         return problem
-    for name in found.joints:
+    held = [name for name in found.joints if isinstance(scene[name], Joint)]
+    for name in held:
         if scene[name].friction is not None:
-            others = ", ".join(repr(other) for other in found.joints if other != name)
+            others = ", ".join(repr(other) for other in held if other != name)
             raise SceneError(
                 f"{type(scene[name]).__name__} {name!r}: its reaction, the normal force of its friction, is not"
                 f" determined, because constraints of {others} and {name!r} are redundant"
@@ -166,10 +171,40 @@ def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     return replace(problem, mechanism=replace(mechanism, joints=replace(mechanism.joints, dropped=dropped)))
 
 
+def _least_mass(parts: Iterable[Any], index: dict[str, int], n: int) -> Floats:
+    """What coordinates count in changes at least (n,); nothing where every coordinate has its mass."""
+    least = np.zeros(n)
+    for body in parts:
+        if isinstance(body, SpaceBody):
+            for name, value in zip(body.dof_names, body.least_masses(), strict=True):
+                least[index[name]] = value
+    return least if least.any() else least[:0]
+
+
+def _with_bodies(scene: Any, groups: Iterable[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Joints of loops with the inner constraints of the bodies that they tie, which bear the bodies' names."""
+    found: list[tuple[str, ...]] = []
+    for group in groups:
+        owners = [end.owner for name in group for end in (scene[name].a, scene[name].b)]
+        bodies = {owner.name for owner in owners if isinstance(owner, SpaceBody) and owner.inner() is not None}
+        # loops that share a body are looked at together: its inner constraint is in both
+        sharing = [other for other in found if not bodies.isdisjoint(other)]
+        found = [other for other in found if other not in sharing]
+        found.append(tuple(dict.fromkeys((*group, *(name for other in sharing for name in other), *sorted(bodies)))))
+    return found
+
+
 def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: JointArrays, index: dict[str, int]) -> None:
     if isinstance(part, RigidBody):
         m, inertia = float(value_of(part.mass)), float(value_of(part.inertia))
         structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, (m, m, inertia), strict=True))
+    elif isinstance(part, SpaceBody):
+        structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, part.masses(), strict=True))
+        for within in part.parts_within():
+            if isinstance(within, Joint):
+                joints.add(within, inner=True)
+            else:
+                structure.add_element(within)
     elif isinstance(part, Body | ModalBody):
         structure.add_body(part, index)
     elif isinstance(part, MatrixElement):

@@ -57,12 +57,14 @@ class MechanismSystem(System):
 
     def reaction(self, joint: str, samples: Samples) -> Floats:
         """Multipliers of a joint (m, n_t) at states with their friction modes."""
-        if joint not in self.mechanism.joints.names:
-            raise unknown_name("joint", joint, self.mechanism.joints.names)
+        joints = self.mechanism.joints
+        known = [name for name, inner in zip(joints.names, joints.inner, strict=True) if not inner]
+        if joint not in known:
+            raise unknown_name("joint", joint, known)
         return self.reactions(samples)[joint]
 
     def reactions(self, samples: Samples) -> dict[str, Floats]:
-        """The same of every joint by name."""
+        """The same of every joint by name, and of the inner constraints of bodies by theirs."""
         from fricmb.integrate.constrained._assemble import away
         from fricmb.integrate.constrained._trajectory import complete_open
 

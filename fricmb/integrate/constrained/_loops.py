@@ -60,7 +60,8 @@ def _ties(problem: Problem, m: Mechanism, port_joint: Ints) -> list[set[str]]:
     p = m.places
     for i, count in enumerate(np.diff(p.first).tolist()):
         names += [names[p.dof[p.dof_start[i]]]] * count
-    tied = [_tied(m.joints.table, j, m.n_y, names) for j in range(len(m.joints.port))]
+    inner = m.joints.inner
+    tied = [set() if inner[j] else _tied(m.joints.table, j, m.n_y, names) for j in range(len(m.joints.port))]
     return tied + [set() if j >= 0 else _tied(m.slip, c, m.n_y, names) for c, j in enumerate(port_joint)]
 
 

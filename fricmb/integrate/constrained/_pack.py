@@ -166,11 +166,11 @@ def _pack(problem: Problem) -> Mech:
 
 
 def masses(m: Mechanism) -> Floats:
-    """Diagonal of the mass matrix (n,)."""
+    """Diagonal of the mass matrix (n,), what changes are measured by: above 0 also where a coordinate has no mass."""
     mass = np.zeros(m.n)
     on = m.M.row == m.M.column
     np.add.at(mass, m.M.row[on], m.M.value[on])
-    return mass
+    return np.maximum(mass, m.least_mass) if m.least_mass.size else mass
 
 
 def _places(m: Mechanism) -> Place:

@@ -1,0 +1,59 @@
+"""Examples of ``fm.space``, one for each public name."""
+
+_DOWN = 'weight = fm.Gravity("weight", acceleration={"z": -9.81})\n'
+_BODY = (
+    """
+ends = {"top": (0, 0, 0.3), "low": (0, 0, -0.3)}
+arm = fm.space.RigidBody("arm", mass=1.0, inertia=(0.03, 0.03, 0.01), points=ends, position=(0.3, 0, 0),
+                         orientation=fm.space.turned(axis=(0, 1, 0), angle=-1.5707963267948966))
+"""
+    + _DOWN
+)
+_PICTURE = """
+figure, ax = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
+"""
+
+
+def _run(parts: str, shown: str, t_end: float = 1.0) -> str:
+    """A scene of these parts, run, and what is printed of it."""
+    return f'sol = fm.simulate(fm.Scene("in space", [{parts}]), t_end={t_end}, rtol=1e-6)\nprint({shown})\n'
+
+
+def _hung(joint: str) -> str:
+    """The arm on a joint."""
+    return _BODY + joint + "\n" + _run("arm, joint, weight", 'sol["arm.omega"][:, -1].round(4)')
+
+
+EXAMPLES = {
+    "space.RigidBody": "import matplotlib.pyplot as plt\n"
+    'book = fm.space.RigidBody("book", mass=1.0, inertia=(1.0, 2.0, 3.0), angular_velocity=(0.1, 2.0, 0.05))\n'
+    + _run("book", 'sol["book.rotation"][:, :, -1].round(4)', 40.0)
+    + _PICTURE
+    + 'ax.plot(sol.t, sol["book.omega"].T)\nax.set(xlabel="time", ylabel="angular velocity")\n',
+    "space.Rotor": "import matplotlib.pyplot as plt\nimport numpy as np\n"
+    "axis = np.array([np.sin(0.4), 0.0, np.cos(0.4)])\n"
+    'top = fm.space.Rotor("top", mass=0.5, inertia_across=2e-4, inertia_axial=2.5e-4, position=0.04 * axis,\n'
+    '                     axis=axis, spin=120.0, stations={"tip": -0.04})\n'
+    'tip = fm.space.Spherical("tip", top.station("tip"))\n'
+    + _DOWN
+    + _run("top, tip, weight", 'sol["top.axis"][:, -1].round(6)', 1.5)
+    + _PICTURE
+    + 'seen = sol.at(np.linspace(0.0, 1.5, 1500))\nax.plot(seen["top.axis_x"], seen["top.axis_y"])\n'
+    + 'ax.set(xlabel="axis, x", ylabel="axis, y", aspect="equal")\n',
+    "space.Ball": 'ball = fm.space.Ball("ball", mass=0.17, radius=0.0286, velocity=(1, 0, 0), angular_velocity=(0, 0, 50))\n'
+    + _run("ball", 'sol["ball.x"][-1], sol["ball.omega"][:, -1]'),
+    "space.Torque": 'wheel = fm.space.Rotor("wheel", mass=1.0, inertia_across=0.1, inertia_axial=0.2, spin=100.0)\n'
+    'torque = fm.space.Torque("push", wheel, axis=(1, 0, 0), value=2.0)\n'
+    + _run("wheel, torque", 'sol["wheel.axis"][:, -1].round(4)'),
+    "space.turned": "print(fm.space.turned(axis=(0, 0, 1), angle=0.1)[0])\n",
+    "space.Spherical": _hung('joint = fm.space.Spherical("joint", arm.point("top"))'),
+    "space.Revolute": _hung('joint = fm.space.Revolute("joint", arm.point("top"), axis=(0, 1, 0))'),
+    "space.Cylindrical": _hung('joint = fm.space.Cylindrical("joint", arm.point("top"), axis=(0, 1, 1))'),
+    "space.Prismatic": _hung('joint = fm.space.Prismatic("joint", arm.point("top"), axis=(0, 1, 1))'),
+    "space.Universal": _hung(
+        'joint = fm.space.Universal("joint", arm.point("top"), axis_a=(0, 1, 0), axis_b=(0, 0, 1))'
+    ),
+    "space.Fixed": _hung('joint = fm.space.Fixed("joint", arm.point("top"))'),
+    "space.Rod": _hung('joint = fm.space.Rod("joint", arm.point("top"), fm.space.ground_point(0, 0, 1), length=1.0)'),
+}
+SHARED = {"space.ground_point": "space.Rod"}
