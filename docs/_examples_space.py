@@ -40,7 +40,7 @@ EXAMPLES = {
     + _PICTURE
     + 'seen = sol.at(np.linspace(0.0, 1.5, 1500))\nax.plot(seen["top.axis_x"], seen["top.axis_y"])\n'
     + 'ax.set(xlabel="axis, x", ylabel="axis, y", aspect="equal")\n',
-    "space.Ball": 'ball = fm.space.Ball("ball", mass=0.17, radius=0.0286, velocity=(1, 0, 0), angular_velocity=(0, 0, 50))\n'
+    "space.Ball": 'ball = fm.space.Ball("ball", mass=0.17, radius=0.0286, velocity=(1, 0, 0))\n'
     + _run("ball", 'sol["ball.x"][-1], sol["ball.omega"][:, -1]'),
     "space.Torque": 'wheel = fm.space.Rotor("wheel", mass=1.0, inertia_across=0.1, inertia_axial=0.2, spin=100.0)\n'
     'torque = fm.space.Torque("push", wheel, axis=(1, 0, 0), value=2.0)\n'
