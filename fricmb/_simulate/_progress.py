@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -20,10 +21,16 @@ def progress_bar(shown: bool, t_start: float, t_end: float) -> Iterator[Progress
     form = "{desc}: {percentage:3.0f}%|{bar}| t = {n:.4g} of {total:.4g} [{elapsed}<{remaining}]"
     with tqdm(total=t_end - t_start, desc="fricmb", bar_format=form) as bar:
         yield _forward(bar, t_start)
+        bar.update(t_end - t_start - bar.n)  # methods tell of whole pieces of work: the last one may end before the run does
 
 
 def _forward(bar: Any, t_start: float) -> Progress:
+    """The bar's clock starts with the first piece of work that is told: before it kernels are loaded or compiled."""
+
     def forward(t: float) -> None:
+        if bar.n == 0.0:
+            bar.n = bar.initial = bar.last_print_n = t - t_start
+            bar.start_t = bar.last_print_t = time.time()
         bar.update(max(t - t_start - bar.n, 0.0))
 
     return forward

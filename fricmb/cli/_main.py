@@ -171,7 +171,7 @@ def _add_run(commands: _Commands) -> None:
     _add_format(sub)
     sub.add_argument("--audit", action="store_true", help="check the run against the scene's equations: sol.audit()")
     sub.add_argument("--json", action="store_true", help="print the summary as JSON and nothing else")
-    sub.add_argument("--quiet", action="store_true", help="no progress bar and no notices")
+    sub.add_argument("--quiet", action="store_true", help="say nothing but errors and what is asked for")
     sub.add_argument("--threads", type=_threads, metavar="N", help="threads of linear algebra and compilation")
 
 

@@ -58,6 +58,9 @@ def _run(options: argparse.Namespace) -> int:
     written = write_all(sol, folder, text, plots=None if options.no_plots else options.format)
     if options.json:
         print_aside(text)
+    elif options.quiet:
+        if audit is not None:
+            print(audit)
     else:
         print(as_text(sol))
         if audit is not None:

@@ -117,6 +117,14 @@ def test_threads_are_set_before_libraries_look(noisy, tmp_path):
     assert command("run", noisy, "--threads", "none").returncode == 2
 
 
+def test_a_quiet_run_prints_what_is_asked_for_alone(tmp_path):
+    arguments = ("run", "puck_on_belt", "--no-plots", "--out", tmp_path, "--quiet")
+    done = command(*arguments)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (tmp_path / "solution.npz").exists()
+    assert command(*arguments, "--audit").stdout.startswith("audit passes")
+
+
 def test_quiet_says_nothing(monkeypatch, capsys):
     from fricmb.integrate.compile.cache_files import say
 

@@ -122,6 +122,34 @@ def test_a_bar_shows_the_progress(scene, exact, capsys):
     assert capsys.readouterr().err == ""
 
 
+def test_a_bar_ends_full_and_a_notice_has_its_own_line(scene, exact, capsys):
+    from fricmb._simulate._progress import progress_bar
+    from fricmb.integrate.compile.cache_files import say
+
+    with progress_bar(True, 2.0, 12.0) as forward:
+        say("a notice")
+        forward(4.0)
+        forward(11.0)  # the last that is told lies before the end
+    said = capsys.readouterr().err
+    assert any(line.strip() == "fricmb: a notice" for part in said.split("\n") for line in part.split("\r"))
+    assert "100%" in said.split("\r")[-1]
+    with pytest.raises(TypeError), progress_bar(True, 2.0, 12.0) as forward:
+        forward("no time")
+    assert "100%" not in capsys.readouterr().err
+
+
+def test_the_time_to_load_kernels_does_not_count_in_the_estimate(capsys, monkeypatch):
+    from fricmb._simulate import _progress
+
+    now = [0.0]
+    monkeypatch.setattr("time.time", lambda: now[0])
+    monkeypatch.setattr("tqdm.std.time", lambda: now[0])
+    with _progress.progress_bar(True, 0.0, 100.0) as forward:
+        for now[0], t in ((60.0, 1.0), (61.0, 11.0), (62.0, 21.0)):  # a minute of loading, then ten a second
+            forward(t)
+    assert "00:08]" in capsys.readouterr().err  # 79 of 100 are left
+
+
 WRONG = [
     ({"t_end": -1.0}, "t_end: got -1.0; expected a finite time after t_start = 0"),
     ({"t_start": 5.0}, "t_end: got 5.0; expected a finite time after t_start = 5"),

@@ -74,8 +74,17 @@ def say(text: str) -> None:
     """A notice: one line on stderr; none with ``FRICMB_QUIET`` in the environment (``--quiet``)."""
     if os.environ.get("FRICMB_QUIET"):
         return
-    with contextlib.suppress(OSError, ValueError, AttributeError):
+    with contextlib.suppress(OSError, ValueError, AttributeError), _bars_aside():
         print(f"fricmb: {text}", file=sys.stderr, flush=True)
+
+
+def _bars_aside() -> contextlib.AbstractContextManager[object]:
+    """Progress bars on the terminal are taken away and drawn again below: a notice has a line of its own."""
+    loaded = sys.modules.get("tqdm")
+    if loaded is None or not getattr(loaded.tqdm, "_instances", None):
+        return contextlib.nullcontext()
+    aside: contextlib.AbstractContextManager[object] = loaded.tqdm.external_write_mode(file=sys.stderr)
+    return aside
 
 
 class CacheFiles:
