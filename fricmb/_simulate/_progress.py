@@ -21,7 +21,8 @@ def progress_bar(shown: bool, t_start: float, t_end: float) -> Iterator[Progress
     form = "{desc}: {percentage:3.0f}%|{bar}| t = {n:.4g} of {total:.4g} [{elapsed}<{remaining}]"
     with tqdm(total=t_end - t_start, desc="fricmb", bar_format=form) as bar:
         yield _forward(bar, t_start)
-        bar.update(t_end - t_start - bar.n)  # methods tell of whole pieces of work: the last one may end before the run does
+        # methods tell of whole pieces of work, the last of which may end before the run does
+        bar.update(t_end - t_start - bar.n)
 
 
 def _forward(bar: Any, t_start: float) -> Progress:
