@@ -19,7 +19,7 @@ FLOORS = (
     {"equations"},
     {"system"},
     {"simulate", "sweep"},
-    {"analysis", "audit"},
+    {"analysis", "audit", "sensitivity"},
     {"plot"},
     {"models", "testing", "bench", "precompile"},
     {"cli"},

@@ -113,3 +113,14 @@ def check_step(step: Any, adaptive: bool, method: str, length: float) -> float |
         return None
     accepted = f"a positive step of at most the run's length {length:g}, which the method {method!r} needs"
     return number("step", step, accepted, lambda h: 0 < h <= length)
+
+
+def check_sensitivities(scene: Any, given: Any, on_chunk: Any) -> tuple[str, ...]:
+    """Names to differentiate by; none for None."""
+    if given is None:
+        return ()
+    if on_chunk is not None:
+        raise SceneError("sensitivities: not together with on_chunk, which keeps nothing of the run")
+    from fricmb.sensitivity import check_names
+
+    return check_names(scene, given)

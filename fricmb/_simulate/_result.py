@@ -94,6 +94,15 @@ def not_there(trajectory: Trajectory, span: Span, fixed: bool) -> str | None:
     return "the run ended before its time, without a reason"
 
 
+def differentiated(sol: Solution, asked: tuple[str, ...]) -> Solution:
+    """The solution with the derivatives that were asked for."""
+    if asked:
+        from fricmb.sensitivity import derive
+
+        derive(sol, asked)
+    return sol
+
+
 class _Unsound(Exception):
     """Something is wrong at ``t``; until ``end`` (None: from the start) it is not."""
 

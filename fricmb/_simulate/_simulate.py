@@ -33,6 +33,7 @@ def simulate(
     chunk: float | None = None,
     on_chunk: Callable[[Solution], object] | None = None,
     time_limit: float | None = None,
+    sensitivities: str | Iterable[str] | None = None,
 ) -> Solution:
     """Simulate a scene.
 
@@ -74,6 +75,10 @@ def simulate(
     time_limit : float, optional
         Seconds of wall time, from the call on, after which the run ends with an IntegrationError that holds what was
         computed.  Compiling, which happens once on a machine, counts but is not cut short.
+    sensitivities : names or "state", optional
+        Parameters, as in ``scene.parameters``, with respect to which the run is differentiated, initial values included
+        (``"rotor.velocity.x"``: the value that the run starts with); "state", alone or among the names: all initial
+        values.  See :meth:`Solution.sensitivity`, :attr:`Solution.monodromy`, ``sol.events[i].sensitivity(name)``.
 
     Returns
     -------
@@ -98,6 +103,7 @@ def simulate(
         from fricmb._simulate._arguments import (
             check_limit,
             check_room,
+            check_sensitivities,
             check_span,
             check_step,
             check_tolerance,
@@ -109,7 +115,7 @@ def simulate(
         from fricmb._simulate._keep import check_keep, run
         from fricmb._simulate._mechanics import prepare
         from fricmb._simulate._progress import progress_bar
-        from fricmb._simulate._result import make_solution
+        from fricmb._simulate._result import differentiated, make_solution
         from fricmb._simulate._start import find_start
         from fricmb.integrate.run.memory import Footprint
         from fricmb.integrate.run.stop import Watch, watching
@@ -121,6 +127,7 @@ def simulate(
         chosen = find_runs(mechanics, method, start, span, tolerance.rtol)
         fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
         keep = check_keep(dense, chunk, on_chunk, span)
+        asked = check_sensitivities(mechanics.scene, sensitivities, on_chunk)
         if on_chunk is None:
             check_room(2 * start.q.size + len(mechanics.names.contacts) + 3, span)
         watch = Watch(check_limit(time_limit), Footprint(), since=begin)
@@ -134,6 +141,7 @@ def simulate(
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}
-            return run_watched(
+            sol = run_watched(
                 watch, lambda: run(keep, chosen.integrator, chosen.problem, start, span, finish, **options)
             )
+        return differentiated(sol, asked)

@@ -1,6 +1,7 @@
 """What a run found: motion, contacts, transitions, energies.  Knows nothing of scenes."""
 
 from fricmb.integrate.run.chunked_run import take
+from fricmb.solution._derivatives import Derivatives
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._names import Motion, Names, Vector
@@ -10,6 +11,7 @@ from fricmb.solution._stats import IslandStats, Stats
 from fricmb.solution._stored import builder
 
 __all__ = [
+    "Derivatives",
     "Energy",
     "Event",
     "Events",

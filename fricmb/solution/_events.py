@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, overload
 
 import numpy as np
 
-from fricmb.errors import unknown_name
+from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import EVENT_KINDS, Transitions
 from fricmb.integrate.problem import Floats, Ints
 
@@ -25,11 +25,55 @@ class Event:
     kind : str
         "stick" (slip ends), "slip" (stick ends), "open", "close" or "reversal" (one-dimensional slip turns round
         without sticking).
+
+    Of a run with ``sensitivities`` also :meth:`sensitivity` and :attr:`transversality`.
     """
 
     t: float
     contact: str
     kind: str
+    _moved: Moved | None = field(default=None, compare=False, repr=False)
+
+    def sensitivity(self, name: str) -> float:
+        """Derivative of the time of the event with respect to a parameter or initial value.
+
+        Raises
+        ------
+        UnknownNameError
+            For a name that ``simulate(sensitivities=...)`` was not given; lists those near.
+        """
+        return self._derivatives().by(name)
+
+    @property
+    def transversality(self) -> float:
+        """How surely the event happens: the rate at which its event function crosses 0, in units of its own.
+
+        Of slip that ends or turns round, the rate of the slip velocity over what friction at its limit makes of it; of
+        a release, the rate of sticking friction over its limit, times the time since the event before; of a normal
+        force that vanishes, the rate over the sum of its parts.  Near 0 the event only touches its condition, and there
+        is no derivative; inf where a time that is given sets it off.
+        """
+        return self._derivatives().transversality
+
+    def _derivatives(self) -> Moved:
+        if self._moved is None:
+            raise SceneError("events of this run have no derivatives: simulate with sensitivities=(names)")
+        return self._moved
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moved:
+    """Derivatives of an event's time: by ``columns`` (n,), and its transversality."""
+
+    columns: tuple[str, ...]
+    derivatives: Floats
+    transversality: float
+
+    def by(self, name: str) -> float:
+        """Derivative with respect to one of the columns."""
+        if name not in self.columns:
+            raise unknown_name("sensitivity", name, self.columns)
+        return float(self.derivatives[self.columns.index(name)])
 
 
 class Events(Sequence[Event]):
@@ -46,6 +90,8 @@ class Events(Sequence[Event]):
         self._t = np.array([event.t for event in held], dtype=float)
         self._contact = np.array([place[event.contact] for event in held], dtype=np.int64)
         self._kind = np.array([EVENT_KINDS.index(event.kind) for event in held], dtype=np.int64)
+        moved = [event._moved for event in held]
+        self._moved = moved if any(one is not None for one in moved) else None
 
     @classmethod
     def from_transitions(cls, transitions: Transitions, contacts: tuple[str, ...]) -> Events:
@@ -53,13 +99,26 @@ class Events(Sequence[Event]):
         return cls._of(contacts, transitions.t, transitions.contact, transitions.kind)
 
     @classmethod
-    def _of(cls, names: tuple[str, ...], t: Floats, contact: Ints, kind: Ints) -> Events:
+    def _of(
+        cls, names: tuple[str, ...], t: Floats, contact: Ints, kind: Ints, moved: list[Moved | None] | None = None
+    ) -> Events:
         events = cls.__new__(cls)
-        events._names, events._t, events._contact, events._kind = names, t, contact, kind
+        events._names, events._t, events._contact, events._kind, events._moved = names, t, contact, kind, moved
         return events
 
     def _part(self, chosen: Any) -> Events:
-        return self._of(self._names, self._t[chosen], self._contact[chosen], self._kind[chosen])
+        moved = None
+        if self._moved is not None:
+            moved = [self._moved[i] for i in np.arange(len(self))[chosen].tolist()]
+        return self._of(self._names, self._t[chosen], self._contact[chosen], self._kind[chosen], moved)
+
+    def with_derivatives(self, columns: tuple[str, ...], moved: Floats, transversality: Floats) -> Events:
+        """The same events with the derivatives of their times (n_events, n_columns)."""
+        held = [
+            Moved(columns=columns, derivatives=row, transversality=rate)
+            for row, rate in zip(moved, transversality.tolist(), strict=True)
+        ]
+        return self._of(self._names, self._t, self._contact, self._kind, list(held))
 
     @property
     def t(self) -> Floats:
@@ -91,11 +150,13 @@ class Events(Sequence[Event]):
     def __getitem__(self, index: int | slice) -> Event | Events:
         if isinstance(index, slice):
             return self._part(index)
-        return Event(float(self._t[index]), self._names[self._contact[index]], EVENT_KINDS[self._kind[index]])
+        moved = None if self._moved is None else self._moved[index]
+        return Event(float(self._t[index]), self._names[self._contact[index]], EVENT_KINDS[self._kind[index]], moved)
 
     def __iter__(self) -> Iterator[Event]:
-        columns = zip(self._t.tolist(), self._contact.tolist(), self._kind.tolist(), strict=True)
-        return (Event(t, self._names[contact], EVENT_KINDS[kind]) for t, contact, kind in columns)
+        moved = [None] * len(self) if self._moved is None else self._moved
+        columns = zip(self._t.tolist(), self._contact.tolist(), self._kind.tolist(), moved, strict=True)
+        return (Event(t, self._names[contact], EVENT_KINDS[kind], one) for t, contact, kind, one in columns)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Events) and len(self) == len(other) and all(map(operator.eq, self, other))

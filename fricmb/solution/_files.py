@@ -26,6 +26,7 @@ from fricmb.errors import FricmbError
 from fricmb.integrate import Samples
 from fricmb.solution._check_file import check_arrays, check_stats
 from fricmb.solution._data import TYPES
+from fricmb.solution._derivatives import Derivatives
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._formulas import NotStored
@@ -43,6 +44,8 @@ _OLD = (
     "go on with its arrays, which are read"
 )
 _RUN = "run_"
+_SENSITIVITY = "sensitivity_"
+_DERIVED = ("S", "end", "moved", "transversality")
 
 
 def save(sol: Solution, path: str | PathLike[str]) -> None:
@@ -83,6 +86,7 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
             reference=Reference(**about["energy"]),
             run=_stored(source, held, about, laws),
             units=Units(**about.get("units", {})),
+            derivatives=_derivatives(held, about, values["t"].size),
         )
     except FricmbError as error:
         raise FricmbError(f"{source}: {error}") from error
@@ -97,6 +101,8 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
 
 def _entries(sol: Solution) -> dict[str, Any]:
     entries = _arrays(sol)
+    if sol._asked:
+        entries |= {_SENSITIVITY + name: getattr(sol.derivatives, name) for name in _DERIVED}
     run, missing = _run_of(sol)
     digests = {name: _digest(value) for name, value in (entries | run).items()}
     about = json.dumps({**_words(sol), "missing": missing, "digests": digests})
@@ -159,7 +165,12 @@ def _words(sol: Solution) -> dict[str, Any]:
         "has_rows": sol.has_rows,
         "energy": asdict(sol.energy.reference),
         "units": asdict(sol.units),
+        "sensitivities": _named(sol.derivatives) if sol._asked else None,
     }
+
+
+def _named(derivatives: Derivatives) -> dict[str, Any]:
+    return {name: getattr(derivatives, name) for name in ("asked", "columns", "n_states")}
 
 
 def _digest(value: Any) -> str:
@@ -278,6 +289,20 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
         },
         signals=about["signals"],
     )
+
+
+def _derivatives(held: dict[str, Any], about: dict[str, Any], n_t: int) -> Derivatives | None:
+    words = about.get("sensitivities")
+    if words is None:
+        return None
+    arrays = {name: held[_SENSITIVITY + name] for name in _DERIVED}
+    for name, array in arrays.items():
+        if array.dtype != np.float64 or np.isnan(array).any():
+            raise FricmbError(f"entry {_SENSITIVITY + name!r} holds what is no number")
+    if arrays["S"].shape[:1] != (n_t,) or arrays["transversality"].shape != held["event_t"].shape:
+        raise FricmbError("the derivatives in it do not fit its times")
+    asked, columns = (tuple(map(str, words[name])) for name in ("asked", "columns"))
+    return Derivatives(asked=asked, columns=columns, n_states=int(words["n_states"]), **arrays)
 
 
 def _stats(held: dict[str, Any]) -> Stats:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fricmb.errors import IntegrationError, SceneError, unknown_name
 from fricmb.integrate import Samples, Start
 from fricmb.integrate.problem import Codes, Floats
+from fricmb.solution._derivatives import Derivatives
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Events
 from fricmb.solution._names import Names
@@ -57,6 +58,8 @@ class Solution:
         self.has_rows = times is None
         self._energies: tuple[Floats, Floats] | None = None
         self._units: Units | None = None
+        self._asked: tuple[str, ...] = ()
+        self._derivatives: Derivatives | None = None
         self.record = _finite(run.rows() if times is None else run.sample(times))
 
     # ---- motion
@@ -146,6 +149,7 @@ class Solution:
         other = Solution(names=self.names, run=run, stats=self.stats, events=self.events, times=run.inside(t))
         other.__dict__["_reference"] = self._reference
         other._units = self._units
+        other._asked = self._asked
         return other
 
     # ---- contacts
@@ -193,6 +197,57 @@ class Solution:
             found = Events.from_transitions(piece.trajectory.transitions, self.names.contacts)
             self._events = found if piece.t_end >= piece.trajectory.t[-1] else found.until(piece.t_end)
         return self._events
+
+    # ---- derivatives
+
+    def sensitivity(self, signal: str, name: str) -> Floats:
+        """Derivative (n_t,) of a signal with respect to a parameter or an initial value, at fixed times.
+
+        Exact through stick and slip: transitions move with the parameter, and that is part of the derivative.
+
+        Parameters
+        ----------
+        signal : str
+            A degree of freedom or point ("pad.x"), its velocity ("pad.x.velocity"), a law's state ("lining.state.z").
+        name : str
+            One of the names that ``simulate(sensitivities=...)`` was given; after "state" also "pad.position.x",
+            "pad.velocity.x", "lining.state.z" for the values that the run starts with.
+
+        Raises
+        ------
+        SceneError
+            Where the run was made without; UnknownNameError lists names near.
+        """
+        return self.derivatives.signal(self.names, signal, name, self.record.samples)
+
+    @property
+    def monodromy(self) -> Floats:
+        """Derivative of the state at the end with respect to that at the start (n_y, n_y), y = q over v over z.
+
+        Needs ``simulate(sensitivities="state")``; at the start of a run in stick, what sticks is held together.
+        """
+        return self.derivatives.monodromy
+
+    @property
+    def derivatives(self) -> Derivatives:
+        """All derivatives as arrays, over the times of the solution."""
+        if self._derivatives is None:
+            if not self._asked:
+                raise SceneError(
+                    "this solution has no derivatives: simulate with sensitivities=(names), or sensitivities="
+                    '"state"; joined runs have none, each of their parts has its own'
+                )
+            from fricmb.sensitivity import derive
+
+            derive(self, self._asked)
+        assert self._derivatives is not None
+        return self._derivatives
+
+    def take_derivatives(self, derivatives: Derivatives) -> None:
+        """Keep derivatives, those of its events with the events."""
+        self._asked, self._derivatives = derivatives.asked, derivatives
+        events = self.events.with_derivatives(derivatives.columns, derivatives.moved, derivatives.transversality)
+        self.__dict__["events"] = self._events = events
 
     # ---- energy
 
@@ -414,11 +469,15 @@ def restore(
     reference: Reference,
     run: Stored,
     units: Units,
+    derivatives: Derivatives | None = None,
 ) -> Solution:
     """A solution from what a file holds; ``run`` is left closed until it is needed."""
     sol = Solution.__new__(Solution)
+    sol._asked, sol._derivatives = (), None
     sol.names, sol.stats, sol.record, sol.has_rows = names, stats, record, has_rows
     sol._events, sol._span, sol._energies, sol._run = events, span, energies, run
     sol._units = units
     sol.__dict__["_reference"] = reference
+    if derivatives is not None:
+        sol.take_derivatives(derivatives)
     return sol

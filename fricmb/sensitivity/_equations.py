@@ -1,0 +1,169 @@
+"""The equations of a scene and their derivatives at many times, from what its parts state in SymPy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import STICK, Codes, Floats, Ints
+from fricmb.integrate.trajectory import Samples
+from fricmb.scene import Contact, Joint, RigidBody
+from fricmb.sensitivity._contacts import Rubs
+from fricmb.sensitivity._found import Found, whole
+from fricmb.sensitivity._motions import Frame, Moment
+from fricmb.sensitivity._parts import Acting, acting, masses, refuse
+from fricmb.sensitivity._seeds import Seeds
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """Right-hand side and slopes at the times of a moment; columns q, v, z, parameters, time.
+
+    ``a`` (n_t, n), ``a_slopes`` (n_t, n, columns); ``rate`` (n_t, n_z), ``rate_slopes``; ``F`` friction of contacts
+    that stick by number: (n_t, d) and slopes, 0 at times at which they do not.
+    """
+
+    found: Found
+    v: Floats
+    a: Floats
+    a_slopes: Floats
+    rate: Floats
+    rate_slopes: Floats
+    F: dict[int, tuple[Floats, Floats]]
+
+    @property
+    def y_dot(self) -> Floats:
+        """Rates of q, v and z (n_t, n_y)."""
+        return np.concatenate([self.v, self.a, self.rate], axis=1)
+
+
+class Equations:
+    """One piece of a run, with the parameters that derivatives are asked for.
+
+    Parameters
+    ----------
+    piece, names
+        Of the solution.
+    parameters : tuple of str
+        Names; columns of slopes are q, v, z, these, time.
+    """
+
+    def __init__(self, piece: Any, names: Any, parameters: tuple[str, ...]) -> None:
+        mechanics = piece.mechanics
+        scene = mechanics.placed
+        if scene.is_mechanism:
+            refuse(next(part for part in scene.parts if isinstance(part, RigidBody | Joint)), "a mechanism")
+        index = dict(names.dof_index)
+        self.names, self.scene = names, scene
+        self.n, self.n_z = len(index), int(names.z_start[-1])
+        self.n_y = 2 * self.n + self.n_z
+        self.columns = self.n_y + len(parameters) + 1
+        seeds = Seeds({name: self.n_y + i for i, name in enumerate(parameters)})
+        self.seeds = seeds
+        self.frame = Frame(
+            scene=scene, index=index, seeds=seeds, driven=_driven(mechanics, names), n=self.n,
+            time_column=self.columns - 1, start=piece.t_start,
+        )  # fmt: skip
+        held = set(mechanics.plan.parts)
+        self.M, self.seeded_masses = masses(scene, held, index, seeds)
+        self.contacts: dict[int, Rubs] = {}
+        self.acting: list[Acting] = []
+        for part in scene.parts:
+            self._take(part, part.name in held)
+        self.inverse = np.linalg.inv(self.M)
+        self._projectors: dict[bytes, tuple[Floats, Floats, Floats]] = {}
+
+    def _take(self, part: Any, held: bool) -> None:
+        touched = self.seeds.touch(part)
+        if not held and not touched:
+            return
+        if isinstance(part, Contact):
+            k = self.names.contact_index.get(part.name)
+            if k is None:
+                raise SceneError(
+                    f"sensitivities: {part._label()} was left out of the run, because it acts on nothing or is nothing;"
+                    f" there is no derivative with respect to {touched[0]!r}"
+                )
+            self.contacts[k] = Rubs(part, k, int(self.names.z_start[k]), self.seeds)
+            return
+        found = acting(self.scene, part, self.frame.index, self.seeds)
+        if found is not None:
+            self.acting.append(found)
+
+    def moment(self, samples: Samples) -> Moment:
+        """Samples of the run as a moment."""
+        return Moment(frame=self.frame, t=samples.t, q=samples.q, v=samples.v, z=samples.z)
+
+    def field(self, samples: Samples, mode: Codes, sign: Floats) -> Field:
+        """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases."""
+        moment = self.moment(samples)
+        count = samples.t.size
+        found = Found(self.n, self.n_z, self.columns, count)
+        for part in self.acting:
+            part.add(moment, found)
+        for k, contact in self.contacts.items():
+            contact.add(moment, found, mode[k], sign[int(self.names.row[k])])
+        a, slopes, F = self._accelerations(found, mode, count)
+        return Field(
+            found=found, v=samples.v.T, a=a, a_slopes=slopes, rate=found.rate.T, rate_slopes=found.rate_slopes, F=F
+        )
+
+    def _accelerations(self, found: Found, mode: Codes, count: int) -> tuple[Floats, Floats, Any]:
+        """Accelerations where stuck contacts hold: M a = f + W F, W^T a + drift = 0."""
+        hard = [k for k, contact in self.contacts.items() if not contact.smooth]
+        patterns, which = np.unique(mode[hard] == STICK, axis=1, return_inverse=True)
+        a, slopes = np.zeros((count, self.n)), np.zeros((count, self.n, self.columns))
+        F = {
+            k: (np.zeros((count, self.contacts[k].d)), np.zeros((count, self.contacts[k].d, self.columns)))
+            for k in hard
+        }
+        for p in range(patterns.shape[1]):
+            stuck = [k for k, s in zip(hard, patterns[:, p], strict=True) if s]
+            at = np.flatnonzero(which.ravel() == p)
+            self._held(found, stuck, at, a, slopes, F)
+        return a, slopes, F
+
+    def _held(self, found: Found, stuck: list[int], at: Ints, a: Floats, slopes: Floats, F: Any) -> None:
+        free, B, D = self.projector(found, stuck)
+        duals = [drift for k in stuck for drift in found.drift[k]]
+        drift, drift_slopes = whole(duals, found.force.shape[1], self.columns)
+        f, G = found.force[:, at].T, found.slopes[at]
+        a[at] = f @ free.T - drift[at] @ B.T
+        for i, j, slope in self.seeded_masses:
+            G[:, i, j] -= slope * a[at, i]
+        slopes[at] = free @ G - B @ drift_slopes[at]
+        first = 0
+        for k in stuck:
+            own = slice(first, first + self.contacts[k].d)
+            F[k][0][at] = -f @ B[:, own] - drift[at] @ D[own].T
+            F[k][1][at] = -B[:, own].T @ G - D[own] @ drift_slopes[at]
+            first = own.stop
+
+    def projector(self, found: Found, stuck: list[int]) -> tuple[Floats, Floats, Floats]:
+        """Inverse mass of what is free to move, B = M^-1 W D^-1, and D^-1, with D = W^T M^-1 W of what sticks."""
+        key = np.array(stuck, dtype=np.int64).tobytes()
+        held = self._projectors.get(key)
+        if held is None:
+            rows = [row for k in stuck for row in found.rows[k]]
+            W = np.zeros((self.n, len(rows)))
+            for r, row in enumerate(rows):
+                for i, c in row:
+                    W[i, r] += c
+            MW = self.inverse @ W
+            D: Floats = np.zeros((0, 0))
+            if rows:
+                D = np.asarray(np.linalg.pinv(W.T @ MW, rcond=1e-11, hermitian=True), dtype=float)
+            B = MW @ D
+            held = self._projectors[key] = (self.inverse - B @ MW.T, B, D)
+        return held
+
+
+def _driven(mechanics: Any, names: Any) -> Any:
+    def position(name: str, t: Floats) -> Floats:
+        found: Floats = mechanics.signals(t)[0][names.signals[name]]
+        return found
+
+    return position

@@ -1,0 +1,139 @@
+"""What parts state in SymPy as numpy functions with their derivatives: made once for each content in a process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from typing import Any
+
+import numpy as np
+
+from fricmb.equations._values import structure
+from fricmb.laws._numeric import _MODULES, _lengths
+from fricmb.sensitivity._dual import Dual, composed
+
+#: Arguments and outputs in SymPy.
+Stated = tuple[Sequence[Any], Sequence[Any]]
+
+_stated: dict[Hashable, Stated] = {}
+_compiled: dict[Hashable, tuple[Callable[..., Any], list[tuple[int, int]]]] = {}
+
+
+class Function:
+    """A function that a part states; called with values and slopes, it gives values and slopes.
+
+    Parameters
+    ----------
+    key : hashable
+        What selects the formulas.
+    make : callable
+        Arguments and outputs in SymPy.
+    """
+
+    def __init__(self, key: Hashable, make: Callable[[], Stated]) -> None:
+        self._key, self._make = key, make
+
+    def __call__(self, arguments: Sequence[Dual]) -> list[Dual]:
+        """Outputs with slopes; those arguments count that have any."""
+        active = tuple(j for j, argument in enumerate(arguments) if argument.slopes)
+        function, places = self._function(active)
+        with np.errstate(all="ignore"):
+            values = function(*[argument.value for argument in arguments])
+        count = len(values) - len(places)
+        partials: list[list[tuple[Any, Dual]]] = [[] for _ in range(count)]
+        for (i, j), slope in zip(places, values[count:], strict=True):
+            partials[i].append((slope, arguments[j]))
+        return [composed(value, own) for value, own in zip(values[:count], partials, strict=True)]
+
+    def _function(self, active: tuple[int, ...]) -> tuple[Callable[..., Any], list[tuple[int, int]]]:
+        key = (self._key, active)
+        found = _compiled.get(key)
+        if found is None:
+            if self._key not in _stated:
+                _stated[self._key] = self._make()
+            found = _compiled[key] = _with_slopes(*_stated[self._key], active)
+        return found
+
+
+def _with_slopes(
+    arguments: Sequence[Any], outputs: Sequence[Any], active: Sequence[int]
+) -> tuple[Callable[..., Any], list[tuple[int, int]]]:
+    """Outputs, then their derivatives that do not vanish, and (output, argument) of these."""
+    import sympy
+
+    plain = [sympy.sympify(e).rewrite(sympy.Heaviside, sympy.Piecewise) for e in outputs]
+    slopes, places = [], []
+    for i, expression in enumerate(plain):
+        for j in active:
+            # a jump is a transition of its own, not a slope
+            slope = sympy.diff(expression, arguments[j]).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
+            if slope != 0:
+                slopes.append(slope)
+                places.append((i, j))
+    made = sympy.lambdify(list(arguments), [_lengths(e) for e in [*plain, *slopes]], _MODULES, cse=True)
+    return made, places
+
+
+def element_function(element: Any, n: int) -> Function:
+    """Forces of an element on its n local coordinates: of x, their rates, t and the element's numbers."""
+
+    def make() -> Stated:
+        from fricmb.equations._authors import element_math
+
+        math = element_math(element, n)
+        return [*math.x, *math.v, math.t, *math.parameters], math.total_force()
+
+    return Function(("element", structure(element), n), make)
+
+
+def normal_function(law: Any) -> Function:
+    """A normal-force law before the cut at 0, of elongation, its rate and the law's numbers."""
+
+    def make() -> Stated:
+        from fricmb.equations._normal import normal_expression
+
+        e, rate, N, parameters = normal_expression(law)
+        return [e, rate, *parameters], [N]
+
+    return Function(("normal", structure(law)), make)
+
+
+def coefficient_function(law: Any) -> Function:
+    """A friction coefficient, of slip speed, normal force and the law's numbers."""
+
+    def make() -> Stated:
+        from fricmb.laws._numeric import coefficient_expression
+        from fricmb.values import symbolic
+
+        stand = symbolic(law)
+        r, N, mu = coefficient_expression(law, stand)
+        return [r, N, *stand.flat], [mu]
+
+    return Function(("coefficient", structure(law)), make)
+
+
+def smooth_function(law: Any, d: int) -> Function:
+    """Force, then rate of the states, of a law that is a force: of v, N, z and the law's numbers."""
+
+    def make() -> Stated:
+        from fricmb.laws._numeric import force_expression
+        from fricmb.values import symbolic
+
+        stand = symbolic(law)
+        v, N, z, force, rate = force_expression(law, stand, d)
+        return [*v, N, *z, *stand.flat], [*force, *rate]
+
+    return Function(("smooth", structure(law), d), make)
+
+
+def expression_function(value: Any, arguments: tuple[Any, ...], order: int) -> Function:
+    """An expression of a declaration, or its derivative of some order by the first argument (time)."""
+
+    def make() -> Stated:
+        import sympy
+
+        plain = sympy.sympify(value).rewrite(sympy.Heaviside, sympy.Piecewise)
+        for _ in range(order):
+            plain = sympy.diff(plain, arguments[0]).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
+        return list(arguments), [plain]
+
+    return Function(("expression", value, arguments, order), make)

@@ -1,0 +1,193 @@
+"""Named motions at many times with their slopes: degrees of freedom, points of modal bodies, prescribed motions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import Floats
+from fricmb.scene import Driven, LinearForm, Scene
+from fricmb.sensitivity._dual import Dual, composed
+from fricmb.sensitivity._functions import expression_function
+from fricmb.sensitivity._seeds import Seeds
+from fricmb.values import is_expression, value_of
+
+#: Coefficients of a motion's rate on the rates of the degrees of freedom.
+Row = list[tuple[int, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """A motion, its rate, what its acceleration is without those of degrees of freedom, and its row."""
+
+    position: Dual
+    rate: Dual
+    drift: Dual
+    row: Row
+
+
+class Given:
+    """A number or expression of a declaration, of time, motions and parameters.
+
+    ``name``: of its slot; ``order``: of the derivative by time that is meant.
+    """
+
+    def __init__(self, value: Any, name: str, seeds: Seeds, *, order: int = 0) -> None:
+        self.coordinates: list[str] = []
+        self.speeds: list[str] = []
+        self.held: list[Dual] = []
+        if not is_expression(value):
+            number = seeds.dual(value, name)
+            self.number: Dual | None = Dual(value=0.0) if order else number
+            return
+        from fricmb.values._symbols import TIME, CoordinateSymbol, ParameterSymbol, SpeedSymbol
+
+        self.number = None
+        free = sorted(value.free_symbols, key=str)
+        moved = [s for s in free if isinstance(s, CoordinateSymbol)]
+        rates = [s for s in free if isinstance(s, SpeedSymbol)]
+        held = [s for s in free if isinstance(s, ParameterSymbol)]
+        self.coordinates, self.speeds = [s.motion for s in moved], [s.motion for s in rates]
+        self.held = [
+            Dual(value=float(s.value), slopes={seeds.columns[s.name]: 1.0} if s.name in seeds.columns else {})
+            for s in held
+        ]
+        self.function = expression_function(value, (TIME, *moved, *rates, *held), order)
+
+    def at(self, moment: Moment) -> Dual:
+        """Value with its slopes in a moment."""
+        if self.number is not None:
+            return self.number
+        motions = [moment.motion(name).position for name in self.coordinates]
+        motions += [moment.motion(name).rate for name in self.speeds]
+        return self.function([moment.time, *motions, *self.held])[0]
+
+    def over(self, time: Dual) -> Dual:
+        """The same of an expression of time alone."""
+        return self.number if self.number is not None else self.function([time, *self.held])[0]
+
+
+@dataclass(kw_only=True)
+class Frame:
+    """What tells a name's motion; ``columns``: their number without time, whose column is the last.
+
+    ``start``: time at which prescribed positions stand where the declaration or an earlier run puts them.
+    """
+
+    scene: Scene
+    index: dict[str, int]
+    seeds: Seeds
+    driven: Any
+    n: int
+    time_column: int
+    start: float
+    _prescribed: dict[str, tuple[Given, ...]] = field(default_factory=dict)
+
+    def prescribed(self, name: str) -> tuple[Given, ...]:
+        """Position (an offset, where the velocity is given), velocity, acceleration."""
+        found = self._prescribed.get(name)
+        if found is None:
+            owner, _, letter = name.rpartition(".")
+            body = self.scene[owner]
+            if not isinstance(body, Driven):
+                raise SceneError(f"sensitivities: the motion {name!r} is not covered")
+            if letter in body.velocity:
+                place, value = f"{owner}.velocity.{letter}", body.velocity[letter]
+                offset = Given(body.position.get(letter, 0.0), f"{owner}.position.{letter}", self.seeds)
+                rates = [Given(value, place, self.seeds, order=k) for k in range(2)]
+                found = (offset, *rates)
+            else:
+                place, value = f"{owner}.position.{letter}", body.position[letter]
+                found = tuple(Given(value, place, self.seeds, order=k) for k in range(3))
+            self._prescribed[name] = found
+        return found
+
+    def is_integral(self, name: str) -> bool:
+        """Whether a prescribed motion is given by its velocity."""
+        owner, _, letter = name.rpartition(".")
+        body: Any = self.scene[owner]
+        return letter in body.velocity
+
+
+@dataclass(kw_only=True)
+class Moment:
+    """A run at times t (n_t,): ``q``, ``v`` (n, n_t), ``z`` (n_z, n_t), and the motions that follow."""
+
+    frame: Frame
+    t: Floats
+    q: Floats
+    v: Floats
+    z: Floats
+    _made: dict[str, Motion] = field(default_factory=dict)
+
+    @property
+    def time(self) -> Dual:
+        """Time itself."""
+        return Dual(value=self.t, slopes={self.frame.time_column: 1.0})
+
+    def motion(self, name: str) -> Motion:
+        """A motion by name."""
+        found = self._made.get(name)
+        if found is None:
+            found = self._made[name] = self._derived(name)
+        return found
+
+    def form(self, form: LinearForm) -> Motion:
+        """A linear form in named motions."""
+        parts = [(c, self.motion(name)) for name, c in form.terms]
+        row = [(i, c * k) for c, part in parts for i, k in part.row]
+        position = composed(
+            sum((c * p.position.value for c, p in parts), form.constant), [(c, p.position) for c, p in parts]
+        )
+        rate = composed(sum(c * p.rate.value for c, p in parts), [(c, p.rate) for c, p in parts])
+        drift = composed(sum(c * p.drift.value for c, p in parts), [(c, p.drift) for c, p in parts])
+        return Motion(position=position, rate=rate, drift=drift, row=row)
+
+    def _derived(self, name: str) -> Motion:
+        frame = self.frame
+        i = frame.index.get(name)
+        still = Dual(value=0.0)
+        if i is not None:
+            position = Dual(value=self.q[i], slopes={i: 1.0})
+            rate = Dual(value=self.v[i], slopes={frame.n + i: 1.0})
+            return Motion(position=position, rate=rate, drift=still, row=[(i, 1.0)])
+        terms = frame.scene.motion(name).terms if frame.scene.has_motion(name) else ()
+        if terms and terms != ((name, 1.0),):
+            return self.form(LinearForm(terms))
+        if name in frame.scene.dof_names:  # what the plan left out rests
+            owner, _, letter = name.rpartition(".")
+            start = frame.scene[owner].start_values("position").get(letter, 0.0)  # type: ignore[attr-defined]
+            return Motion(position=Dual(value=float(value_of(start))), rate=still, drift=still, row=[])
+        return self._prescribed(name)
+
+    def _prescribed(self, name: str) -> Motion:
+        frame = self.frame
+        place, rate, drift = frame.prescribed(name)
+        velocity = rate.over(self.time)
+        if not frame.is_integral(name):
+            return Motion(position=place.over(self.time), rate=velocity, drift=drift.over(self.time), row=[])
+        offset = place.over(self.time)
+        slopes = dict(offset.slopes)
+        for j, slope in velocity.slopes.items():
+            if j != frame.time_column:
+                moved = slope * (self.t - frame.start) if rate.number is not None else self._integral(rate, j)
+                slopes[j] = slopes.get(j, 0.0) + moved
+        slopes[frame.time_column] = velocity.value
+        value = offset.value + velocity.value * self.t if rate.number is not None else frame.driven(name, self.t)
+        return Motion(position=Dual(value=value, slopes=slopes), rate=velocity, drift=drift.over(self.time), row=[])
+
+    def _integral(self, rate: Given, column: int) -> Floats:
+        """The integral of a slope of a given velocity from the start to each time, by Gauss's rule."""
+        order = np.argsort(self.t, kind="stable")
+        ends = np.concatenate([np.linspace(self.frame.start, self.t[order[0]], 65)[:-1], self.t[order]])
+        x, w = np.polynomial.legendre.leggauss(8)
+        half = 0.5 * np.diff(ends)
+        nodes = ends[:-1, None] + half[:, None] * (1.0 + x)
+        slope = rate.over(Dual(value=nodes, slopes={})).slopes[column]
+        sums = np.cumsum(half * (np.broadcast_to(slope, nodes.shape) @ w))
+        found = np.empty_like(self.t)
+        found[order] = sums[63:]
+        return found

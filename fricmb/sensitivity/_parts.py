@@ -1,0 +1,142 @@
+"""Forces of the parts of a scene at many times with their slopes."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn, Protocol
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import Floats
+from fricmb.scene import Body, Element, Force, Gravity, MatrixElement, ModalBody, modal_matrices
+from fricmb.sensitivity._dual import Dual
+from fricmb.sensitivity._found import Found
+from fricmb.sensitivity._functions import element_function
+from fricmb.sensitivity._motions import Given, Moment
+from fricmb.sensitivity._seeds import Seeds
+from fricmb.values import value_of
+
+
+class Acting(Protocol):
+    """A part that acts on degrees of freedom."""
+
+    def add(self, moment: Moment, found: Found) -> None:
+        """Put its share into what is found."""
+
+
+class Acts:
+    """A force element."""
+
+    def __init__(self, element: Any, seeds: Seeds) -> None:
+        self.forms = element.local_coordinates()
+        self.function = element_function(element, len(self.forms))
+        self.numbers = seeds.numbers(element, f"{element.name}.")
+
+    def add(self, moment: Moment, found: Found) -> None:
+        """Its forces."""
+        motions = [moment.form(form) for form in self.forms]
+        arguments = [m.position for m in motions] + [m.rate for m in motions] + [moment.time, *self.numbers]
+        for motion, force in zip(motions, self.function(arguments), strict=True):
+            found.push(motion.row, force)
+
+
+class Pushes:
+    """A force that is given."""
+
+    def __init__(self, part: Force, seeds: Seeds) -> None:
+        self.form = part.local_coordinates()[0]
+        self.value = Given(part.value, f"{part.name}.value", seeds)
+
+    def add(self, moment: Moment, found: Found) -> None:
+        """The force on its body."""
+        found.push(moment.form(self.form).row, self.value.at(moment))
+
+
+class Vibrates:
+    """Stiffness and damping of a modal body, or of matrices, on rows of q and v."""
+
+    def __init__(self, rows: list[int], K: Any, C: Any) -> None:
+        self.rows, self.matrices = np.array(rows, dtype=np.int64), (_dense(K), _dense(C))
+
+    def add(self, moment: Moment, found: Found) -> None:
+        """Their forces."""
+        for matrix, values, first in ((self.matrices[0], moment.q, 0), (self.matrices[1], moment.v, moment.frame.n)):
+            if matrix is not None:
+                found.force[self.rows] -= matrix @ values[self.rows]
+                found.slopes[:, self.rows[:, None], first + self.rows] -= matrix
+
+
+def _dense(matrix: Any) -> Floats | None:
+    if matrix is None:
+        return None
+    found: Floats = np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix, dtype=float)
+    return np.diag(found) if found.ndim == 1 else found
+
+
+class Falls:
+    """Weight."""
+
+    def __init__(self, scene: Any, gravity: Gravity, index: dict[str, int], seeds: Seeds) -> None:
+        self.pull: list[tuple[int, Dual]] = []
+        for body in scene.bodies:
+            for letter, value in gravity.acceleration.items() if isinstance(body, Body) else ():
+                i = index.get(f"{body.name}.{letter}")
+                if i is not None:
+                    mass = seeds.dual(body.mass, f"{body.name}.mass")
+                    self.pull.append((i, mass.times(seeds.dual(value, f"{gravity.name}.acceleration.{letter}"))))
+
+    def add(self, moment: Moment, found: Found) -> None:
+        """Weight of the bodies."""
+        for i, force in self.pull:
+            found.push([(i, 1.0)], force)
+
+
+def masses(
+    scene: Any, parts: set[str], index: dict[str, int], seeds: Seeds
+) -> tuple[Floats, list[tuple[int, int, float]]]:
+    """The mass matrix (n, n), and (row, column, slope) of masses that depend on a parameter."""
+    M, seeded = np.zeros((len(index), len(index))), []
+    for part in scene.parts:
+        if isinstance(part, Body):
+            mass = seeds.dual(part.mass, f"{part.name}.mass")
+            for i in (index[name] for name in part.dof_names if name in index):
+                M[i, i] += mass.value
+                seeded += [(i, j, slope) for j, slope in mass.slopes.items()]
+        elif isinstance(part, ModalBody):
+            for name, value in zip(part.dof_names, modal_matrices(part)[0].tolist(), strict=True):
+                if name in index:
+                    M[index[name], index[name]] += value
+        elif isinstance(part, MatrixElement) and part.M is not None and part.name in parts:
+            at = np.array([index[name] for name in part.dofs])
+            M[np.ix_(at, at)] += _dense(value_of(part.M))
+    return M, seeded
+
+
+def acting(scene: Any, part: Any, index: dict[str, int], seeds: Seeds) -> Acting | None:
+    """A part other than a contact as forces; None for one that only carries masses or a motion."""
+    if isinstance(part, Force):
+        return Pushes(part, seeds)
+    if isinstance(part, Gravity):
+        return Falls(scene, part, index, seeds)
+    if isinstance(part, ModalBody):
+        _refuse_matrices(part, seeds)
+        built = [i for i, name in enumerate(part.dof_names) if name in index]
+        _, stiffness, damping = modal_matrices(part)
+        rows = [index[part.dof_names[i]] for i in built]
+        return Vibrates(rows, stiffness[built], damping[np.ix_(built, built)] if damping.ndim == 2 else damping[built])
+    if isinstance(part, MatrixElement):
+        _refuse_matrices(part, seeds)
+        K, C = (None if m is None else value_of(m) for m in (part.K, part.C))
+        return None if K is None and C is None else Vibrates([index[name] for name in part.dofs], K, C)
+    return Acts(part, seeds) if isinstance(part, Element) else None
+
+
+def _refuse_matrices(part: Any, seeds: Seeds) -> None:
+    held = [name for name in seeds.touch(part) if ".position." not in name and ".velocity." not in name]
+    if held:
+        refuse(part, f"the parameter {held[0]!r} of a part that is given by modes or matrices")
+
+
+def refuse(part: Any, what: str) -> NoReturn:
+    """Say what is not covered."""
+    raise SceneError(f"sensitivities: {type(part).__name__} {part.name!r}: {what} is not covered")

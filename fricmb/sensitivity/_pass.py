@@ -1,0 +1,151 @@
+"""The tangent pass: the variational equations along a finished run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import Floats
+from fricmb.sensitivity._collocation import radau
+from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
+from fricmb.sensitivity._phases import phases_of
+from fricmb.sensitivity._seeds import STATE
+from fricmb.sensitivity._transitions import TOUCHES, Transitions, happenings, held
+
+#: More states than this are not carried: maps of steps are dense.
+MOST = 120
+
+
+class Tangent:
+    """Derivatives of a run at any time.
+
+    Attributes
+    ----------
+    columns : tuple of str
+        What derivatives are with respect to: initial values first, where they are asked for.
+    moved : (n_events, n_columns)
+        Derivatives of the times of events; ``transversality`` (n_events,).
+    notes : tuple of str
+    unsafe : tuple of int
+        Numbers of events at which there is no derivative, or almost none.
+    """
+
+    def __init__(self, sol: Any, names: tuple[str, ...]) -> None:
+        (piece,) = sol.run.pieces
+        self.parameters = tuple(name for name in names if name != STATE)
+        self.equations = Equations(piece, sol.names, self.parameters)
+        _check(sol, self.equations)
+        e = self.equations
+        self.states = state_names(sol.names) if STATE in names else ()
+        self.columns = (*self.states, *self.parameters)
+        sample = piece.trajectory.sample
+        self.phases = phases_of(piece, np.asarray(sol.events.t))
+        self.rtol = sol.stats.rtol or 1e-6
+        self.stepper = Stepper(e, self.phases, sample)
+        self.mesh = mesh_of(self.stepper, _scale(piece.rows()), self.rtol)
+        happened = happenings(sol.events, sol.names, self.phases)
+        breakpoints = _breakpoints(piece)
+        transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
+        start = sample(self.phases.t[:1])
+        S = held(e, start, self.phases.mode[:, 0], self.phases.sign[:, 0], self._begin())
+        self._march(S, transitions, len(sol.events))
+        self.notes = tuple(transitions.notes)
+
+    def _begin(self) -> Floats:
+        """Derivatives of the initial state (n_y, columns)."""
+        e = self.equations
+        S = np.zeros((e.n_y, len(self.columns)))
+        S[:, : len(self.states)] = np.eye(e.n_y)[:, : len(self.states)]
+        for row, name in enumerate(state_names(e.names)[: 2 * e.n]):
+            body, _, path = name.partition(".")
+            held = e.scene[body].slots().get(path)
+            if held is None:
+                slopes = {e.seeds.columns[name]: 1.0} if name in e.seeds.columns else {}
+            else:
+                slopes = e.seeds.dual(held, name).slopes
+            for j, slope in slopes.items():
+                S[row, len(self.states) + j - e.n_y] = slope
+        return S
+
+    def _march(self, S: Floats, transitions: Transitions, n_events: int) -> None:
+        """From step to step and over the transitions."""
+        n_y, n_s = self.equations.n_y, len(self.states)
+        at = {one.phase: i for i, one in enumerate(transitions.happened)}
+        maps, given = self.mesh.maps[..., :n_y], self.mesh.maps[..., n_y:]
+        self.moved, self.transversality = np.zeros((n_events, len(self.columns))), np.full(n_events, np.inf)
+        self.before: dict[float, Floats] = {}
+        found, last, unsafe = np.empty((self.mesh.t.size + 1, n_y, len(self.columns))), 0, []
+        for k, phase in enumerate(self.mesh.phase.tolist()):
+            if phase != last and phase in at:
+                i = at[phase]
+                one = transitions.happened[i]
+                self.before[one.t] = S
+                S, dt, rates = transitions.jump(i, S)
+                self.moved[one.events], self.transversality[one.events] = dt, rates
+                unsafe += [int(j) for j, rate in zip(one.events, rates, strict=True) if rate < TOUCHES]
+            last = phase
+            found[k] = S
+            S = maps[k] @ S
+            S[:, n_s:] += given[k]
+        found[-1] = S
+        self.S, self.unsafe = found, tuple(unsafe)
+
+    def at(self, t: Floats, *, left: Any = None) -> Floats:
+        """Derivatives (n_t, n_y, columns) of the state at times; ``left``: where the values before a transition are."""
+        k = np.clip(np.searchsorted(self.mesh.t, t, side="right") - 1, 0, self.mesh.t.size - 1)
+        h = np.asarray(t - self.mesh.t[k])
+        found = self.S[k].copy()
+        ends = t >= self.phases.t[-1]
+        found[ends] = self.S[-1]
+        far = np.flatnonzero((h > 0.0) & ~ends)
+        n_y, n_s = self.equations.n_y, len(self.states)
+        maps = self.stepper.maps(radau(STAGES), self.mesh.t[k[far]], h[far], self.mesh.phase[k[far]])
+        found[far] = maps[..., :n_y] @ found[far]
+        found[far, :, n_s:] += maps[..., n_y:]
+        for i in np.flatnonzero(left) if left is not None else ():
+            found[i] = self.before.get(float(t[i]), found[i])
+        return found
+
+
+def state_names(names: Any) -> tuple[str, ...]:
+    """Names of all initial values: positions, velocities, states of laws."""
+    dofs = [dof.partition(".") for dof in names.dofs]
+    found = [f"{body}.{kind}.{path}" for kind in ("position", "velocity") for body, _, path in dofs]
+    laws = [f"{c}.state.{s}" for c, held in zip(names.contacts, names.states, strict=True) for s in held]
+    return (*found, *laws)
+
+
+def _scale(rows: Any) -> Floats:
+    """Sizes of states (n_y,): what rests has that of the largest."""
+    found = []
+    for values in (rows.q, rows.v, rows.z):
+        size = np.abs(values).max(axis=1, initial=0.0)
+        found.append(np.where(size > 0.0, size, size.max(initial=0.0) or 1.0))
+    return np.concatenate(found)
+
+
+def _breakpoints(piece: Any) -> Floats:
+    found = [member.system.problem.signals.breakpoints for member in piece.mechanics.members if _runs(member)]
+    return np.concatenate(found) if found else np.zeros(0)
+
+
+def _runs(member: Any) -> bool:
+    return "system" in vars(member)
+
+
+def _check(sol: Any, equations: Equations) -> None:
+    """Refuse what the pass cannot do."""
+    if sol.stats.rtol is None:
+        raise SceneError(
+            f"sensitivities: {sol.stats.method} does not locate transitions; take a method with a tolerance"
+        )
+    if equations.n_y > MOST:
+        raise SceneError(
+            f"sensitivities: the scene has {equations.n_y} states; the limit is {MOST}, because maps of steps are dense"
+        )
+    wide = [c.name for c in equations.contacts.values() if c.d > 1 and not c.smooth]
+    if wide:
+        raise SceneError(f"sensitivities: contact {wide[0]!r} in two directions is not covered")

@@ -1,0 +1,46 @@
+"""Stretches of a run between transitions: their ends, and the modes and signs of slip that hold in each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import Codes, Floats, Ints
+from fricmb.integrate.run.chunked_run import KeptTrajectory
+
+
+@dataclass(frozen=True, kw_only=True)
+class Phases:
+    """Accepted steps of a run and what holds in them.
+
+    Attributes
+    ----------
+    t : (n_k+1,)
+        Ends of steps and times of transitions.
+    mode, sign : (n_c, n_k), (m, n_k)
+        Of the contacts in each stretch; the sign of slip on each row.
+    """
+
+    t: Floats
+    mode: Codes
+    sign: Floats
+
+    def of(self, t: Floats) -> Ints:
+        """Number of the stretch that each time lies in, on the right at their ends."""
+        found: Ints = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, self.t.size - 2)
+        return found
+
+
+def phases_of(piece: Any, events: Floats) -> Phases:
+    """Stretches of one piece of a run."""
+    trajectory = piece.trajectory
+    if isinstance(trajectory, KeptTrajectory):
+        raise SceneError("sensitivities: a run without dense output has none; simulate with dense=True")
+    t = np.unique(np.concatenate([piece.rows().t, events]))
+    t = t[(t >= piece.t_start) & (t <= piece.t_end)]
+    middle = 0.5 * (t[:-1] + t[1:])
+    seen = trajectory.sample(middle)
+    return Phases(t=t, mode=seen.mode, sign=np.where(seen.g < 0.0, -1.0, 1.0))

@@ -1,0 +1,97 @@
+"""Which numbers of which parts a parameter stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from fricmb.equations._values import _symbolic_slots
+from fricmb.errors import SceneError, unknown_name
+from fricmb.scene import Scene
+from fricmb.sensitivity._dual import Dual
+from fricmb.values import Declaration, Parameter, is_expression, parameters_in, value_of
+
+#: Stands for all initial values.
+STATE = "state"
+
+
+def check_names(scene: Scene, given: Any) -> tuple[str, ...]:
+    """Names of parameters, "state" first if it is asked for; errors name those near."""
+    names = (given,) if isinstance(given, str) else given
+    if not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
+        raise SceneError(
+            f'sensitivities: got {given!r}; expected names in scene.parameters, or "state" for all initial values'
+        )
+    known = scene.parameters
+    for name in (names := tuple(dict.fromkeys(names))):
+        if name == STATE:
+            continue
+        if name not in known and not _slot(scene, name):
+            raise unknown_name(f"parameter of scene {scene.name!r}", name, [*known, STATE])
+        value = known.get(name, 0.0)
+        if np.ndim(value_of(value)):
+            raise SceneError(
+                f"sensitivities: {name!r} is an array of shape {np.shape(value_of(value))}, not one number"
+            )
+    return tuple(sorted(names, key=lambda name: name != STATE))
+
+
+def _slot(scene: Scene, name: str) -> bool:
+    """Whether a name is a slot that a part accepts (an initial value that was not given, say)."""
+    head, _, path = name.partition(".")
+    return head in scene and bool(path) and path in scene[head].settable()
+
+
+class Seeds:
+    """Slopes of the numbers of parts with respect to parameters.
+
+    Parameters
+    ----------
+    columns : dict of str to int
+        Column of each parameter.
+    """
+
+    def __init__(self, columns: dict[str, int]) -> None:
+        self.columns = columns
+
+    def dual(self, value: Any, name: str) -> Dual:
+        """A slot's value, whose own name is ``name`` ("k1x.stiffness")."""
+        named = list(parameters_in(value))
+        if not named:
+            slopes: dict[int, Any] = {self.columns[name]: 1.0} if name in self.columns else {}
+            return Dual(value=float(value_of(value)), slopes=slopes)
+        slopes = {}
+        for p in {p.name: p for p in named}.values():
+            if p.name in self.columns:
+                slopes[self.columns[p.name]] = _slope(value, p)
+        return Dual(value=float(value_of(value)), slopes=slopes)
+
+    def numbers(self, declaration: Declaration, prefix: str) -> list[Dual]:
+        """The numbers behind a stand-in's symbols, in their order; ``prefix``: of their names ("lining.law.")."""
+        found: list[Dual] = []
+        for path, value in _symbolic_slots(declaration):
+            if isinstance(value, tuple):
+                found += [self.dual(entry, f"{prefix}{path}.{i}") for i, entry in enumerate(value)]
+            else:
+                found.append(self.dual(value, prefix + path))
+        return found
+
+    def touch(self, part: Any) -> list[str]:
+        """Names of the parameters that a part's slots hold."""
+        found = []
+        for path, value in part.slots().items():
+            named = [p.name for p in parameters_in(value)] or [f"{part.name}.{path}"]
+            found += [name for name in named if name in self.columns]
+        return found
+
+
+def _slope(value: Any, parameter: Parameter) -> float:
+    """Derivative of a slot's value with respect to a named parameter in it."""
+    if not is_expression(value):
+        return 1.0
+    from fricmb.values._symbols import ParameterSymbol
+
+    (symbol,) = {s for s in value.free_symbols if isinstance(s, ParameterSymbol) and s.name == parameter.name}
+    return float(value_of(value.diff(symbol)))

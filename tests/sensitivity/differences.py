@@ -1,0 +1,70 @@
+"""Derivatives by differences of runs: what the tangent pass is compared with, and shares no code with."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+import fricmb as fm
+
+
+def _ends(sol: Any) -> np.ndarray:
+    """State at the end, then times of events."""
+    return np.concatenate([sol.q[:, -1], sol.v[:, -1], sol.events.t])
+
+
+def _kinds(sol: Any) -> list[tuple[str, str]]:
+    return sorted((event.contact, event.kind) for event in sol.events)
+
+
+def _run(scene: Any, name: str, value: float, options: dict[str, Any]) -> Any:
+    return fm.simulate(scene, parameters={name: value}, rtol=1e-12, **options)
+
+
+def difference(scene: Any, name: str, *, step: float = 2e-4, **options: Any) -> tuple[np.ndarray, np.ndarray] | None:
+    """Richardson's difference of the state at the end and of event times, and how sure it is.
+
+    None where the order of events changes between the runs: there is no difference that means anything.
+    """
+    p = float(scene.parameters[name])
+    size = max(abs(p), 0.1) * step
+    base = _kinds(_run(scene, name, p, options))
+    slopes = []
+    for h in (4.0 * size, 2.0 * size, size):
+        try:
+            both = [_run(scene, name, p + sign * h, options) for sign in (1.0, -1.0)]
+        except fm.LawError:  # at the end of what the law takes (mu_k = mu_s)
+            return None
+        if any(_kinds(sol) != base for sol in both):
+            return None
+        slopes.append((_ends(both[0]) - _ends(both[1])) / (2.0 * h))
+    first, second = (4.0 * slopes[1] - slopes[0]) / 3.0, (4.0 * slopes[2] - slopes[1]) / 3.0
+    best = (16.0 * second - first) / 15.0
+    return best, np.abs(best - second) + 1e-11 / size
+
+
+def derived(sol: Any, name: str) -> np.ndarray:
+    """The same of the tangent pass."""
+    signals = [*sol.dof_names, *(f"{dof}.velocity" for dof in sol.dof_names)]
+    return np.array([*(sol.sensitivity(s, name)[-1] for s in signals), *(e.sensitivity(name) for e in sol.events)])
+
+
+def worst(scene: Any, names: Sequence[str], *, rtol: float, step: float = 2e-4, **options: Any) -> dict[str, float]:
+    """Largest error of each derivative in tolerances of its size, less what the difference is unsure by."""
+    sol = fm.simulate(scene, sensitivities=tuple(names), rtol=rtol, **options)
+    found = {}
+    for name in names:
+        expected = difference(scene, name, step=step, **options)
+        if expected is None:
+            continue
+        value, unsure = expected
+        n = len(sol.dof_names)
+        own = derived(sol, name)
+        groups = (slice(0, n), slice(n, 2 * n), slice(2 * n, None))
+        errors = [0.0]
+        for group in groups:
+            if own[group].size:
+                off = np.maximum(np.abs(own[group] - value[group]) - 3.0 * unsure[group], 0.0)
+                errors.append(float(off.max() / (np.abs(value[group]).max() + 1e-3)))
+        found[name] = max(errors) / rtol
+    return found
