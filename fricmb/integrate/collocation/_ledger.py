@@ -36,8 +36,9 @@ def powers(problem: Problem, start: Floats, rate: Floats, t: Floats, q: Floats, 
     return np.stack([damping, supply])
 
 
-#: Points of Gauss's formula by the length of a piece (times the fastest rate): its error is round-off of the whole.
-POINTS = ((0.05, 3), (0.2, 4), (0.5, 5), (2.0, 8))
+#: Points of Gauss's formula by the length x of a piece (times the fastest rate).  Powers have twice the rate of the
+#: motion: the error with n points is some (x/2)^(2n) / (2n)!, round-off of the whole.
+POINTS = ((0.05, 3), (0.2, 4), (0.5, 5), (2.0, 8), (4.0, 11), (8.0, 16), (16.0, 22))
 
 
 def integrals(

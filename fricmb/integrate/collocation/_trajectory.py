@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation._ledger import from_row_starts, has_ledger, integrals, powers
+from fricmb.integrate.collocation._ledger import from_row_starts, has_ledger, powers
 from fricmb.integrate.collocation._prepare import Rows, linear_part, model, run_of, with_rows
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._sample import locate, sample_rows
@@ -136,15 +136,17 @@ class SingleRun(Trajectory):
             return np.zeros((2, len(row)))
         p = model(self.problem)
         fastest = float(np.sqrt(np.abs(p.blk[:, 0])).max(initial=0.0)) + float(np.abs(p.blk[:, 1]).max(initial=0.0))
-        power = partial(powers, self.problem, start, rate)
-        if self._totals is None:
-            k = self._n_rows
-            begin = self._rows.steps[:k, 0] + self._rows.steps[:k, 1]
-            length = np.maximum(np.append(begin[1:], self.end.t) - begin, 0.0)
-            steps = integrals(self._power_states, power, np.arange(k), np.zeros(k), length, fastest)
-            self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), steps]), axis=1)
-        inside = from_row_starts(self._power_states, power, row, np.maximum(tau, 0.0), fastest)
-        return self._totals[:, row] + inside
+        since = partial(from_row_starts, self._power_states, partial(powers, self.problem, start, rate))
+        tau = np.maximum(tau, 0.0)
+        if self._totals is not None:
+            return self._totals[:, row] + since(row, tau, fastest)
+        # the first time the ends of all rows are asked for along with these times: one pass over the run
+        k = self._n_rows
+        begin = self._rows.steps[:k, 0] + self._rows.steps[:k, 1]
+        length = np.maximum(np.append(begin[1:], self.end.t) - begin, 0.0)
+        found = since(np.append(np.arange(k), row), np.append(length, tau), fastest)
+        self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), found[:, :k]]), axis=1)
+        return self._totals[:, row] + found[:, k:]
 
     def _samples(self, row: Ints, tau: Floats, t: Floats) -> Samples:
         q, v, F, g, mode, loss = self._states(row, tau, t)
