@@ -15,7 +15,7 @@ from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
 from fricmb.integrate.constrained._slip import lack, slip_speed, spare
 from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
 from fricmb.integrate.model.law_values import coefficient
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints, Problem
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Floats2, Ints, Problem
 
 
 class Watch(NamedTuple):
@@ -24,7 +24,9 @@ class Watch(NamedTuple):
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` (1,) the least
     principal minor of the same for several of them (``which``, ``A``, ``B`` room for it).  ``sigma`` (4,): least
     singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak`` (m,) its direction.
-    ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
+    ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
+    stages of a step, ``where`` (1,) the part of the step at which only the polynomial through these is below 0, else 1;
+    ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
     there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,): see ``_kinks``; ``size`` (3,) running
     maxima of slip velocity, force and position.
     """
@@ -37,7 +39,10 @@ class Watch(NamedTuple):
     sigma: Floats
     weak: Floats
     trigger: Floats
-    old: Floats
+    inner: Floats2
+    where: Floats
+    values: Floats
+    series: Floats
     gap: Floats
     opened: Ints
     bends: Ints
@@ -48,14 +53,14 @@ class Watch(NamedTuple):
     lam: Floats
 
 
-def watch_of(problem: Problem) -> Watch:
-    """Rooms for the problem."""
+def watch_of(problem: Problem, stages: int) -> Watch:
+    """Rooms for the problem and steps of so many stages."""
     m = mechanism_of(problem)
     count = 3 * problem.n_c + len(m.joints.port)
     return room(Watch(
         np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
-        np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count), np.ones(count),
-        np.zeros(len(m.joints.port)),
+        np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
+        np.ones((stages + 1, count)), np.ones(1), np.zeros(stages), np.zeros(stages + 1), np.zeros(len(m.joints.port)),
         np.array([int((m.joints.dropped == 2).sum())]), np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), np.zeros(3),
         np.zeros(m.n_rows + 1),

@@ -141,7 +141,7 @@ def radau_step(
             copy_state(end, y, mech.address)
         return FAIL_MARGIN
     find_kinks(mech, k, y, st, out)
-    worst = violated(mech, k, out, end, st, mech.address)
+    worst = violated(mech, k, out, y, end, st, mech.address)
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:

@@ -9,10 +9,12 @@ from fricmb.integrate.constrained._field import move
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._project import EPS
 from fricmb.integrate.constrained._record import copy_state
+from fricmb.integrate.constrained._slip import lack
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
 from fricmb.integrate.constrained._step import Control, end_step, try_step
-from fricmb.integrate.problem import SLIP, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, Ints
+from fricmb.integrate.step.crossing import first_below
 
 
 @kernel
@@ -33,10 +35,16 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
 
 
 @block
-def violated(mech: Mech, k: Moving, out: Watch, end: State, st: Stages, address: Ints) -> int:
-    """The trigger that is furthest below 0 at the end of the step or inside it, or -1; values at the end stay."""
+def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages, address: Ints) -> int:
+    """The trigger that falls furthest below 0 in the step from y to end, or -1; values at the end stay in ``trigger``.
+
+    ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.
+    """
     s = st.tab.c.shape[0]
     worst, least = -1, 0.0
+    out.where[0] = 1.0
+    triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
+    out.inner[0] = out.trigger
     if out.opened[0] > 0:
         gaps(mech, k, end, out)
     for i in range(s):
@@ -45,12 +53,57 @@ def violated(mech: Mech, k: Moving, out: Watch, end: State, st: Stages, address:
             triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
         else:
             triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
+        out.inner[i + 1] = out.trigger
         for j in range(out.trigger.shape[0]):
             value = out.trigger[j]
             limit = 10.0 * grain(mech, out, j, end)
             if value < -limit and value / max(limit, 1e-290) < least:
                 worst, least = j, value / max(limit, 1e-290)
-    return worst
+    return worst if worst >= 0 else first_between(mech, k, out, y, st)
+
+
+#: Forces at the stages are of lower order than velocities: this part of the largest one, between them, is no sign.
+ROUGH = 1e-6
+
+
+#: Tries of what only the polynomial shows, each by a shorter step.
+DOUBTS = 4
+
+
+@kernel
+def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
+    """Whether trigger j is what its values say between the stages: neither an open joint's nor one almost without load.
+
+    Open joints have no values but at the end of the step; slip almost without load may turn as it likes.
+    """
+    n_c = y.mode.shape[0]
+    if j >= 2 * n_c:
+        return bool(mech.joint.dropped[mech.joint.row[j - 2 * n_c]] != 2)
+    if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
+        return bool(mech.port.normal[j // 2] == NORMAL_LAW)
+    loaded = lack(y.N[j // 2], k.borne[0]) == 0.0
+    for i in range(st.tab.c.shape[0]):
+        loaded = loaded and lack(st.N[i, j // 2], k.borne[0]) == 0.0
+    return bool(loaded)
+
+
+@kernel
+def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages) -> int:
+    """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then."""
+    found = -1
+    for j in range(2 * y.mode.shape[0] + mech.joint.port.shape[0]):
+        if not is_smooth(mech, k, j, y, st):
+            continue
+        hair = 10.0 * grain(mech, out, j, y) if is_slip(j, y) else ROUGH * out.size[1]
+        for i in range(st.tab.c.shape[0]):
+            out.values[i] = out.inner[i + 1, j] + hair
+        # what begins at 0 rises from there, whatever the polynomial makes of its first moment
+        first = out.inner[0, j] + hair if out.inner[0, j] > hair else 0.0
+        _, below = first_below(st.tab, first, out.values, out.series)
+        if below < out.where[0]:
+            found = j
+            out.where[0] = below
+    return found
 
 
 @kernel
@@ -60,8 +113,10 @@ def locate_trigger(
     """Length of the step that ends where the first trigger vanishes, and that trigger; ``end`` is left there.
 
     Regula falsi (Illinois) on steps of variable length; a step at whose end another trigger is below 0 replaces the
-    upper bound.  Length 0 where a step could not be made.
+    upper bound.  What the polynomial alone shows is tried by a step to there: trigger -1 where that finds nothing, and
+    it is a step like any other.  Length 0 where a step could not be made.
     """
+    inside = out.where[0]
     if out.opened[0] > 0:
         gaps(mech, k, y, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
@@ -79,11 +134,21 @@ def locate_trigger(
         if i % 8 == 7:
             step = 0.5 * (low + high)
         step = min(max(step, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
+        if inside < 1.0:
+            step = inside * high
         if not (
             try_step(mech, k, y, st, c, step, mech.address) and end_step(mech, k, w, y, end, st, c, step, mech.address)
         ):
             return 0.0, j
-        worst = violated(mech, k, out, end, st, mech.address)
+        worst = violated(mech, k, out, y, end, st, mech.address)
+        if inside < 1.0 and (worst < 0 or (out.where[0] < 1.0 and i >= DOUBTS)):
+            return step, -1
+        inside = out.where[0]
+        if inside < 1.0:
+            j, high, f_high = worst, step, 0.0
+            low = low if out.where[0] * high > low else 0.0
+            f_low = max(out.inner[0, j], 0.0) if low == 0.0 else 0.0
+            continue
         value = out.trigger[j]
         limit = grain(mech, out, j, end)
         if worst >= 0 and worst != j and out.trigger[j] >= -limit:

@@ -220,7 +220,8 @@ def multistep(
     update(past)
     inside(y, st, c, past)
     find_kinks(mech, k, y, st, out)
-    if margins(mech, k, w, end, out, False, mech.address) <= 0.0 or violated(mech, k, out, end, st, mech.address) >= 0:
+    unique = margins(mech, k, w, end, out, False, mech.address) > 0.0
+    if not unique or violated(mech, k, out, y, end, st, mech.address) >= 0:
         return HANDOVER
     for i in range(y.work.shape[0]):
         for l in range(st.tab.c.shape[0]):

@@ -59,7 +59,7 @@ def run_mechanism(
     start, notes = consistent_start(problem, start)
     mech, k, w = mech_of(problem), moving_of(problem), instant_of(problem)
     y, end, before = (state_of(problem, start) for _ in range(3))
-    st, out = stages_of(problem, radau(stages)), watch_of(problem)
+    st, out = stages_of(problem, radau(stages)), watch_of(problem, stages)
     mass = masses(m)
     if (m.joints.dropped == 1).any():
         rows = np.flatnonzero(m.joints.dropped == 1).astype(np.int64)

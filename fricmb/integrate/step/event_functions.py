@@ -11,8 +11,8 @@ from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_
 from fricmb.integrate.model.law_values import break_away
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
+from fricmb.integrate.step.crossing import crossing_at_points, first_crossing
 from fricmb.integrate.step.radau_step import OneStep
-from fricmb.integrate.step.tableau import Tableau
 
 
 @block
@@ -37,9 +37,9 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
             for j in range(n_s):
                 one.margin[j] = w.r[j, k]
             if packed.ports.soft[0] > 0.0:
-                x = crossing_at_points(tab, slip_speed(y.g, row0, d), one)
+                x = crossing_at_points(tab, slip_speed(y.g, row0, d), one.margin)
             else:
-                x = first_crossing(tab, slip_speed(y.g, row0, d), one)
+                x = first_crossing(tab, slip_speed(y.g, row0, d), one.margin, one.series)
         elif y.mode[k] == STICK:
             x = cone_crossing(packed, s, y, end, one, k)
         if packed.ports.var[k] >= 0:
@@ -48,127 +48,6 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
             found[0] = x
             first = k
     return first if n_s > 0 else -1
-
-
-@kernel
-def polynomial(tab: Tableau, first: float, one: OneStep) -> None:
-    """Monomial coefficients of the polynomial through ``first`` at 0 and ``margin`` at the stages, into ``series``."""
-    for k in range(tab.basis.shape[0]):
-        value = tab.basis[k, 0] * first
-        for j in range(tab.c.shape[0]):
-            value += tab.basis[k, j + 1] * one.margin[j]
-        one.series[k] = value
-
-
-@kernel
-def evaluate(c: Floats, x: float) -> tuple[float, float, float]:
-    """Value, slope and half the curvature of a polynomial."""
-    value = 0.0
-    slope = 0.0
-    curve = 0.0
-    for k in range(c.shape[0] - 1, -1, -1):
-        curve = curve * x + slope
-        slope = slope * x + value
-        value = value * x + c[k]
-    return value, slope, curve
-
-
-@kernel
-def lowest_between(c: Floats, low: float, high: float) -> float:
-    """Where the polynomial has its minimum between two points, if it is negative there; else -1."""
-    x = 0.5 * (low + high)
-    for _ in range(30):
-        value, slope, curve = evaluate(c, x)
-        if value < 0.0:
-            return x
-        if slope < 0.0:
-            low = x
-        else:
-            high = x
-        new = x - 0.5 * slope / curve if curve > 0.0 else low
-        if not low < new < high:
-            new = 0.5 * (low + high)
-        if abs(new - x) <= 1e-6 * high:
-            return -1.0
-        x = new
-    return -1.0
-
-
-@kernel
-def root_between(c: Floats, low: float, high: float) -> float:
-    """Root of the polynomial between a point where it is not negative and one where it is."""
-    x = 0.5 * (low + high)
-    for _ in range(60):
-        value, slope, _ = evaluate(c, x)
-        if value >= 0.0:
-            low = x
-        else:
-            high = x
-        new = x - value / slope if slope != 0.0 else low
-        if not low < new < high:
-            new = 0.5 * (low + high)
-        if abs(new - x) <= 1e-13 * high:
-            return new
-        x = new
-    return x
-
-
-@kernel
-def first_crossing(tab: Tableau, first: float, one: OneStep) -> float:
-    """Where the polynomial through ``first`` at 0 and ``margin`` at the stages first goes below 0; 2 if it does not.
-
-    The stages, the points half-way between and the minima between these are looked at.
-    """
-    n_s = tab.c.shape[0]
-    low = first
-    high = first
-    for j in range(n_s):
-        low = min(low, one.margin[j])
-        high = max(high, one.margin[j])
-    if low > 0.5 * high:
-        return 2.0
-    polynomial(tab, first, one)
-    before = 0.0
-    falls = one.series[1] < 0.0 and first > 0.0
-    for i in range(2 * n_s):
-        x = tab.c[i // 2]
-        if i % 2 == 0:
-            x = 0.5 * (x + (tab.c[i // 2 - 1] if i > 0 else 0.0))
-        value, slope, _ = evaluate(one.series, x)
-        if i % 2 == 1:
-            value = one.margin[i // 2]
-        if value >= 0.0 and falls and slope > 0.0:
-            bottom = lowest_between(one.series, before, x)
-            if bottom > 0.0:
-                return root_between(one.series, before, bottom)
-        if value < 0.0:
-            return root_between(one.series, before, x) if before > 0.0 or first > 0.0 else 0.0
-        falls = slope < 0.0
-        before = x
-    return 2.0
-
-
-@kernel
-def crossing_at_points(tab: Tableau, first: float, one: OneStep) -> float:
-    """Like :func:`first_crossing` from the stages and the points half-way alone.
-
-    For redundant contacts: slip speeds of contacts that move as one are noisy where slip begins, and a minimum means
-    nothing there.
-    """
-    last_x, last = 0.0, first
-    for j in range(tab.c.shape[0]):
-        for half in range(2):
-            x = tab.c[j]
-            value = one.margin[j]
-            if half == 0:
-                x = 0.5 * (x + (tab.c[j - 1] if j > 0 else 0.0))
-                value = tab.mid[j, 0] * first
-                for i in range(tab.c.shape[0]):
-                    value += tab.mid[j, i + 1] * one.margin[i]
-            if value < 0.0:
-                return float(last_x + (x - last_x) * last / (last - value))
-            last, last_x = value, x
-    return 2.0
 
 
 @kernel
@@ -198,7 +77,7 @@ def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair
-    x = first_crossing(one.tab, first + hair, one)
+    x = first_crossing(one.tab, first + hair, one.margin, one.series)
     if x > 1.0 and last < 0.0:
         before = one.tab.c[n_s - 2] if n_s > 1 else 0.0
         inner = one.margin[n_s - 2] - hair if n_s > 1 else first
@@ -214,7 +93,8 @@ def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) 
     set_state(s, y.q, y.v)
     for j in range(one.tab.c.shape[0]):
         one.margin[j] = sign * one.N[j, k]
-    return first_crossing(one.tab, max(0.0, sign * normal_force(packed.ports, packed.normals, k, s)), one)
+    first = max(0.0, sign * normal_force(packed.ports, packed.normals, k, s))
+    return first_crossing(one.tab, first, one.margin, one.series)
 
 
 @kernel
