@@ -45,6 +45,15 @@ EXAMPLES = {
     "space.Torque": 'wheel = fm.space.Rotor("wheel", mass=1.0, inertia_across=0.1, inertia_axial=0.2, spin=100.0)\n'
     'torque = fm.space.Torque("push", wheel, axis=(1, 0, 0), value=2.0)\n'
     + _run("wheel, torque", 'sol["wheel.axis"][:, -1].round(4)'),
+    "space.OnPlane": "import matplotlib.pyplot as plt\nimport numpy as np\n"
+    'ball = fm.space.Ball("ball", mass=0.17, radius=0.0286, position=(0, 0, 0.0286), velocity=(1.5, 0, 0),\n'
+    "                     angular_velocity=(20.0, -30.0, 50.0))\n"
+    'cloth = fm.space.OnPlane("cloth", ball, normal=(0, 0, 1), friction=fm.laws.Coulomb(mu_s=0.2))\n'
+    + _DOWN
+    + _run("ball, cloth, weight", "sol.events[0]")
+    + _PICTURE
+    + 'seen = sol.at(np.linspace(0.0, 1.0, 400))\nax.plot(seen.t, np.hypot(*seen.relative_velocity("cloth")))\n'
+    + 'ax.set(xlabel="time", ylabel="slip speed")\n',
     "space.turned": "print(fm.space.turned(axis=(0, 0, 1), angle=0.1)[0])\n",
     "space.Spherical": _hung('joint = fm.space.Spherical("joint", arm.point("top"))'),
     "space.Revolute": _hung('joint = fm.space.Revolute("joint", arm.point("top"), axis=(0, 1, 0))'),

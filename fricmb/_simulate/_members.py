@@ -125,7 +125,8 @@ def _ranges(contacts: list[int], start: Ints) -> Ints:
 def contact_names(contact: Contact | Joint) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Labels of the directions and of the law's states of a contact or joint, as its arrays have them."""
     if isinstance(contact, Joint):
-        return ("t",), () if contact.friction is None else contact.friction.state_labels(("t",))
+        named = contact.labels()
+        return named, () if contact.friction is None else contact.friction.state_labels(named)
     letters = contact.labels()
     return letters, contact.law.state_labels(letters)
 
@@ -133,7 +134,7 @@ def contact_names(contact: Contact | Joint) -> tuple[tuple[str, ...], tuple[str,
 def row_scale(contact: Contact | Joint) -> tuple[float, ...]:
     """Factors of a contact's rows: those of a law that is not isotropic are stored scaled (see ``Names.scale``)."""
     if isinstance(contact, Joint):
-        return (1.0,)
+        return UNIT[contact.slip_rows]
     if not contact.law.axis_scale():
         return UNIT[len(contact.labels())]
     return tuple(float(s) for s in contact.law.numeric().axis_scale())

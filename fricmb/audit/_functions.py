@@ -43,13 +43,13 @@ def element_function(element: Any, n: int) -> Function:
     return _kept(("element", structure(element), n), make)  # type: ignore[no-any-return]
 
 
-def joint_function(joint: Any, n: int) -> tuple[Function, int, bool]:
-    """A joint's statements, of x, multipliers and the joint's numbers; the number of constraints; whether it rubs.
+def joint_function(joint: Any, n: int) -> tuple[Function, int, int]:
+    """A joint's statements, of x, multipliers and the joint's numbers; the numbers of constraints and of slips.
 
-    The function gives constraints, their gradient by rows, and with friction the factors of slip and the load.
+    The function gives constraints, their gradient by rows, and with friction the factors of each slip and the load.
     """
 
-    def make() -> tuple[Function, int, bool]:
+    def make() -> tuple[Function, int, int]:
         import sympy
 
         from fricmb.equations._joint import joint_math
@@ -57,8 +57,8 @@ def joint_function(joint: Any, n: int) -> tuple[Function, int, bool]:
         math = joint_math(joint, n)
         outputs = [*math.phi, *(sympy.diff(phi, a) for phi in math.phi for a in math.x)]
         if math.slip is not None:
-            outputs += [*math.slip, math.load]
-        return _compiled([*math.x, *math.lam, *math.parameters], outputs), len(math.phi), math.slip is not None
+            outputs += [*(s for row in math.slip for s in row), math.load]
+        return _compiled([*math.x, *math.lam, *math.parameters], outputs), len(math.phi), len(math.slip or ())
 
     return _kept(("joint", structure(joint.bare()), n, joint.friction is None), make)  # type: ignore[no-any-return]
 

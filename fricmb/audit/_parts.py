@@ -112,7 +112,7 @@ class Joins:
         self.forms = joint.local_coordinates()
         self.drives = [Drive(*drive) for drive in joint.drives()]
         self.count = len(self.forms) + len(self.drives)
-        self.function, self.n_phi, self.rubs = joint_function(joint, self.count)
+        self.function, self.n_phi, self.n_slip = joint_function(joint, self.count)
         self.numbers = numbers(joint.bare())
         self.one_sided = joint.one_sided
 
@@ -132,12 +132,13 @@ class Joins:
         found.phi_rows[self.name] = rows
         for row, push in zip(rows, lam, strict=True):
             found.push(row, push)
-        if self.rubs and self.contact is not None:
-            *slip, load = whole[self.n_phi * (1 + n) :]
-            row = _combined(motions, slip)
-            found.g[self.contact] = sum(s * r for s, r in zip(slip, rates, strict=True))[None]
-            found.rows[self.contact], found.N[self.contact] = [row], load
-            found.push(row, moment.F[self.own])
+        if self.n_slip and self.contact is not None:
+            *factors, load = whole[self.n_phi * (1 + n) :]
+            slips = np.array(factors).reshape(self.n_slip, n, -1)
+            found.g[self.contact], found.N[self.contact] = (slips * rates).sum(axis=1), load
+            found.rows[self.contact] = [_combined(motions, slip) for slip in slips]
+            for i, row in enumerate(found.rows[self.contact]):
+                found.push(row, moment.F[self.own + i])
 
 
 class Drive:

@@ -72,9 +72,11 @@ def at_rest(units: Units, statements: Statements, rows: Samples) -> Units:
     found = statements.found(statements.moment(take(rows, [0])))
     push, h = np.zeros(len(units.v)), float((rows.t[-1] - rows.t[0]) / np.unique(rows.t).size)
     for k, own in found.rows.items():
-        for r, row in enumerate(own):
+        # an error of direction is as large as one of size
+        force = float(units.F[statements.names.row[k] : statements.names.row[k + 1]].max(initial=0.0))
+        for row in own:
             for i, c in row:
-                push[i] += abs(float(np.ravel(c)[0])) * units.F[statements.names.row[k] + r]
+                push[i] += abs(float(np.ravel(c)[0])) * force
     v = push / np.where(statements.weight > 0.0, statements.weight, np.inf) * h
     # of what moves its own size counts, however little friction it would take to move it
     v = np.where(units.v < RESTS * v, v, 0.0)

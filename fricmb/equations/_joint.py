@@ -15,14 +15,17 @@ from fricmb.values import symbolic
 
 @dataclass(frozen=True, kw_only=True)
 class JointMath:
-    """What a joint type states, in symbols: constraints phi(x); with friction also slip factors s and load N."""
+    """What a joint type states, in symbols: constraints phi(x); with friction also slip factors s and load N.
+
+    ``slip``: factors of the rates, one tuple for each direction of slip.
+    """
 
     x: tuple[Any, ...]
     v: tuple[Any, ...]
     lam: tuple[Any, ...]
     parameters: tuple[Any, ...]
     phi: tuple[Any, ...]
-    slip: tuple[Any, ...] | None
+    slip: tuple[tuple[Any, ...], ...] | None
     load: Any
 
     def text(self) -> str:
@@ -39,10 +42,17 @@ def joint_math(joint: Any, n: int) -> JointMath:
     lam = tuple(sympy.Symbol(f"l_{i}", real=True) for i in range(len(phi)))
     slip = load = None
     if joint.friction is not None:
-        slip = _vector(stand.standin.define_slip(x), label, "define_slip")
-        slip = (*slip, *(sympy.S.Zero for _ in range(n - len(slip))))
+        slip = _slip(stand.standin.define_slip(x), joint.slip_rows, n, label)
         load = sympy.sympify(stand.standin.define_load(x, lam))
     return JointMath(x=x, v=v, lam=lam, parameters=stand.flat, phi=phi, slip=slip, load=load)
+
+
+def _slip(value: Any, count: int, n: int, label: str) -> tuple[tuple[Any, ...], ...]:
+    """Factors of slip by directions, drives that come behind being 0."""
+    rows = [_vector(row, label, "define_slip") for row in ([value] if count == 1 else value)]
+    if len(rows) != count or any(len(row) > n for row in rows):
+        raise SceneError(f"{label}: define_slip must return {count} rows of at most {n} factors, got {value!r}")
+    return tuple((*row, *(sympy.S.Zero for _ in range(n - len(row)))) for row in rows)
 
 
 def _vector(value: Any, label: str, method: str) -> tuple[Any, ...]:
@@ -61,7 +71,8 @@ def derive_joint(math: JointMath, title: str) -> tuple[dict[str, Any], str]:
     outputs += [sum(lam[r] * second[r][a][b] for r in range(m)) for a in range(n) for b in range(n)]
     outputs += [sum(v[b] * second[r][b][a] for b in range(n)) for r in range(m) for a in range(n)]
     if math.slip is not None:
-        outputs += [*math.slip, *(sympy.diff(s, b) for s in math.slip for b in x)]
+        factors = [s for row in math.slip for s in row]
+        outputs += [*factors, *(sympy.diff(s, b) for s in factors for b in x)]
         outputs += [math.load, *(sympy.diff(math.load, a) for a in (*lam, *x))]
     outputs = [sympy.sympify(e) for e in outputs]
     for expression in outputs:

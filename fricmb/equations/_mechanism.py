@@ -96,25 +96,31 @@ def _prescribed(collector: Collector, joint: Joint, drive: tuple[str, Any, float
 
 
 def _friction(collector: Collector, joint: Joint, math: Any, replacement: dict[Any, Any], rhs: Any) -> Friction:
-    force = subscript("F", joint.name)
-    factors = [_plain(s.xreplace(replacement)) for s in math.slip]
-    velocity = sum((s * replacement[v] for s, v in zip(factors, math.v, strict=True)), sympy.S.Zero)
-    row = [sympy.diff(velocity, coordinate_symbols(dof)[1]) for dof in collector.scene.dof_names]
-    for place, slope in enumerate(row):
-        rhs[place] += slope * force
+    labels = joint.labels()
+    forces, velocities, rows = [], [], []
+    for label, held in zip(labels, math.slip, strict=True):
+        force = subscript("F", joint.name, *([label] if len(labels) > 1 else []))
+        factors = [_plain(s.xreplace(replacement)) for s in held]
+        velocity = sum((s * replacement[v] for s, v in zip(factors, math.v, strict=True)), sympy.S.Zero)
+        row = [sympy.diff(velocity, coordinate_symbols(dof)[1]) for dof in collector.scene.dof_names]
+        for place, slope in enumerate(row):
+            rhs[place] += slope * force
+        forces.append(force)
+        velocities.append(velocity)
+        rows.append((force, row))
     normal = _plain(math.load.xreplace(replacement))
-    terms = law_terms(collector, joint, ("friction", joint.friction), (velocity,), normal, ["t"])
+    terms = law_terms(collector, joint, ("friction", joint.friction), tuple(velocities), normal, list(labels))
     coefficient, break_away, slip, states = terms
     return Friction(
         name=joint.name,
-        force=(force,),
-        velocity=(velocity,),
+        force=tuple(forces),
+        velocity=tuple(velocities),
         normal_force=normal,
         coefficient=coefficient,
         break_away=break_away,
         slip=slip,
         states=states,
-        rows=((force, row),),
+        rows=tuple(rows),
     )
 
 

@@ -23,6 +23,7 @@ _LETTERS = {
     ModalBody: {"frequencies": "omega", "damping_ratios": "zeta", "masses": "m"},
     Contact: {"normal_force": "N"},
 }
+_TURNING = {"turn_": "sigma", "axis_": "n", "d1_": "d1", "d2_": "d2", "d3_": "d3"}
 _LAW_LETTERS = {"exponent": "n"}
 
 
@@ -39,6 +40,9 @@ def coordinate_symbols(dof: str) -> tuple[Any, Any, Any]:
         parts, letter = [*parts, letter.removeprefix("mode")], "eta"
     if letter == "angle":
         letter = "theta"
+    for name, symbol in _TURNING.items():  # of bodies in space: "top.axis_x" is n_top_x
+        if letter.startswith(name):
+            parts, letter = [*parts, letter.removeprefix(name)], symbol
     return tuple(subscript(letter + dots, *parts) for dots in ("", "dot", "ddot"))
 
 

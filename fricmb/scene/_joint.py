@@ -25,7 +25,7 @@ class Joint(Part):
     Every constraint has a multiplier ``lam``, and ``lam dphi/dx`` is the force on x: that is ``sol.reaction(name)``.
     All derivatives are derived, once for each type.  A joint that takes a friction law also states
 
-    - :meth:`define_slip`: factors s(x) of the slip velocity ``s . x'``;
+    - :meth:`define_slip`: factors s(x) of the slip velocity ``s . x'``; with :attr:`slip_rows` > 1 a tuple of such;
     - :meth:`define_load`: the normal force N(x, lam) >= 0.
 
     Parameters
@@ -86,6 +86,8 @@ class Joint(Part):
             if self.slip_rows not in self.friction.dimensions:
                 words = "one direction" if self.slip_rows == 1 else f"{self.slip_rows} directions"
                 self._refuse("friction", self.friction, f"a law of {words} of slip")
+            if self.slip_rows > 1 and self.friction.numeric().axis_scale():
+                self._refuse("friction", self.friction, "a law that is the same in all directions of slip")
             if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:
                 self.friction.check()
 
@@ -126,6 +128,10 @@ class Joint(Part):
         """The coordinates x that the joint depends on; their velocities follow."""
         raise NotImplementedError(f"{type(self).__name__} must define local_coordinates(self)")
 
+    def labels(self) -> tuple[str, ...]:
+        """Names of the directions of slip."""
+        return ("t",) if self.slip_rows == 1 else tuple(str(i + 1) for i in range(self.slip_rows))
+
     def drives(self) -> tuple[Any, ...]:
         """Prescribed functions of time that follow in x: ("value" or "rate", expression, start)."""
         return ()
@@ -135,7 +141,7 @@ class Joint(Part):
         raise NotImplementedError(f"{type(self).__name__} must define define_constraint(self, x)")
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Factors of the rates x' in the slip velocity of a relative to b."""
+        """Factors of the rates x' in the slip velocity of a relative to b; of several directions a tuple of such."""
         raise NotImplementedError(f"{type(self).__name__} must define define_slip(self, x)")
 
     def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:

@@ -8,44 +8,16 @@ from typing import Any, ClassVar
 from fricmb.errors import SceneError
 from fricmb.scene._expressions import check_expression
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._one_sided import OneSided
 from fricmb.scene._plane_joint import PlaneJoint
 from fricmb.scene._rigid import angle_of
 
 
 @dataclass(frozen=True, eq=False)
-class Surface(PlaneJoint):
-    """What a line and a circle share: whether they hold from both sides, and what happens where contact is lost."""
+class Surface(OneSided, PlaneJoint):
+    """What a line and a circle share."""
 
-    takes_friction: ClassVar[bool] = True
     only_relative: ClassVar[bool] = True
-    _: KW_ONLY
-    push_only: bool = False
-    when_lost: str = "end"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not isinstance(self.push_only, bool):
-            self._refuse("push_only", self.push_only, "True or False")
-        if self.when_lost not in ("end", "open"):
-            self._refuse("when_lost", self.when_lost, "'end' or 'open'")
-        if self.when_lost == "open" and not self.push_only:
-            self._refuse("when_lost", self.when_lost, "left out: without push_only contact is never lost")
-
-    @property
-    def one_sided(self) -> bool:
-        """As ``push_only``."""
-        return self.push_only
-
-    @property
-    def hands_over(self) -> bool:
-        """As ``when_lost``."""
-        return self.when_lost == "open"
-
-    def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
-        """Magnitude of the reaction."""
-        import sympy
-
-        return lam[0] if self.push_only else sympy.Abs(lam[0])
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,17 +107,18 @@ class ContactArrays:
             self._add_law(contact, contact.law, len(labels), contact.normal_force)
 
     def add_joint(self, joint: Joint) -> None:
-        """Append the friction of a joint: one direction, the reaction for normal force."""
+        """Append the friction of a joint: the reaction for normal force."""
+        labels = joint.labels()
         self.names.append(joint.name)
-        self.rows.append(Row())
-        self.w.append(0.0)
-        self.scale.append((1.0,))
+        self.rows.extend(Row() for _ in labels)
+        self.w.extend(0.0 for _ in labels)
+        self.scale.append(UNIT[len(labels)])
         self.row_start.append(len(self.rows))
-        self.labels.append(("t",))
+        self.labels.append(labels)
         self.normal.append(NORMAL_REACTION)
         self.normal_table.add(NO_TEMPLATE)
         self._normal(0.0, NO_ROW, 0.0)
-        self._add_law(joint, joint.friction, 1, 0.0)
+        self._add_law(joint, joint.friction, len(labels), 0.0)
 
     def _add_row(self, contact: Contact, label: str, form: Any, slide: Any, scale: float) -> None:
         """A row of relative velocity; that of a law that is not isotropic in its scaled direction."""

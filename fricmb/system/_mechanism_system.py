@@ -9,7 +9,7 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate.mechanism import Mechanism
-from fricmb.integrate.problem import Floats, Start
+from fricmb.integrate.problem import OPEN, Floats, Start
 from fricmb.integrate.trajectory import Samples
 from fricmb.system._evaluate import _each
 from fricmb.system._system import System
@@ -77,6 +77,9 @@ class MechanismSystem(System):
         opened = np.zeros((count, len(joints.port)), np.int8)
         for k in range(count if joints.hands_over.any() else 0):
             opened[k] = away(self.problem, Start(t=float(samples.t[k]), q=q[k], v=np.zeros_like(q[k]), z=z[k]))
+        # just after a contact has opened it is no distance away yet, but its friction knows
+        rubs = np.flatnonzero((joints.hands_over != 0) & (joints.port >= 0))
+        opened[:, rubs] |= (samples.mode[joints.port[rubs]] == OPEN).T
         found = complete_open(self.problem, opened, samples.t, q, v, z, samples.mode.T, force)
         lam = self._least_norm(samples, found[3])
         return {name: lam[a:b] for name, (a, b) in zip(joints.names, pairwise(joints.row), strict=True)}

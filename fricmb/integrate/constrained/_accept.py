@@ -10,7 +10,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained._band import spread_of_pivots
-from fricmb.integrate.constrained._field import call_joint, friction_at, move
+from fricmb.integrate.constrained._field import call_joint, directions, friction_at, load_place, move
 from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
 from fricmb.integrate.constrained._slip import lack, slip_speed, spare
 from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
@@ -103,16 +103,16 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
             return -1.0
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
-        w.r[n + m + port.row[c]] = 1.0
+        push(mech, y, c, w.r, n + m)
         solve_instant(mech, w)
         n_x = joint.n_x[j]
         rows = joint.row[j + 1] - joint.row[j]
-        at = friction_at(n_x, rows) + n_x + n_x * n_x
-        mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[port.row[c]] * y.g[port.row[c]], max(y.N[c], 0.0))  # type: ignore[arg-type]
+        at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
+        mu, _, by_load = coefficient(port, port.laws, c, k.s, along(mech, y, c), max(y.N[c], 0.0))  # type: ignore[arg-type]
         factor = mu + by_load * max(y.N[c], 0.0)
         for i in range(rows):
             out.lam[joint.row[j] + i] = y.lam[joint.row[j] + i]
-        around = 1 if joint.one_sided[j] else AROUND
+        around = 1 if joint.one_sided[j] or rows > 2 else AROUND
         for d in range(around):
             if around > 1:
                 for i in range(rows):
@@ -122,11 +122,27 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
             answer = 0.0
             for i in range(rows):
                 answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
-            out.margin[c] = min(out.margin[c], 1.0 + factor * y.n[port.row[c]] * answer)
+            out.margin[c] = min(out.margin[c], 1.0 + factor * answer)
         least = min(least, out.margin[c])
     if whole:
         out.together[0] = least_minor(mech, k, w, y, out)
     return float(min(least, out.together[0]))
+
+
+@kernel
+def push(mech: Mech, y: State, c: int, r: Floats, r0: int) -> None:
+    """A unit force along the slip of port c as a right-hand side."""
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        r[r0 + a] = y.n[a]
+
+
+@kernel
+def along(mech: Mech, y: State, c: int) -> float:
+    """Slip speed of port c along its direction."""
+    speed = 0.0
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        speed += y.n[a] * y.g[a]
+    return float(speed)
 
 
 @kernel
@@ -157,20 +173,20 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
     for j in range(count if code == 0 else 0):
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
-        w.r[n + m + port.row[out.which[j]]] = 1.0
+        push(mech, y, out.which[j], w.r, n + m)
         solve_instant(mech, w)
         for i in range(count):
             c = out.which[i]
             owner = port.joint[c]
             rows = joint.row[owner + 1] - joint.row[owner]
             n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
-            at = friction_at(n_x, rows) + n_x + n_x * n_x
-            mu, _, by_load = coefficient(port, port.laws, c, k.s, y.n[port.row[c]] * y.g[port.row[c]], max(y.N[c], 0.0))  # type: ignore[arg-type]
+            at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
+            mu, _, by_load = coefficient(port, port.laws, c, k.s, along(mech, y, c), max(y.N[c], 0.0))  # type: ignore[arg-type]
             answer = 0.0
             for r in range(rows):
                 answer += k.out[at + 1 + r] * w.r[n + joint.row[owner] + r]
             one = 1.0 if i == j else 0.0
-            out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * y.n[port.row[c]] * answer
+            out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * answer
     for i in range(count):
         y.mode[out.which[i]] = SLIP
     if code != 0:

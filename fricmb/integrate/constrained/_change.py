@@ -75,7 +75,8 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
     c = joint.port[i]
     if c >= 0:
         y.mode[c] = OPEN
-        y.F[mech.port.row[c]] = 0.0
+        for a in range(mech.port.row[c], mech.port.row[c + 1]):
+            y.F[a] = 0.0
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     instant_matrix(mech, k, w, y, NONE, mech.address)
     out.sigma[0] = out.sigma[1] = least_singular(mech, w, out, TURNS)

@@ -269,7 +269,8 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
         j = port.joint[c]
         if j >= 0 and mech.joint.dropped[mech.joint.row[j]] == 2:
             y.mode[c] = OPEN
-            y.F[row] = 0.0
+            for a in range(row, port.row[c + 1]):
+                y.F[a] = 0.0
             continue
         if j >= 0 and y.mode[c] == OPEN:
             y.mode[c] = SLIP

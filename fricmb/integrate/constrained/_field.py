@@ -103,8 +103,26 @@ def call_joint(mech: Mech, k: Moving, j: int, lam: Floats, l0: int, address: Int
 
 @kernel
 def friction_at(n_x: int, m: int) -> int:
-    """Where the friction part of a joint's output begins."""
+    """Where the friction part of a joint's output begins: factors of slip, direction by direction."""
     return m + 2 * m * n_x + n_x * n_x
+
+
+@kernel
+def slope_at(n_x: int, at: int, d: int, direction: int, a: int) -> int:
+    """Where the derivatives of factor a of one of d directions begin, ``at`` being where the factors do."""
+    return at + d * n_x + (direction * n_x + a) * n_x
+
+
+@kernel
+def load_place(n_x: int, at: int, d: int) -> int:
+    """Where the load begins, with its derivatives by multipliers and coordinates, behind d directions of slip."""
+    return at + d * n_x * (1 + n_x)
+
+
+@kernel
+def directions(mech: Mech, c: int) -> int:
+    """Number of directions in which port c slips."""
+    return int(mech.port.row[c + 1] - mech.port.row[c])
 
 
 @kernel
@@ -179,18 +197,21 @@ def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int
             dropped = joint.dropped[joint.row[j] + r] != 0
             k.phi[joint.row[j] + r] = 0.0 if dropped else k.out[r]
             k.phi_rate[joint.row[j] + r] = 0.0 if dropped else rate
-        if c >= 0:
+        first = mech.port.row[c] if c >= 0 else 0
+        d = directions(mech, c) if c >= 0 else 0
+        for i in range(d):
             rate = 0.0
             for a in range(n_x):
-                rate += k.out[at + a] * k.x[n_x + a]
-            g[mech.port.row[c]] = rate
-            N[c] = k.out[at + n_x + n_x * n_x]
+                rate += k.out[at + i * n_x + a] * k.x[n_x + a]
+            g[first + i] = rate
+        if c >= 0:
+            N[c] = k.out[load_place(n_x, at, d)]
         for a in range(n_x):
             force = 0.0
             for r in range(m):
                 force += k.out[m + r * n_x + a] * lam[l0 + joint.row[j] + r]
-            if c >= 0:
-                force += k.out[at + a] * F[f0 + mech.port.row[c]]
+            for i in range(d):
+                force += k.out[at + i * n_x + a] * F[f0 + first + i]
             if force != 0.0:
                 scatter(k, table, a0 + a, force)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._accept import Watch
-from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._field import call_joint, directions, friction_at, load_place
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.constrained._stages import Stages
 from fricmb.integrate.constrained._state import State
@@ -26,7 +26,8 @@ LEFT = 1e-11
 def slopes(mech: Mech, k: Moving, j: int) -> int:
     """Where in ``k.out`` the slopes dN/dlam of joint j, just evaluated, begin."""
     n_x = mech.joint.n_x[j]
-    return int(friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + n_x + n_x * n_x + 1)
+    at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+    return int(load_place(n_x, at, directions(mech, mech.joint.port[j])) + 1)
 
 
 @kernel

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._field import call_joint, directions, friction_at, slope_at
 from fricmb.integrate.constrained._pack import Mech, Moving, Order
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.model.problem_structs import Table
@@ -184,16 +184,17 @@ def add_joints(
                     add_form(mech, k, L, row, table, a0 + a, k.out[B + r * n_x + a], mech.address)
                 else:
                     add_row(mech, k, L.A1, row, table, a0 + a, G, mech.address)
-        if c >= 0:
-            column = n + joint.row[-1] + mech.port.row[c]
+        d = directions(mech, c) if c >= 0 else 0
+        for i in range(d):
+            column = n + joint.row[-1] + mech.port.row[c] + i
             for a in range(n_x):
-                add_column(mech, k, L.A1, column, table, a0 + a, -k.out[at + a], mech.address)
+                add_column(mech, k, L.A1, column, table, a0 + a, -k.out[at + i * n_x + a], mech.address)
         if full:
             for a in range(n_x):
                 for b in range(n_x):
                     value = k.out[H + a * n_x + b]
-                    if c >= 0:
-                        value += F[f0 + mech.port.row[c]] * k.out[at + n_x + a * n_x + b]
+                    for i in range(d):
+                        value += F[f0 + mech.port.row[c] + i] * k.out[slope_at(n_x, at, d, i, a) + b]
                     add_stiffness(mech, k, L, table, a0 + a, table, a0 + b, -value, mech.address)
 
 

@@ -243,8 +243,9 @@ def moving_of(problem: Problem) -> Moving:
     widths = [int(x) for x in packed.joint.n_x]
     rows = [int(x) for x in np.diff(m.joints.row)]
     n_x = max([8, *(2 * x + r for x, r in zip(widths, rows, strict=True))])
-    n_out = max([8, *(2 * r + 3 * x * r + 3 * x * x + 3 * x + 8 for x, r in zip(widths, rows, strict=True))])
     directions = int(np.max(np.diff(problem.contacts.row), initial=1))
+    slip = directions + 2
+    n_out = max([8, *(2 * r + 3 * x * r + slip * x * x + slip * x + 8 for x, r in zip(widths, rows, strict=True))])
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
     s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
     for templates in (problem.elements.table, problem.contacts.normal_table):

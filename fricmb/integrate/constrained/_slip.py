@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained._field import call_joint, friction_at
+from fricmb.integrate.constrained._field import call_joint, directions, friction_at, load_place, slope_at
 from fricmb.integrate.constrained._matrix import Layers, add, add_form, add_row
 from fricmb.integrate.constrained._pack import Mech, Moving
 from fricmb.integrate.model.forces import gather
@@ -113,15 +113,16 @@ def add_slip(
         return
     n_x = call_joint(mech, k, j, lam, 0, mech.address)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+    own, d = at + direction * n_x, directions(mech, c)
     a0 = table.x_start[j]
     for a in range(n_x):
         if not full:
-            add_row(mech, k, L.A1, row, table, a0 + a, value * k.out[at + a], mech.address)
+            add_row(mech, k, L.A1, row, table, a0 + a, value * k.out[own + a], mech.address)
             continue
-        add_form(mech, k, L, row, table, a0 + n_x + a, value * k.out[at + a], mech.address)
+        add_form(mech, k, L, row, table, a0 + n_x + a, value * k.out[own + a], mech.address)
         turn = 0.0
         for b in range(n_x):
-            turn += k.out[at + n_x + b * n_x + a] * k.x[n_x + b]
+            turn += k.out[slope_at(n_x, at, d, direction, b) + a] * k.x[n_x + b]
         add_form(mech, k, L, row, table, a0 + a, value * turn, mech.address)
 
 
@@ -133,7 +134,7 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, addres
     if j >= 0:
         n_x = call_joint(mech, k, j, lam, 0, mech.address)
         table, first = mech.joint.table, mech.joint.table.x_start[j]
-        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
+        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
     value = 0.0
     for form in range(first, first + n_x):
         factor = k.out[at + form - first] if j >= 0 else 1.0
@@ -174,7 +175,7 @@ def add_load(
         return
     n_x = call_joint(mech, k, j, lam, 0, mech.address)
     m = joint.row[j + 1] - joint.row[j]
-    at = friction_at(n_x, m) + n_x + n_x * n_x + 1
+    at = load_place(n_x, friction_at(n_x, m), directions(mech, c)) + 1
     first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1] - joint.row[-1]
     for i in range(m):
         add(mech.order, L.A1, row, first + joint.row[j] + i, value * k.out[at + i])

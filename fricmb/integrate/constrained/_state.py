@@ -11,7 +11,16 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained._band import factor_real, solve_real_band
-from fricmb.integrate.constrained._field import bend, call_joint, forces, friction_at, move, pull_back
+from fricmb.integrate.constrained._field import (
+    bend,
+    call_joint,
+    directions,
+    forces,
+    friction_at,
+    move,
+    pull_back,
+    slope_at,
+)
 from fricmb.integrate.constrained._friction import add_friction, friction_residual
 from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass
 from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
@@ -116,11 +125,11 @@ def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats, a: int) -> flo
         return bend(k, mech.port.slip, mech.port.slip.x_start[c] + 2 * a)
     n_x = call_joint(mech, k, j, lam, 0, mech.address)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
-    value = 0.0
+    value, d = 0.0, directions(mech, c)
     for i in range(n_x):
-        value += k.out[at + i] * bend(k, mech.joint.table, mech.joint.table.x_start[j] + i)
+        value += k.out[at + a * n_x + i] * bend(k, mech.joint.table, mech.joint.table.x_start[j] + i)
         for b in range(n_x):
-            value += k.out[at + n_x + i * n_x + b] * k.x[n_x + i] * k.x[n_x + b]
+            value += k.out[slope_at(n_x, at, d, a, i) + b] * k.x[n_x + i] * k.x[n_x + b]
     return value
 
 

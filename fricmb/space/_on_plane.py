@@ -1,0 +1,225 @@
+"""A ball, the edge of a disc, the tip of a top or a point of a body on a plane."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import Floats
+from fricmb.scene._expressions import check_expression
+from fricmb.scene._forms import LinearForm
+from fricmb.scene._one_sided import OneSided
+from fricmb.scene._part import GROUND
+from fricmb.scene._space_body import SpacePoint, check_triple
+from fricmb.space._ball import Ball
+from fricmb.space._directors import RigidBody
+from fricmb.space._joint import SpaceJoint
+from fricmb.space._rotor import Rotor
+from fricmb.space._turn import cross, dot, triad, unit
+from fricmb.values import is_expression, value_of
+
+#: What touches the plane, by what is declared.
+SHAPES = ("ball", "edge", "tip", "point")
+
+
+@dataclass(frozen=True, eq=False)
+class OnPlane(OneSided, SpaceJoint):
+    """A body touches a fixed plane at one point, and slides or rolls on it in two directions.
+
+    What touches follows from ``a``:
+
+    - a :class:`Ball`: its surface;
+    - a :class:`Rotor`: the edge of a disc of ``radius`` through its centre of mass, at right angles to its axis (a
+      coin, a wheel);
+    - a station of a rotor: a tip that is rounded with ``radius`` about the station (0: a point);
+    - a point of a :class:`RigidBody`.
+
+    Reaction: force on a along the normal.  Friction acts at the point of contact, in directions "1" and "2" of the
+    plane (``"x"`` and ``"y"`` of the normal z; in general ``"1" x "2" = normal``): slip is the velocity of the body's
+    material there, sticking is rolling.
+
+    Parameters
+    ----------
+    name : str
+    a : Ball, Rotor, a station of a rotor, or a point of a RigidBody
+    normal : (float, float, float)
+        Of the plane, towards the side where the body is.
+    through : (float, float, float)
+        A point of the plane; default: the origin.
+    radius : float
+        Of the edge or the tip; that of a ball is its own.
+    turning : number or SymPy expression in ``fm.t``
+        Angular velocity at which the plane turns about its normal in ``through``: a turntable.
+    push_only : bool
+        The plane can push but not pull; where it would have to pull, contact is lost.
+    when_lost : str
+        "end": the run ends there with an error that says so.  "open": it goes on without this contact, and ends with an
+        error where the body meets the plane again (impacts are not computed).  A scene that starts with the body
+        above the plane, or leaving it, starts open.
+    friction : FrictionLaw, optional
+        In two directions; normal force: magnitude of the reaction.
+
+    Raises
+    ------
+    SceneError
+        If nothing of ``a`` can touch, or a value cannot be.
+
+    Notes
+    -----
+    The lowest point of an edge is ``c = -R (e - n_e n)/sqrt(1 - n_e^2)`` from the centre, e the normal of the plane and
+    n_e the part of the axis along it; slip is ``r' + omega x c`` (never ``c'``, since another point of the edge touches
+    in the next moment).  A disc that lies flat touches everywhere: a run that comes to it ends.
+
+    Examples
+    --------
+    >>> import fricmb as fm
+    >>> ball = fm.space.Ball("ball", mass=0.17, radius=0.03, position=(0, 0, 0.03), velocity=(1, 0, 0))
+    >>> cloth = fm.space.OnPlane("cloth", ball, normal=(0, 0, 1), friction=fm.laws.Coulomb(mu_s=0.2))
+    >>> sol = fm.simulate(fm.Scene("billiard", [ball, cloth, fm.Gravity("g", acceleration={"z": -9.81})]), t_end=1.0)
+    >>> round(float(sol.events[0].t), 6)  # it rolls from 2 v / (7 mu g) on
+    0.145624
+    """
+
+    only_relative: ClassVar[bool] = False
+    slip_rows: ClassVar[int] = 2
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "normal", "through")
+    _: KW_ONLY
+    normal: Any
+    through: Any = (0.0, 0.0, 0.0)
+    radius: Any = None
+    turning: Any = 0.0
+    shape: str | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.b is not GROUND:
+            self._refuse("b", self.b, "left out: the plane is fixed")
+        self._set("normal", check_triple(self, "normal", self.normal))
+        self._set("through", check_triple(self, "through", self.through))
+        unit(self._label(), "normal", value_of(self.normal))
+        found = self._shape()
+        if self.shape not in (None, found):
+            self._refuse("shape", self.shape, f"left out (it is {found!r}, from a)")
+        self._set("shape", found)
+        self._set("radius", self._radius(found))
+        self._set("turning", check_expression(self, "turning", self.turning, motions=False))
+        self.local_coordinates()
+
+    def _takes_expression(self, field: str) -> bool:
+        return field == "turning"
+
+    def _shape(self) -> str:
+        """What touches."""
+        if isinstance(self.a, Ball):
+            return "ball"
+        if isinstance(self.a, Rotor):
+            return "edge"
+        if isinstance(self.a, SpacePoint):
+            return "tip" if isinstance(self.a.owner, Rotor) else "point"
+        accepted = "a Ball, a Rotor, a station of one, or a point of a RigidBody of fm.space"
+        if isinstance(self.a, RigidBody):
+            accepted += " (of a RigidBody name the point that touches: body.point('foot', (0, 0, -1)))"
+        self._refuse("a", self.a.end_name, accepted)
+
+    def _radius(self, shape: str) -> Any:
+        """Of what touches."""
+        if shape == "ball":
+            if self.radius is not None:
+                self._refuse("radius", self.radius, "left out: a ball has its own")
+            return None
+        if shape == "edge":
+            return self._number("radius", self.radius, above=0.0)
+        radius = self._number("radius", 0.0 if self.radius is None else self.radius, minimum=0.0)
+        if shape == "point" and value_of(radius) != 0.0:
+            raise SceneError(f"{self._label()}: a point of a RigidBody has no radius; a rounded tip is that of a Rotor")
+        return radius
+
+    def labels(self) -> tuple[str, ...]:
+        """Letters where the plane's directions are along axes, "1" and "2" where they are not."""
+        rows = self.frame()[:2]
+        return tuple("xyz"[int(np.argmax(row))] if row.max() == 1.0 else str(i + 1) for i, row in enumerate(rows))
+
+    def frame(self) -> Floats:
+        """Directions 1 and 2 of the plane, and its normal, as rows (3, 3)."""
+        e = unit(self._label(), "normal", value_of(self.normal))
+        u, w = triad(e)
+        return np.array([u, w, e])
+
+    def _turned(self, forms: Any) -> tuple[LinearForm, ...]:
+        """Components of a vector along the plane's directions and its normal."""
+        return tuple(
+            sum((form * float(c) for form, c in zip(forms, row, strict=True)), LinearForm()) for row in self.frame()
+        )
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """The point, seen from the plane's own; then axis and spin of a rotor.
+
+        Of a ball its lowest point, and how far its surface has turned: its radius is in the forms.
+        """
+        start = (float(c) for c in value_of(self.through))
+        place = [self.a.motion(c) - LinearForm((), s) for c, s in zip("xyz", start, strict=True)]
+        x, y, z = self._turned(place)
+        owner = self.a.owner
+        if isinstance(owner, Ball):
+            radius = float(value_of(owner.radius))
+            return x, y, z - LinearForm((), radius), *(form * radius for form in self._turned(owner.spins()))
+        if isinstance(owner, Rotor):
+            return x, y, z, *self._turned(owner.axis_forms()), owner.spin_form()
+        return x, y, z
+
+    def drives(self) -> tuple[Any, ...]:
+        """The angle of a turntable."""
+        still = not is_expression(self.turning) and value_of(self.turning) == 0.0
+        return () if still or self.friction is None else (("rate", self.turning, 0.0),)
+
+    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """How high the lowest point is."""
+        if self.shape == "edge":
+            _, across = self._axis(x)
+            return (x[2] - self.radius * across,)
+        return (x[2] - self.radius if self.shape == "tip" else x[2],)
+
+    def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Velocity of the material at the lowest point, relative to the plane."""
+        first: list[Any] = [1, 0, 0]
+        second: list[Any] = [0, 1, 0]
+        c: tuple[Any, ...] = (0, 0, 0)
+        if self.shape == "ball":
+            first, second = [*first, 0, -1, 0], [*second, 1, 0, 0]
+        elif self.shape != "point":
+            c = self._lowest(x)
+            first, second = ([*row, *self._turn_factors(x, c, i)] for i, row in enumerate((first, second)))
+        if len(x) > len(first):  # a turntable moves under the point, across the way to it
+            first, second = [*first, x[1] + c[1]], [*second, -x[0] - c[0]]
+        return tuple(first), tuple(second)
+
+    def _lowest(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """From the point of a rotor to where it touches."""
+        if self.shape == "tip":
+            return 0, 0, -self.radius
+        n, across = self._axis(x)
+        return tuple(-self.radius * (e - n[2] * c) / across for e, c in zip((0, 0, 1), n, strict=True))
+
+    def _axis(self, x: tuple[Any, ...]) -> tuple[Any, Any]:
+        """The axis as a unit vector, which stages leave a little, and the sine of its angle with the normal."""
+        import sympy
+
+        length = sympy.sqrt(dot(x[3:6], x[3:6]))
+        n = tuple(c / length for c in x[3:6])
+        return n, sympy.sqrt(n[0] ** 2 + n[1] ** 2)
+
+    def _turn_factors(self, x: tuple[Any, ...], c: Any, i: int) -> list[Any]:
+        """Factors of n' and s' in component i of ``omega x c``, with ``omega = n x n' + s' n``.
+
+        ``(n x n') x c = (n . c) n' - n (n' . c)``.
+        """
+        import sympy
+
+        length = sympy.sqrt(dot(x[3:6], x[3:6]))
+        n, _ = self._axis(x)
+        along = dot(n, c)
+        swing = [((along if i == j else 0) - n[i] * c[j]) / length for j in range(3)]
+        return [*swing, cross(n, c)[i]]
