@@ -165,7 +165,7 @@ class Rotor(SpaceBody):
 
     def gyroscopic(self) -> Element:
         """What turns the axis sideways."""
-        return Gyroscopic(self.name, self, inertia=self.inertia_axial)
+        return Gyroscopic(self.name, self, C=self.inertia_axial)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +193,7 @@ class Gyroscopic(Element):
 
     body: End = GROUND
     _: KW_ONLY
-    inertia: Any
+    C: Any
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Axis and spin."""
@@ -202,4 +202,4 @@ class Gyroscopic(Element):
 
     def define_force(self, x: tuple[Any, ...], x_dot: tuple[Any, ...], t: Any) -> tuple[Any, ...]:
         """Does no work."""
-        return (*(self.inertia * x_dot[3] * c for c in cross(x, x_dot)), 0)
+        return (*(self.C * x_dot[3] * c for c in cross(x, x_dot)), 0)
