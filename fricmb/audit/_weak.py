@@ -129,6 +129,9 @@ class Weak:
         a, b = begin.t, end.t
         change = self.values(end) - self.values(begin)
         size = np.abs(self.values(begin)) + np.abs(self.values(end))
+        if self.statements.joints:  # what returns to constraints has the round-off of all that they tie together
+            places = slice(begin.q.shape[0], 2 * begin.q.shape[0])
+            size[places] = size[places].max(axis=0, initial=0.0)
         whole, unsure, slack = self._integrals(a, b, rng)
         allowed = 2.0 * self.unit[:, None] + slack + 1e-15 * size + extra + 1e-300
         bad = np.flatnonzero(((np.abs(change - whole) > allowed) & (unsure > 0.1 * allowed)).any(axis=0))

@@ -95,6 +95,22 @@ class AxisJoint(SpaceJoint):
         """The axis (3,) at the declared start."""
         return unit(self._label(), "axis", value_of(self.axis))
 
+    def turn(self) -> tuple[LinearForm, ...]:
+        """What tells the rate of a about the axis relative to b, behind :meth:`hinge`: eight forms.
+
+        Two directions across and a spin, of the end whose axis the hinge takes (one or the other is 0); and 1, or -1
+        where that end is b.
+        """
+        e, still = self.axis_unit(), LinearForm()
+        argument, sign = ("b", -1.0) if isinstance(self.b.owner, Rotor) else ("a", 1.0)
+        owner = getattr(self, argument).owner
+        side = LinearForm((), sign)
+        if isinstance(owner, Rotor):
+            spin = owner.spin_form() * (sign * float(np.sign(owner.start_axis() @ e)))
+            return (*(still for _ in range(6)), spin, side)
+        u, w = triad(e)
+        return (*self.carried(argument, u), *self.carried(argument, w), still, side)
+
     def hinge(self) -> tuple[LinearForm, ...]:
         """An axis e of one end, and two directions u, w of the other, ``u x w = e`` at the start: nine forms.
 
