@@ -50,6 +50,14 @@ def test_what_was_released_first_holds_where_it_can(kind, seed):
     assert {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD} == {}
 
 
+@pytest.mark.parametrize("seed", [30176, 20012])
+def test_equations_of_a_step_that_are_solved_to_the_last_digit_are_solved(seed):
+    """A correction of exactly 0 says that the iteration is over: its rate, 0 / 0, once said that it never is."""
+    true = truth(case_of(generate("stack", seed)))
+    assert not true.marginal
+    assert {method: judge(true, method).kind for method in ("bdf", "radau")} == {"bdf": "right", "radau": "right"}
+
+
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "chain"])
 def test_a_seed_gives_one_scene_and_its_data_give_it_back(kind):
     spec = generate(kind, 5)

@@ -357,7 +357,7 @@ def solve_ports(
             return iteration + 1
         close = close or good
         renew = ports.soft[0] > 0.0 or turn > 0.02 or (iteration > 0 and rate > 0.02)
-        last, last_turn = change, max(turn, 1e-300)
+        last, last_turn = max(change, 1e-300), max(turn, 1e-300)
     return -1
 
 
