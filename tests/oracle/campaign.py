@@ -80,8 +80,8 @@ def tried(options: argparse.Namespace, number: int, start: float) -> Iterator[Fo
         try:
             with limited(SECONDS):
                 true = truth(make(where, spec))
-        except OracleError as error:
-            yield kind, where, str(error), []
+        except (OracleError, ArithmeticError, ValueError) as error:  # whatever it fails at, the next scene is tried
+            yield kind, where, f"{type(error).__name__}: {error}", []
             continue
         if true.marginal:
             yield kind, where, "marginal", []

@@ -24,7 +24,11 @@ def block(D: np.ndarray, b: np.ndarray, c: float) -> np.ndarray:
         return float(np.sqrt(((y / (w + rho)) ** 2).sum()) / c - 1.0)
 
     high = np.sqrt((y**2).sum()) / c
-    rho = brentq(excess, 0.0, high, xtol=1e-300, rtol=8.9e-16) if excess(high) < 0.0 else high
+    rho = high
+    if excess(0.0) <= 0.0:  # on the edge of the ball, to round-off
+        rho = 0.0
+    elif excess(high) < 0.0:
+        rho = brentq(excess, 0.0, high, xtol=1e-300, rtol=8.9e-16)
     F = -Q @ (y / (w + rho))
     return F * (c / np.hypot(*F))
 
