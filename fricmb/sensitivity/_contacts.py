@@ -67,7 +67,7 @@ class Rubs:
         self.mu_s = None if path is None else seeds.dual(law.slots()[path], f"{self.name}.law.{path}")
 
     def add(self, moment: Moment, found: Found, mode: Codes, sign: Floats) -> None:
-        """Slip, normal force and friction; ``mode``, ``sign`` (n_t,): of the phases that the times lie in."""
+        """Slip, normal force and friction; ``mode``, ``sign`` (d, n_t): of the phases."""
         motions = [moment.form(form) for form in self.directions]
         k = self.number
         g = [m.rate + slide.over(moment.time) for m, slide in zip(motions, self.slides, strict=True)]
@@ -104,8 +104,11 @@ class Rubs:
     def _slipping(self, g: list[Dual], N: Dual, sign: Floats) -> list[Dual]:
         """Friction in slip: against the sign that a phase has in one direction, against its direction in two."""
         if self.d == 1:
+            (sign,) = sign
             r = Dual(value=np.maximum(sign * g[0].value, _REST), slopes={j: sign * s for j, s in g[0].slopes.items()})
             return [self._coefficient(r, N).times(N) * -sign]
+        if not np.isnan(sign).any():
+            return self.beginning(N, sign)
         length = np.maximum(np.sqrt(sum(np.square(x.value) for x in g)), _REST)
         n = [x.value / length for x in g]
         r = composed(length, zip(n, g, strict=True))
@@ -115,6 +118,11 @@ class Rubs:
             turned = composed(n[i], [(1.0 / length, x), (-n[i] / length, r)])
             found.append(size.times(turned) * -1.0)
         return found
+
+    def beginning(self, N: Dual, direction: Floats) -> list[Dual]:
+        """Friction at r = 0 in slip along a given direction (d, n_t)."""
+        size = self._coefficient(Dual(value=np.full(direction.shape[1:], _REST)), N).times(N)
+        return [size * -n for n in direction]
 
     def _coefficient(self, r: Dual, N: Dual) -> Dual:
         if self.compiled:

@@ -93,6 +93,10 @@ class Equations:
         if found is not None:
             self.acting.append(found)
 
+    def rows(self, k: int) -> slice:
+        """Rows of a contact."""
+        return slice(int(self.names.row[k]), int(self.names.row[k + 1]))
+
     def moment(self, samples: Samples) -> Moment:
         """Samples of the run as a moment."""
         return Moment(frame=self.frame, t=samples.t, q=samples.q, v=samples.v, z=samples.z)
@@ -105,7 +109,7 @@ class Equations:
         for part in self.acting:
             part.add(moment, found)
         for k, contact in self.contacts.items():
-            contact.add(moment, found, mode[k], sign[int(self.names.row[k])])
+            contact.add(moment, found, mode[k], sign[self.rows(k)])
         a, slopes, F = self._accelerations(found, mode, count)
         return Field(
             found=found, v=samples.v.T, a=a, a_slopes=slopes, rate=found.rate.T, rate_slopes=found.rate_slopes, F=F
@@ -141,6 +145,11 @@ class Equations:
             F[k][0][at] = -f @ B[:, own] - drift[at] @ D[own].T
             F[k][1][at] = -B[:, own].T @ G - D[own] @ drift_slopes[at]
             first = own.stop
+
+    def free(self, found: Found, mode: Codes) -> Floats:
+        """Inverse mass (n, n) of what is free to move while contacts stick as ``mode`` (n_c,) says."""
+        stuck = [k for k, contact in self.contacts.items() if not contact.smooth and mode[k] == STICK]
+        return self.projector(found, stuck)[0]
 
     def projector(self, found: Found, stuck: list[int]) -> tuple[Floats, Floats, Floats]:
         """Inverse mass of what is free to move, B = M^-1 W D^-1, and D^-1, with D = W^T M^-1 W of what sticks."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._phases import Phases
@@ -15,7 +15,12 @@ from fricmb.sensitivity._phases import Phases
 #: Stages of the steps, and of the formula that tells how fine they are.
 STAGES, COARSE = 5, 3
 #: Rounds of dividing steps, into so many parts at most; numbers that are held at once.
-_ROUNDS, _PARTS, _HELD = 60, 8, 4_000_000
+_ROUNDS, _PARTS, _HELD = 16, 8, 4_000_000
+#: A step is divided on while its error falls by this factor each time.
+_FALLS = 0.5
+#: Slip begins or ends where its speed is below this share of that in the middle of a step; of the time that it lasts,
+#: the first step after its begin and what is left out before its end.
+_TINY, _FIRST, _LAST = 1e-4, 1e-5, 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,24 +74,75 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     """
     fine, coarse = radau(STAGES), radau(COARSE)
     limit = coarse.error * (0.1 * max(rtol, 1e-13) / fine.error) ** ((coarse.order + 1) / (fine.order + 1))
-    edges = stepper.phases.t
-    t, h, phase = edges[:-1], np.diff(edges), np.arange(edges.size - 1)
+    t, h, phase = graded(stepper)
     kept: list[tuple[Floats, Floats, Ints, Floats]] = []
+    before = np.full(t.size, np.inf)
     for last in [False] * _ROUNDS + [True]:
         if not t.size:
             break
         maps = stepper.maps(fine, t, h, phase)
         off = _difference(stepper.maps(coarse, t, h, phase) - maps, maps, scale, stepper.equations.n_y)
-        bad = (off > limit) & (h > 1e-13 * np.abs(edges[-1] - edges[0])) & (not last)
+        # what does not fall when steps are divided is round-off of the dense output, which no mesh removes
+        bad = (off > limit) & (off < _FALLS * before) & (not last)
         kept.append((t[~bad], h[~bad], phase[~bad], maps[~bad]))
         parts = np.clip(np.ceil((off[bad] / limit) ** (1.0 / (coarse.order + 1)) * 1.1), 2, _PARTS).astype(np.int64)
         first = np.repeat(np.cumsum(parts) - parts, parts)
         inside = np.arange(parts.sum()) - first
+        before = np.repeat(np.where(np.isfinite(before[bad]) | (off[bad] < 1.0), off[bad], np.inf), parts)
         h, phase = np.repeat(h[bad] / parts, parts), np.repeat(phase[bad], parts)
         t = np.repeat(t[bad], parts) + inside * h
     t, h, phase, maps = (np.concatenate([part[i] for part in kept]) for i in range(4))
     order = np.argsort(t, kind="stable")
     return Mesh(t=t[order], h=h[order], phase=phase[order], maps=maps[order])
+
+
+def graded(stepper: Stepper) -> tuple[Floats, Floats, Ints]:
+    """Begins, lengths and stretches of the first steps.
+
+    Where slip in two directions begins or ends its direction turns ever faster towards r = 0: steps there grow, or
+    fall, by halves; the last before a landing is left out, what sticks being projected (:mod:`._transitions`).
+    """
+    edges = stepper.phases.t
+    begins, ends = _halvings(stepper)
+    t, h, phase = [], [], []
+    for k in range(edges.size - 1):
+        knots = edges[k : k + 2]
+        if begins[k]:
+            knots = np.concatenate([knots[:1], knots[0] + np.diff(knots) * 0.5 ** np.arange(begins[k], -1, -1)])
+        if ends[k]:
+            rest = knots[-2:]
+            knots = np.concatenate([knots[:-2], rest[1] - np.diff(rest) * 0.5 ** np.arange(ends[k] + 1)])
+        t.append(knots[:-1])
+        h.append(np.diff(knots))
+        phase.append(np.full(knots.size - 1, k))
+    return np.concatenate(t), np.concatenate(h), np.concatenate(phase).astype(np.int64)
+
+
+def _halvings(stepper: Stepper) -> tuple[Ints, Ints]:
+    """Halvings at the begin and at the end of each stretch where slip in two directions begins or ends."""
+    phases, e = stepper.phases, stepper.equations
+    h = np.diff(phases.t)
+    begins, ends = np.zeros(h.size, dtype=np.int64), np.zeros(h.size, dtype=np.int64)
+    wide = [k for k, contact in e.contacts.items() if contact.d > 1 and not contact.smooth]
+    if not wide:
+        return begins, ends
+    g = stepper.sample(np.concatenate([phases.t[:-1] + c * h for c in (0.0, 0.5, 1.0)])).g
+    for k in wide:
+        r = np.linalg.norm(g[e.rows(k)], axis=0).reshape(3, -1)
+        slips = phases.mode[k] == SLIP
+        lasts = _lasting(phases.t, phases.mode[k])
+        count = [np.ceil(np.log2(np.maximum(h / (share * lasts), 2.0))).astype(np.int64) for share in (_FIRST, _LAST)]
+        begins = np.where(slips & (r[0] <= _TINY * r[1]), np.maximum(begins, count[0]), begins)
+        ends = np.where(slips & (r[2] <= _TINY * r[1]), np.maximum(ends, count[1]), ends)
+    return begins, ends
+
+
+def _lasting(t: Floats, mode: Any) -> Floats:
+    """Of each stretch the time that the mode in it lasts."""
+    first = np.flatnonzero(np.concatenate([[True], mode[1:] != mode[:-1]]))
+    lengths = np.diff(np.append(t[first], t[-1]))
+    found: Floats = np.repeat(lengths, np.diff(np.append(first, mode.size)))
+    return found
 
 
 def _difference(off: Floats, maps: Floats, scale: Floats, n_y: int) -> Floats:

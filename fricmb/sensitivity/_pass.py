@@ -42,7 +42,7 @@ class Tangent:
         self.states = state_names(sol.names) if STATE in names else ()
         self.columns = (*self.states, *self.parameters)
         sample = piece.trajectory.sample
-        self.phases = phases_of(piece, np.asarray(sol.events.t))
+        self.phases = phases_of(piece, np.asarray(sol.events.t), sol.names.row)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, _scale(piece.rows()), self.rtol)
@@ -83,7 +83,7 @@ class Tangent:
                 i = at[phase]
                 one = transitions.happened[i]
                 self.before[one.t] = S
-                S, dt, rates = transitions.jump(i, S)
+                S, dt, rates = self._over(transitions, i, S, found, k)
                 self.moved[one.events], self.transversality[one.events] = dt, rates
                 unsafe += [int(j) for j, rate in zip(one.events, rates, strict=True) if rate < TOUCHES]
             last = phase
@@ -92,6 +92,24 @@ class Tangent:
             S[:, n_s:] += given[k]
         found[-1] = S
         self.S, self.unsafe = found, tuple(unsafe)
+
+    def _over(
+        self, transitions: Transitions, i: int, S: Floats, found: Floats, k: int
+    ) -> tuple[Floats, Floats, list[float]]:
+        """Derivatives after a transition, of its time, and transversalities.
+
+        Slip in two directions is followed to a time tau before it ends; what is projected there is off by a multiple of
+        tau, which a second projection at 2 tau tells.
+        """
+        t, end = transitions.happened[i].t, float(self.mesh.t[k - 1] + self.mesh.h[k - 1])
+        S_plus, dt, rates = transitions.jump(i, S, end)
+        tau = t - end
+        if tau <= 1e-14 * max(abs(t), 1e-300):
+            return S_plus, dt, rates
+        j = int(np.argmin(np.abs(self.mesh.t[:k] - (t - 2.0 * tau))))
+        far, far_dt, _ = transitions.jump(i, found[j], float(self.mesh.t[j]))
+        share = tau / (t - float(self.mesh.t[j]) - tau)
+        return S_plus + share * (S_plus - far), dt + share * (dt - far_dt), rates
 
     def at(self, t: Floats, *, left: Any = None) -> Floats:
         """Derivatives (n_t, n_y, columns) of the state at times; ``left``: where the values before a transition are."""
@@ -146,6 +164,3 @@ def _check(sol: Any, equations: Equations) -> None:
         raise SceneError(
             f"sensitivities: the scene has {equations.n_y} states; the limit is {MOST}, because maps of steps are dense"
         )
-    wide = [c.name for c in equations.contacts.values() if c.d > 1 and not c.smooth]
-    if wide:
-        raise SceneError(f"sensitivities: contact {wide[0]!r} in two directions is not covered")

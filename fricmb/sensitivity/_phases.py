@@ -21,7 +21,7 @@ class Phases:
     t : (n_k+1,)
         Ends of steps and times of transitions.
     mode, sign : (n_c, n_k), (m, n_k)
-        Of the contacts in each stretch; the sign of slip on each row.
+        Of the contacts in each stretch; the sign of slip in one direction, nan on the rows of contacts with two.
     """
 
     t: Floats
@@ -34,8 +34,8 @@ class Phases:
         return found
 
 
-def phases_of(piece: Any, events: Floats) -> Phases:
-    """Stretches of one piece of a run."""
+def phases_of(piece: Any, events: Floats, row: Ints) -> Phases:
+    """Stretches of one piece of a run; ``row``: first rows of contacts."""
     trajectory = piece.trajectory
     if isinstance(trajectory, KeptTrajectory):
         raise SceneError("sensitivities: a run without dense output has none; simulate with dense=True")
@@ -43,4 +43,7 @@ def phases_of(piece: Any, events: Floats) -> Phases:
     t = t[(t >= piece.t_start) & (t <= piece.t_end)]
     middle = 0.5 * (t[:-1] + t[1:])
     seen = trajectory.sample(middle)
-    return Phases(t=t, mode=seen.mode, sign=np.where(seen.g < 0.0, -1.0, 1.0))
+    sign = np.where(seen.g < 0.0, -1.0, 1.0)
+    wide = np.repeat(np.diff(row) > 1, np.diff(row))
+    sign[wide] = np.nan
+    return Phases(t=t, mode=seen.mode, sign=sign)

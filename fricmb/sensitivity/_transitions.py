@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Codes, Floats, Ints
+from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations, Field
@@ -84,6 +84,7 @@ class Transitions:
         self.equations, self.phases, self.happened, self.breakpoints = equations, phases, happened, breakpoints
         self.zero = max(_ZERO, _TOLERANCES * rtol)
         self.notes: list[str] = []
+        self.sample = sample
         self._samples: Samples | None = None
         if happened:
             times = np.array([one.t for one in happened])
@@ -93,12 +94,29 @@ class Transitions:
             self.before = equations.field(before, phases.mode[:, begin - 1], phases.sign[:, begin - 1])
             self.after = equations.field(self._samples, phases.mode[:, begin], phases.sign[:, begin])
             self.speeds = np.abs(self._samples.v).max(axis=1)
+            self._beginnings()
 
-    def jump(self, i: int, S: Floats) -> tuple[Floats, Floats, list[float]]:
-        """Derivatives after happening i from those before (n_y, n_p); of its time, and transversalities by event."""
+    def _beginnings(self) -> None:
+        """Fields where slip in two directions begins or has just ended, along its direction at r = 0."""
+        for i, one in enumerate(self.happened):
+            for k, kind in zip(one.contacts, one.kinds, strict=True):
+                if self.equations.contacts[k].d > 1 and kind in ("stick", "slip"):
+                    ends = kind == "stick"
+                    phase = one.phase - 1 if ends else one.phase
+                    samples, mode = _one(self._samples, i), self.phases.mode[:, [phase]]
+                    sign = direction_at_rest(self.equations, samples, mode, self.phases.sign[:, [phase]], k)
+                    own = self.equations.field(samples, mode, sign)
+                    _put(self.before if ends else self.after, i, own)
+
+    def jump(self, i: int, S: Floats, t: float) -> tuple[Floats, Floats, list[float]]:
+        """Derivatives after happening i from those before (n_y, n_p); of its time, and transversalities by event.
+
+        ``t``: when S is meant, not later.
+        """
         one = self.happened[i]
-        triggers = [self._trigger(i, j) for j in range(len(one.contacts))]
+        triggers = [self._trigger(i, j, t) for j in range(len(one.contacts))]
         rates = [trigger.transversality for trigger in triggers]
+        self._say_unsafe(i, triggers)
         least = min(triggers, key=lambda trigger: trigger.residual)
         chosen = [trigger for trigger in triggers if trigger.residual <= self.zero]
         if not chosen and np.any(np.abs(self.breakpoints - one.t) <= 1e-12 * max(1.0, abs(one.t))):
@@ -108,11 +126,51 @@ class Transitions:
         if len(chosen) > 1:
             self._say_together(one, chosen, dts)
         found, f = S, self.before.y_dot[i]
-        for trigger, dt in zip(chosen[:-1], dts[:-1], strict=True):
-            after = self._with(i, trigger, f)
-            found, f = found + np.outer(f - after, dt), after
-        found = found + np.outer(f - self.after.y_dot[i], dts[-1])
+        for trigger, dt in zip(chosen, dts, strict=True):
+            last = trigger is chosen[-1]
+            after = self.after.y_dot[i] if last else self._with(i, trigger)
+            if self._lands(i, trigger):
+                # its direction has settled: all that is left of the slip goes
+                stops = self.after.y_dot[i] if not last else self._with(i, trigger)
+                found = self._stopped(i, trigger, found) + np.outer(stops - after, dt)
+            else:
+                found = found + np.outer(f - after, dt)
+            f = after
         return found, dts[0], rates
+
+    def _say_unsafe(self, i: int, triggers: list[Trigger]) -> None:
+        """Notes on transitions that only touch their condition, and on releases that are not determined."""
+        one, names = self.happened[i], self.equations.names.contacts
+        for trigger, kind in zip(triggers, one.kinds, strict=True):
+            where = f"at t = {one.t:.10g} contact {names[trigger.contact]!r}"
+            if trigger.transversality < TOUCHES:
+                self.notes.append(
+                    f"{where}: a transition ({kind}) that only touches its condition (transversality"
+                    f" {trigger.transversality:.1e}); there is no sound derivative of what follows"
+                )
+            elif kind == "slip" and self._indeterminate(i):
+                self.notes.append(
+                    f"{where}: lets go while stuck contacts hold the same motion, which leaves their forces open;"
+                    " derivatives of what follows are not sound"
+                )
+
+    def _indeterminate(self, i: int) -> bool:
+        """Whether forces in stick before a happening are not determined."""
+        e, mode = self.equations, self.phases.mode[:, self.happened[i].phase - 1]
+        stuck = [k for k, contact in e.contacts.items() if not contact.smooth and mode[k] == STICK]
+        D = e.projector(self.before.found, stuck)[2]
+        return bool(np.linalg.matrix_rank(D, tol=1e-10 * np.abs(D).max(initial=0.0)) < len(D))
+
+    def _lands(self, i: int, trigger: Trigger) -> bool:
+        """Whether slip in two directions ends."""
+        one = self.happened[i]
+        kind = one.kinds[int(np.flatnonzero(one.events == trigger.event)[0])]
+        return kind == "stick" and self.equations.contacts[trigger.contact].d > 1
+
+    def _stopped(self, i: int, trigger: Trigger, S: Floats) -> Floats:
+        """Derivatives where a contact sticks with those that stick already."""
+        mode, sign = self._modes(i, trigger)
+        return held(self.equations, _one(self._samples, i), mode, sign, S)
 
     def _moved(self, trigger: Trigger, S: Floats) -> Floats:
         """Derivatives (n_p,) of the time at which an event function vanishes."""
@@ -128,21 +186,24 @@ class Transitions:
             " from there on are one-sided"
         )
 
-    def _with(self, i: int, trigger: Trigger, f: Floats) -> Floats:
+    def _with(self, i: int, trigger: Trigger) -> Floats:
         """Rates when, of several that change at once, those up to a trigger have changed."""
+        mode, sign = self._modes(i, trigger)
+        found: Floats = self.equations.field(_one(self._samples, i), mode[:, None], sign[:, None]).y_dot[0]
+        return found
+
+    def _modes(self, i: int, trigger: Trigger) -> tuple[Codes, Floats]:
         one = self.happened[i]
         mode, sign = self.phases.mode[:, one.phase - 1].copy(), self.phases.sign[:, one.phase - 1].copy()
         for j, k in enumerate(one.contacts):
             if one.events[j] <= trigger.event:
-                own = slice(int(self.equations.names.row[k]), int(self.equations.names.row[k + 1]))
+                own = self.equations.rows(k)
                 mode[k], sign[own] = self.phases.mode[k, one.phase], self.phases.sign[own, one.phase]
-        samples = _one(self._samples, i)
-        found: Floats = self.equations.field(samples, mode[:, None], sign[:, None]).y_dot[0]
-        return found
+        return mode, sign
 
     # ---- event functions
 
-    def _trigger(self, i: int, j: int) -> Trigger:
+    def _trigger(self, i: int, j: int, t: float) -> Trigger:
         one = self.happened[i]
         k, kind = one.contacts[j], one.kinds[j]
         along = self._along(self.before, i)
@@ -150,7 +211,30 @@ class Transitions:
             return self._release(i, int(one.events[j]), k, along)
         if kind in ("open", "close"):
             return self._opening(i, int(one.events[j]), k, along)
-        return self._rest(i, int(one.events[j]), k, along)
+        found = self._rest(i, int(one.events[j]), k, along)
+        return self._landing(i, found, along, t) if self._lands(i, found) else found
+
+    def _landing(self, i: int, trigger: Trigger, along: Floats, t: float) -> Trigger:
+        """Slip in two directions ends: how long it still takes, and what of it g makes.
+
+        With constant a and c = mu_k N it lasts for T = (r + g^T D^-1 a/c)/(c n^T D n - a^T D^-1 a/c), whatever its
+        direction, where D is a multiple of the unit matrix, and else once its direction has settled: T' = -1 along
+        g' = a - c D n.
+        """
+        e, k = self.equations, trigger.contact
+        slopes = np.array([self._row(dual, i)[1] for dual in self.before.found.g[k]])
+        W = slopes[:, e.n : 2 * e.n]
+        n = -(slopes @ along) / np.linalg.norm(slopes @ along)
+        D = W @ e.free(self.before.found, self.phases.mode[:, self.happened[i].phase - 1]) @ W.T
+        N, _ = self._row(self.before.found.N[k], i)
+        size = e.contacts[k].beginning(Dual(value=N), np.ones((len(n), 1)))[0].value
+        c = -float(np.ravel(size)[0])
+        held_by = np.linalg.solve(D, slopes @ along + c * D @ n) / c
+        g = self.sample(np.array([t])).g[e.rows(k), 0]
+        length = float(np.linalg.norm(g))
+        turned = g / length if length > 0.0 else n
+        whole_rate = c * float(n @ D @ n) - c * float(held_by @ D @ held_by)
+        return replace(trigger, slopes=(turned + held_by) @ slopes / whole_rate, rate=-1.0)
 
     def _along(self, field: Field, i: int) -> Floats:
         """Rates of all columns along the motion: what slopes are multiplied with."""
@@ -186,14 +270,16 @@ class Transitions:
     def _rest(self, i: int, event: int, k: int, along: Floats) -> Trigger:
         """Slip ends or turns round: g = 0."""
         rows = [self._row(dual, i) for dual in self.before.found.g[k]]
-        g, slopes = rows[0]
-        rate = float(slopes @ along)
+        g, slopes = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+        rates = slopes @ along
+        n = np.ones(1) if g.size == 1 else -rates / max(float(np.linalg.norm(rates)), 1e-300)
         limit, _ = self._row(self.before.found.limit[k], i)
-        W = slopes[self.equations.n : 2 * self.equations.n]
+        W = (n @ slopes)[self.equations.n : 2 * self.equations.n]
         scale = float(W @ self.equations.inverse @ W) * max(limit, 1e-300)
-        speed = float(np.abs(W) @ self.speeds) + 1e-300
+        speed = float(np.abs(slopes[:, self.equations.n : 2 * self.equations.n]).max(axis=0) @ self.speeds) + 1e-300
+        rate = float(n @ rates)
         return Trigger(
-            event=event, contact=k, residual=abs(g) / speed, slopes=slopes, rate=rate or 1e-300,
+            event=event, contact=k, residual=float(np.linalg.norm(g)) / speed, slopes=n @ slopes, rate=rate or 1e-300,
             transversality=abs(rate) / scale,
         )  # fmt: skip
 
@@ -207,6 +293,40 @@ class Transitions:
             event=event, contact=k, residual=abs(N) / max(largest, 1e-300), slopes=slopes, rate=rate or 1e-300,
             transversality=abs(rate) / parts,
         )  # fmt: skip
+
+
+def direction_at_rest(e: Equations, samples: Samples, mode: Codes, sign: Floats, k: int) -> Floats:
+    """Signs in which those of contact k are the direction in which its slip begins, or has just ended.
+
+    (mu_k N D + rho I) n = a with |n| = 1: a is the relative acceleration without its friction, rho the growth of r,
+    below 0 in a landing, where directions settle.
+    """
+    own, found = e.rows(k), sign.copy()
+    found[own] = 0.0
+    field = e.field(samples, mode, found)
+    slopes = whole(field.found.g[k], 1, e.columns)[1][0]
+    a = slopes @ np.concatenate([field.y_dot[0], np.zeros(e.columns - e.n_y - 1), [1.0]])
+    W = slopes[:, e.n : 2 * e.n]
+    size = -e.contacts[k].beginning(field.found.N[k], np.ones((len(a), 1)))[0].value
+    values, vectors = np.linalg.eigh(float(np.ravel(size)[0]) * (W @ e.free(field.found, mode[:, 0]) @ W.T))
+    parts = vectors.T @ a
+    low, high = -values[0], float(np.linalg.norm(a))
+    for _ in range(200):
+        rho = 0.5 * (low + high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            longer = not np.linalg.norm(parts / (values + rho)) <= 1.0
+        low, high = (rho, high) if longer else (low, rho)
+    n = vectors @ (parts / (values + high))
+    found[own, 0] = n / max(float(np.linalg.norm(n)), 1e-300)
+    return found
+
+
+def _put(field: Field, i: int, own: Field) -> None:
+    """The one time of a field into another's time number i."""
+    field.a[i], field.a_slopes[i] = own.a[0], own.a_slopes[0]
+    field.rate[i], field.rate_slopes[i] = own.rate[0], own.rate_slopes[0]
+    for k, (F, slopes) in own.F.items():
+        field.F[k][0][i], field.F[k][1][i] = F[0], slopes[0]
 
 
 def held(equations: Equations, samples: Samples, mode: Codes, sign: Floats, S: Floats) -> Floats:

@@ -1,0 +1,80 @@
+"""Derivatives through slip in two directions: the brake against certified digits, other cases against differences."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from fricmb import models
+
+from .differences import worst
+
+#: Derivatives of case 2 at t = 20 and of its transitions, from an event-driven solution in desingularised time,
+#: confirmed by differences of runs; columns: friction mu N, rotor mass R, initial velocities, frequencies.
+REFERENCE = json.loads(Path(__file__).with_name("brake4dof_case2.json").read_text())
+NAMES = (
+    "lining.normal_force", "rotor.mass", "rotor.velocity.x", "rotor.velocity.y", "k1y.stiffness", "k2y.stiffness",
+)  # fmt: skip
+
+
+def as_in_the_reference(values):
+    """Derivatives by mass, frequencies instead of stiffnesses: k1y = Omega1^2, k2y = R Omega2^2."""
+    slow, fast = REFERENCE["values"]["Omega2"], REFERENCE["values"]["Omega1"]
+    found = values.copy()
+    found[:, 1] += slow**2 * values[:, 5]
+    found[:, 4] *= 2.0 * fast
+    found[:, 5] *= 2.0 * REFERENCE["values"]["R"] * slow
+    return found
+
+
+@pytest.mark.parametrize("method", ["auto", "radau"])
+def test_brake(method):
+    sol = fm.simulate(models.brake4dof(case=2), t_end=20.0, rtol=1e-8, method=method, sensitivities=NAMES)
+    expected = np.array(REFERENCE["S"])[:, :6]
+    error = np.abs(as_in_the_reference(sol.derivatives.end) - expected) / np.abs(expected).max(axis=0)
+    assert error.max() < 1e-6
+    assert [event.kind for event in sol.events] == [kind for kind, _, _ in REFERENCE["events"]]
+    moved = as_in_the_reference(np.array([[event.sensitivity(name) for name in NAMES] for event in sol.events]))
+    expected = np.array([row for _, _, row in REFERENCE["events"]])[:, :6]
+    error = np.abs(moved - expected) / np.abs(expected).max(axis=0)
+    assert error.max() < (1e-6 if method == "auto" else 1e-5)
+
+
+def puck(law):
+    """A block on a belt that moves along x, pulled along y."""
+    belt, block = fm.Driven("belt", velocity={"x": 0.3}), fm.Body("block", mass=1.0, axes="xy", velocity={"y": 0.4})
+    springs = [fm.Spring("kx", block, axis="x", stiffness=1.0), fm.Spring("ky", block, axis="y", stiffness=2.3)]
+    rub = fm.Contact("rub", block, belt, law=law, normal_force=1.0, axes="xy")
+    return fm.Scene("puck", [block, belt, *springs, rub])
+
+
+NAMES_OF_PUCK = ("belt.velocity.x", "rub.normal_force", "kx.stiffness", "block.velocity.y", "block.mass")
+
+
+@pytest.mark.parametrize("law", [fm.laws.Coulomb(mu_s=0.5), fm.laws.Coulomb(mu_s=0.6, mu_k=0.4)])
+def test_block_on_a_belt(law):
+    found = worst(puck(law), NAMES_OF_PUCK, rtol=1e-8, t_end=12.0)
+    assert set(found) == set(NAMES_OF_PUCK)
+    assert max(found.values()) < 1e3
+
+
+def test_landing_whose_direction_hardly_settles():
+    """Towards the second landing the direction settles like the fifth root of time: its time is known less well."""
+    scene = puck(fm.laws.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.2))
+    found = worst(scene, NAMES_OF_PUCK, rtol=1e-8, events=False, t_end=12.0)
+    assert set(found) == set(NAMES_OF_PUCK)
+    assert max(found.values()) < 1e3
+    found = worst(scene, NAMES_OF_PUCK, rtol=1e-8, t_end=12.0)
+    assert max(found.values()) * 1e-8 < 2e-4
+
+
+def test_slip_that_ends_is_projected():
+    """M-orthogonal projection: S_v+ = S_v- - M^-1 W D^-1 (W^T S_v- - w_p)."""
+    sol = fm.simulate(puck(fm.laws.Coulomb(mu_s=0.5)), t_end=12.0, rtol=1e-10, sensitivities=("belt.velocity.x",))
+    stick = next(event for event in sol.events if event.kind == "stick")
+    i = int(np.searchsorted(sol.t, stick.t)) + 1
+    assert sol.mode("rub")[i] == 0
+    assert sol.sensitivity("block.x.velocity", "belt.velocity.x")[i] == pytest.approx(1.0, abs=1e-12)
+    assert sol.sensitivity("block.y.velocity", "belt.velocity.x")[i] == pytest.approx(0.0, abs=1e-12)
