@@ -10,7 +10,7 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.trajectory import Samples
-from fricmb.scene import Contact, Joint, RigidBody
+from fricmb.scene import Body, Contact, Joint, ModalBody, RigidBody
 from fricmb.sensitivity._contacts import Rubs
 from fricmb.sensitivity._found import Found, whole
 from fricmb.sensitivity._motions import Frame, Moment
@@ -55,7 +55,11 @@ class Equations:
         mechanics = piece.mechanics
         scene = mechanics.placed
         if scene.is_mechanism:
-            refuse(next(part for part in scene.parts if isinstance(part, RigidBody | Joint)), "a mechanism")
+            turning = [part for part in scene.parts if isinstance(part, RigidBody | Joint)]
+            refuse((turning or list(scene.parts))[0], "a mechanism")
+        for body in scene.bodies:
+            if not isinstance(body, Body | ModalBody):
+                refuse(body, f"a {type(body).__name__}")
         index = dict(names.dof_index)
         self.names, self.scene = names, scene
         self.n, self.n_z = len(index), int(names.z_start[-1])

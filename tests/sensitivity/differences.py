@@ -21,7 +21,7 @@ def _run(scene: Any, name: str, value: float, options: dict[str, Any]) -> Any:
     return fm.simulate(scene, parameters={name: value}, rtol=1e-12, **options)
 
 
-def difference(scene: Any, name: str, *, step: float = 2e-4, **options: Any) -> tuple[np.ndarray, np.ndarray] | None:
+def difference(scene: Any, name: str, *, step: float = 2e-3, **options: Any) -> tuple[np.ndarray, np.ndarray] | None:
     """Richardson's difference of the state at the end and of event times, and how sure it is.
 
     None where the order of events changes between the runs: there is no difference that means anything.
@@ -50,11 +50,11 @@ def derived(sol: Any, name: str) -> np.ndarray:
 
 
 def worst(
-    scene: Any, names: Sequence[str], *, rtol: float, step: float = 2e-4, events: bool = True, **options: Any
+    scene: Any, names: Sequence[str], *, rtol: float, step: float = 2e-3, events: bool = True, **options: Any
 ) -> dict[str, float]:
     """Largest error of each derivative in tolerances of its size, less what the difference is unsure by.
 
-    ``events``: of the times of events as well.  A difference that is no surer than 1000 tolerances says nothing.
+    Sizes are at least 0.01, scenes being of the order of 1.  ``events``: of the times of events as well.  A difference that is no surer than 1000 tolerances says nothing.
     """
     sol = fm.simulate(scene, sensitivities=tuple(names), rtol=rtol, **options)
     found = {}
@@ -66,11 +66,12 @@ def worst(
         n = len(sol.dof_names)
         own = derived(sol, name)
         groups = (slice(0, n), slice(n, 2 * n), slice(2 * n, None))
-        errors = [0.0]
+        errors, least = [0.0], 1e-2 * float(np.abs(value).max()) + 1e-2
         for group in groups if events else groups[:2]:
             if own[group].size:
-                assert (unsure[group] <= 1e3 * rtol * (np.abs(value[group]).max() + 1e-3)).all(), (name, unsure)
+                size = max(float(np.abs(value[group]).max()), least)
+                assert (unsure[group] <= 1e3 * rtol * size).all(), (name, unsure)
                 off = np.maximum(np.abs(own[group] - value[group]) - 3.0 * unsure[group], 0.0)
-                errors.append(float(off.max() / (np.abs(value[group]).max() + 1e-3)))
+                errors.append(float(off.max() / size))
         found[name] = max(errors) / rtol
     return found
