@@ -54,7 +54,8 @@ def worst(
 ) -> dict[str, float]:
     """Largest error of each derivative in tolerances of its size, less what the difference is unsure by.
 
-    Sizes are at least 0.01, scenes being of the order of 1.  ``events``: of the times of events as well.  A difference that is no surer than 1000 tolerances says nothing.
+    Sizes are at least 0.01, scenes being of the order of 1.  ``events``: of the times of events as well.  A difference
+    that is no surer than 1000 tolerances says nothing.
     """
     sol = fm.simulate(scene, sensitivities=tuple(names), rtol=rtol, **options)
     found = {}
