@@ -4,8 +4,8 @@ Which number matters for the period?
 
 The period of stick-slip depends on belt speed, friction and stiffness. Its derivatives come with the run: each event
 knows how its time moves with a parameter. Multiplied by the parameter and divided by the period,
-:math:`(p/T)\,dT/dp`, they say by how many per cent the period changes for one per cent. Belt speed and stiffness shorten
-it, the drop of friction lengthens it.
+:math:`(p/T)\,dT/dp`, they say by how many per cent the period changes for one per cent. Belt speed and stiffness
+shorten it, the drop of friction lengthens it.
 """
 
 import matplotlib.pyplot as plt
