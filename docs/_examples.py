@@ -25,6 +25,11 @@ scene = fm.models.belt_oscillator(law=law, belt=0.2)
 _MODES = _FALLING + """
 modes = fm.analysis.complex_eigenvalues(scene, over="belt.velocity.x", values=[0.05, 0.1, 0.2, 0.4, 0.8])
 """
+_CYCLE = """
+law = fm.laws.HyperbolicStribeck(mu_s=1.0, mu_k=0.0, delta=3.0)
+scene = fm.models.belt_oscillator(belt=2.0, damping=0.1, law=law)
+cycle = fm.analysis.limit_cycle(scene)
+"""
 _PENDULUM = """
 ends = {"pin": (-0.5, 0.0), "tip": (0.5, 0.0)}
 arm = fm.RigidBody("arm", mass=1.0, inertia=0.1, position=(0.5, 0.0), points=ends)
@@ -328,9 +333,78 @@ figure = fm.plot.stability(found)
 """,
     "analysis.energy_ledger": _RUN + "ledger = fm.analysis.energy_ledger(sol)\nprint(ledger.phases(\"sole\")[:2])\n"
         "figure = sol.plot.energy()\n",
+    "analysis.limit_cycle": _CYCLE + """
+print(cycle)
+print(cycle.multipliers, cycle.amplitude("mass.x"))
+print(cycle.sensitivity("period", "belt.velocity.x"), cycle.sensitivity("mass.x", "belt.velocity.x"))
+""",
+    "analysis.continue_cycle": _CYCLE + """
+branch = fm.analysis.continue_cycle(cycle, "belt.velocity.x", to=3.0, progress=False)
+print(branch)
+print(branch.special[0].residual)
+figure = branch.plot.diagram("mass.x")
+""",
+    "analysis.Flip": """
+import sympy
+
+mass = fm.Body("mass", mass=1.0)
+belt = fm.Driven("belt", velocity={"x": 0.2})
+law = fm.laws.HyperbolicStribeck(mu_s=1.0, mu_k=0.0, delta=3.0)
+omega = fm.parameter("omega", 0.73)
+parts = [
+    mass, belt, fm.Spring("spring", mass, axis="x", stiffness=1.0), fm.Damper("damper", mass, axis="x", damping=0.05),
+    fm.Contact("sole", mass, belt, law=law, normal_force=1.0),
+    fm.Force("drive", mass, axis="x", value=sympy.cos(omega * fm.t)),
+]
+cycle = fm.analysis.limit_cycle(fm.Scene("forced", parts))
+branch = fm.analysis.continue_cycle(cycle, "omega", to=0.715, progress=False)
+print(branch.special[0])
+doubled = branch.switch(branch.special[0], points=4, progress=False)
+print(doubled.cycles[-1])
+""",
+    "analysis.lyapunov": """
+scene = fm.models.belt_oscillator()
+print(fm.analysis.lyapunov(scene, t_end=100.0, intervals=50, progress=False))  # each landing cuts a direction off
+""",
+    "analysis.poincare_section": _RUN + """
+found = fm.analysis.poincare_section(sol, ("mass.x.velocity", 0.0), discard=0.3)
+print(found.t, found["mass.x"])
+""",
+    "analysis.bifurcation_diagram": """
+import numpy as np
+
+scene = fm.models.belt_oscillator()
+found = fm.analysis.bifurcation_diagram(
+    scene, "belt.velocity.x", np.linspace(0.05, 0.5, 10), t_end=300.0, signal="mass.x",
+    section=("mass.x.velocity", 0.0), workers=1, progress=False,
+)
+print(found.count())
+figure = found.plot.diagram()
+""",
+    "fit": """
+import numpy as np
+
+t = np.linspace(0.5, 60.0, 160)
+scene = fm.models.belt_oscillator(belt=0.4, mu_s=1.4, mu_k=0.9, damping=0.15)
+x = fm.simulate(scene, t_end=60.0, t_eval=t, rtol=1e-9)["mass.x"]
+measured = x + 0.02 * np.random.default_rng(1).standard_normal(160)
+
+guess = fm.models.belt_oscillator(belt=0.4, damping=0.1)
+bounds = {"sole.law.mu_s": (1.0, 2.0), "sole.law.mu_k": (0.5, 1.2), "damper.damping": (0.0, 0.5)}
+found = fm.fit(guess, {"t": t, "mass.x": measured}, parameters=bounds, progress=False)
+print(found)
+figure = found.plot.residuals()
+""",
     "analysis.modal_energy": _BRAKE + "print(fm.analysis.modal_energy(sol).omega)\n",
 } | _examples_space.EXAMPLES
 SHARED = {
+    "analysis.Cycle": "analysis.limit_cycle", "analysis.Branch": "analysis.continue_cycle",
+    "analysis.Special": "analysis.continue_cycle", "analysis.Fold": "analysis.continue_cycle",
+    "analysis.StickDisappears": "analysis.continue_cycle", "analysis.StickAppears": "analysis.continue_cycle",
+    "analysis.Grazing": "analysis.continue_cycle", "analysis.NeimarkSacker": "analysis.Flip",
+    "analysis.Lyapunov": "analysis.lyapunov", "analysis.Poincare": "analysis.poincare_section",
+    "analysis.BifurcationDiagram": "analysis.bifurcation_diagram", "Fit": "fit", "plot.FitPlots": "fit",
+    "plot.BranchPlots": "analysis.continue_cycle", "plot.DiagramPlots": "analysis.bifurcation_diagram",
     "Parameter": "parameter", "coordinate": "Force", "speed": "Force", "PointDamper": "PointSpring",
     "normal.Spring": "normal.NormalLaw", "normal.Constant": "Contact", "ground_point": "Rod", "Gravity": "RigidBody",
     "TorsionDamper": "TorsionSpring", "Joint": "Revolute", "audit.Check": "audit.Audit",

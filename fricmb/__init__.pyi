@@ -6,6 +6,8 @@ from . import normal as normal
 from . import plot as plot
 from . import space as space
 from . import testing as testing
+from ._fit import Fit as Fit
+from ._fit import fit as fit
 from ._simulate import simulate as simulate
 from ._sweep import SweepResults as SweepResults
 from ._sweep import sweep as sweep

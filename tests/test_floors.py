@@ -19,7 +19,7 @@ FLOORS = (
     {"equations"},
     {"system"},
     {"simulate", "sweep"},
-    {"analysis", "audit", "sensitivity"},
+    {"analysis", "audit", "fit", "sensitivity"},
     {"plot"},
     {"models", "testing", "bench", "precompile"},
     {"cli"},

@@ -1,3 +1,6 @@
+from ._branches import BranchPlots as BranchPlots
+from ._branches import DiagramPlots as DiagramPlots
+from ._fits import FitPlots as FitPlots
 from ._law import law as law
 from ._law import law_figure as law_figure
 from ._solution import SolutionPlots as SolutionPlots
@@ -21,6 +24,9 @@ __all__ = [
     "ORANGE",
     "SCENE_UNITS",
     "THIN",
+    "BranchPlots",
+    "DiagramPlots",
+    "FitPlots",
     "SolutionPlots",
     "Units",
     "eigenvalues",

@@ -1,0 +1,241 @@
+"""Friction parameters from measurements, by least squares on exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from fricmb._fit._data import Measured, read
+from fricmb._fit._model import Model
+from fricmb._fit._result import Fit
+from fricmb._fit._uncertainty import uncertainty
+from fricmb.analysis._progress import bar
+from fricmb.errors import SceneError, unknown_name
+from fricmb.integrate.problem import Floats
+from fricmb.scene import Scene
+
+Loss = Literal["linear", "soft_l1", "huber", "cauchy", "arctan"]
+#: Parts of the data that are fitted one after the other where the window grows.
+_WINDOWS = (0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.8, 1.0)
+#: Residuals of all the data that are this many times those of a part of them: the fit is in a false minimum.
+_FALSE = 1.4
+
+
+def fit(
+    scene: Scene,
+    data: Any,
+    *,
+    parameters: Mapping[str, tuple[float, ...]],
+    signals: str | Iterable[str] | None = None,
+    window: str | float = "grow",
+    sigma: float | Mapping[str, Any] | None = None,
+    priors: Mapping[str, tuple[float, float]] | None = None,
+    loss: Loss = "linear",
+    starts: int = 6,
+    rtol: float = 1e-8,
+    progress: bool = True,
+    **options: Any,
+) -> Fit:
+    """Identify parameters of a scene from measured signals, transition times or periods.
+
+    Parameters
+    ----------
+    scene : Scene
+    data : dict, array (n_t, 1 + n_signals) or pandas.DataFrame
+        Signals over times: ``{"t": t, "mass.x": x, "mass.x.velocity": v}``, an array whose first column is the time, or
+        a table with the times as its index or a column "t"; nan: not measured.  In a dict also the times of transitions
+        in their order from the start on, ``{"sole.stick": times}`` (kinds as in ``sol.events``), and ``"period"``, one
+        or several measured periods of the limit cycle.
+    parameters : dict
+        Bounds by the names of ``scene.parameters``, ``{"sole.law.mu_s": (1.0, 2.0)}``, or (low, high, first guess);
+        without a guess the scene's value if it lies within, else the middle.  Initial values are parameters as well.
+    signals : names, optional
+        Columns to use; for an array the names of its columns.  Default: all.
+    window : "grow", "whole" or float
+        A trial run soon gets out of step with the data, and the sum of squares has many minima; "grow" fits the first
+        part of the data and goes on from there to all of them.  A number: use the data until that time.
+    sigma : float or dict, optional
+        Standard errors of the measurements, one for all, or by name a number or (n,).  Default: the same for all values
+        of a quantity, found from the residuals; several quantities then count by their extents.
+    priors : dict, optional
+        What is known before, ``{"sole.law.mu_k": (mean, standard deviation)}``; needs ``sigma``.
+    loss : str
+        "linear", or one of those of :func:`scipy.optimize.least_squares` that let outliers count less, with ``sigma``.
+    starts : int
+        Largest number of starts within the bounds, after the first guess: another is tried while all of the data are
+        fitted much worse than their first part, which is a false minimum.
+    rtol : float
+        Accuracy of the runs.
+    progress : bool
+        Show a bar on the terminal.
+    **options
+        As :func:`fricmb.simulate`.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    SceneError
+        For data, names or bounds that cannot be.
+    IntegrationError
+        If a run fails.
+
+    Notes
+    -----
+    :func:`scipy.optimize.least_squares` within the bounds, on derivatives that are exact through transitions.  The
+    covariance is that of the linearised problem, ``s^2 (J^T J)^-1``; with ``sigma`` given s is 1.
+    """
+    bounds, first = _bounds(scene, parameters)
+    names = tuple(bounds)
+    measured = read(data, signals, sigma)
+    _check(priors, sigma, names)
+    model = Model(scene=scene, names=names, measured=measured, options={"rtol": rtol, **options})
+    stages = _stages(measured, window, len(names))
+    low, high = np.array(list(bounds.values())).T
+    rng, best = np.random.default_rng(0), None
+    with bar(len(stages), "window", "fit", progress) as shown:
+        for i in range(starts):
+            p = first if i == 0 else low + (high - low) * rng.random(low.size)
+            found = _through(model, stages, p, bounds, priors or {}, loss, shown if i == 0 else None)
+            if best is None or found.cost < best.cost:
+                best = found
+            if found.plausible:
+                break
+    assert best is not None
+    result = _result(best.model, model.runs, best.p, best.J, bounds, sigma is not None)
+    doubt = f"all of the data are fitted worse than a part of them, from {starts} starts: a false minimum, or the scene"
+    return result if best.plausible else replace(result, notes=(*result.notes, f"{doubt} lacks something"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Found:
+    """A fit through all windows; ``plausible``: as good over all the data as over their first parts."""
+
+    model: Model
+    p: Floats
+    J: Floats
+    cost: float
+    plausible: bool
+
+
+def _through(
+    model: Model, stages: list[float], p: Floats, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss,
+    shown: Any,
+) -> _Found:  # fmt: skip
+    """From the first window to the last, each started where the one before has ended."""
+    noise = []
+    for i, t in enumerate(stages):
+        part = model.until(t)
+        p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
+        model.runs += part.runs
+        model.cycle = part.cycle
+        residuals = part.residuals(p)
+        if residuals.size > 3 * p.size or i == len(stages) - 1:
+            noise.append(float(np.sqrt(residuals @ residuals / max(residuals.size - p.size, 1))))
+        if shown is not None:
+            shown.update()
+    plausible = noise[-1] <= max(_FALSE * min(noise), 1e-6 * max(noise), 1e-12)
+    return _Found(model=part, p=p, J=J, cost=noise[-1], plausible=plausible)
+
+
+def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float]], Floats]:
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise SceneError(f"parameters: got {parameters!r}; expected a dict of names and bounds (low, high)")
+    known, bounds, first = scene.parameters, {}, []
+    for name, given in parameters.items():
+        if name not in known:
+            raise unknown_name("parameter", name, known)
+        try:
+            low, high, *guess = (float(value) for value in given)
+            if not low < high or not np.isfinite([low, high]).all() or len(guess) > 1:
+                raise ValueError
+        except (TypeError, ValueError):
+            raise SceneError(
+                f"parameters: {name} has {given!r}; expected (low, high) or (low, high, first guess), low < high"
+            ) from None
+        value = guess[0] if guess else float(known[name])
+        inside = low < value < high
+        if guess and not inside:
+            raise SceneError(f"parameters: the first guess {value:g} of {name} lies outside {low:g} to {high:g}")
+        bounds[name] = (low, high)
+        first.append(value if inside else 0.5 * (low + high))
+    return bounds, np.array(first)
+
+
+def _check(priors: Any, sigma: Any, names: tuple[str, ...]) -> None:
+    for name, given in (priors or {}).items():
+        if name not in names:
+            raise unknown_name("parameter in priors", name, names)
+        if np.shape(given) != (2,) or not given[1] > 0.0:
+            raise SceneError(f"priors: {name} has {given!r}; expected (mean, standard deviation > 0)")
+    if priors and sigma is None:
+        raise SceneError("priors: what is known before can be weighed only against known errors; give sigma=")
+
+
+def _stages(measured: tuple[Measured, ...], window: Any, n_p: int) -> list[float]:
+    """Ends of the windows."""
+    t = np.sort(np.concatenate([m.t for m in measured if m.kind != "period"] + [np.zeros(0)]))
+    if not t.size or window == "whole":
+        return [np.inf]
+    if window != "grow":
+        if isinstance(window, str) or not (np.isfinite(window) and window >= t[0]):
+            raise SceneError(f'window: got {window!r}; expected "grow", "whole" or a time of at least {t[0]:g}')
+        return [float(window)]
+    begin, end = min(0.0, float(t[0])), float(t[-1])
+    ends = [begin + share * (end - begin) for share in _WINDOWS]
+    return [*(e for e in ends[:-1] if (t <= e).sum() > n_p), np.inf]
+
+
+def _solve(
+    model: Model, p: Floats, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss, last: bool
+) -> tuple[Floats, Floats]:
+    """Least squares in one window: values, and the Jacobian there."""
+    from scipy.optimize import least_squares
+
+    low, high = np.array(list(bounds.values())).T
+    known = [(model.names.index(name), *given) for name, given in priors.items()]
+    prior_J = np.array([np.eye(len(p))[i] / std for i, _, std in known]).reshape(len(known), len(p))
+
+    def residuals(x: Floats) -> Floats:
+        return np.concatenate([model.residuals(x), [(x[i] - mean) / std for i, mean, std in known]])
+
+    def jacobian(x: Floats) -> Floats:
+        return np.concatenate([model.jacobian(x), prior_J])
+
+    tight = 1e-12 if last else 1e-4
+    found = least_squares(
+        residuals, np.clip(p, low + 1e-9 * (high - low), high - 1e-9 * (high - low)), jac=jacobian, bounds=(low, high),
+        x_scale=high - low, loss=loss, xtol=tight, ftol=tight, gtol=tight, max_nfev=200,
+    )  # fmt: skip
+    return np.asarray(found.x), jacobian(found.x)
+
+
+def _result(
+    model: Model, runs: int, p: Floats, J: Floats, bounds: Mapping[str, tuple[float, float]], absolute: bool
+) -> Fit:
+    residuals = model.residuals(p)
+    found = uncertainty(J, model.names)
+    freedom = max(residuals.size - p.size, 1)
+    noise = float(np.sqrt(residuals @ residuals / freedom))
+    known = np.isfinite(found.covariance)  # what is not determined is so without noise as well
+    covariance = np.where(known, np.where(known, found.covariance, 0.0) * (1.0 if absolute else noise**2), np.inf)
+    notes = list(found.notes)
+    for name, value, (low, high) in zip(model.names, p.tolist(), bounds.values(), strict=True):
+        if min(value - low, high - value) < 1e-6 * (high - low):
+            notes.append(f"{name} lies at its bound {low if value - low < high - value else high:g}")
+    places = np.cumsum([0] + [m.x.size for m in model.measured])
+    return Fit(
+        values=dict(zip(model.names, p.tolist(), strict=True)),
+        std=dict(zip(model.names, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
+        covariance=covariance, condition=found.condition, noise=noise, scene=model.with_values(p),
+        solution=model.run(p), measured=model.measured, notes=tuple(notes), runs=runs,
+        residuals={
+            m.name: residuals[a:b] * m.sigma
+            for m, a, b in zip(model.measured, places[:-1], places[1:], strict=True)
+        },
+    )  # fmt: skip

@@ -1,0 +1,109 @@
+"""What a scene predicts for measurements, with its derivatives by the parameters that are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fricmb._fit._data import Measured
+from fricmb._simulate import simulate
+from fricmb.analysis.cycles import Cycle, limit_cycle
+from fricmb.errors import unknown_name
+from fricmb.integrate.problem import Floats
+from fricmb.scene import Scene
+from fricmb.solution import Solution
+
+#: Transitions that a run has not had yet are waited for this much longer than the last one measured.
+_LONGER = 1.25
+
+
+@dataclass(kw_only=True)
+class Model:
+    """Predictions of a scene; the last ones are kept, as an optimiser asks for values and Jacobian in turn."""
+
+    scene: Scene
+    names: tuple[str, ...]
+    measured: tuple[Measured, ...]
+    options: Mapping[str, Any]
+    runs: int = 0
+    cycle: Cycle | None = None
+    _kept: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
+
+    def until(self, t: float) -> Model:
+        """The same for what was measured until then."""
+        early = tuple(m.until(t) for m in self.measured)
+        return Model(
+            scene=self.scene, names=self.names, measured=tuple(m for m in early if m.x.size), options=self.options,
+            cycle=self.cycle,
+        )  # fmt: skip
+
+    def residuals(self, p: Floats) -> Floats:
+        """(Prediction - measurement)/error of everything measured (n,)."""
+        return self._at(p)[0]
+
+    def jacobian(self, p: Floats) -> Floats:
+        """Derivative (n, n_p) of the residuals."""
+        return self._at(p)[1]
+
+    def _at(self, p: Floats) -> tuple[Floats, Floats]:
+        key = p.tobytes()
+        if key not in self._kept:
+            self._kept.clear()
+            self._kept[key] = self._computed(p)
+        return self._kept[key]
+
+    def with_values(self, p: Floats) -> Scene:
+        """The scene with these values."""
+        return self.scene.with_parameters(dict(zip(self.names, p.tolist(), strict=True)))
+
+    def run(self, p: Floats, **more: Any) -> Solution | None:
+        """The run at the times of the measured signals; None where only periods were measured."""
+        times = [m.t for m in self.measured if m.kind == "signal"]
+        ends = [m.t.max() * (_LONGER if m.kind == "event" else 1.0) for m in self.measured if m.kind != "period"]
+        if not ends:
+            return None
+        t = np.unique(np.concatenate([*times, np.zeros(0)]))
+        t_eval = t if t.size else None
+        return simulate(self.with_values(p), t_end=float(max(ends)), t_eval=t_eval, **{**self.options, **more})
+
+    def _computed(self, p: Floats) -> tuple[Floats, Floats]:
+        self.runs += 1
+        sol = self.run(p, sensitivities=self.names)
+        parts = [self._one(m, sol, p) for m in self.measured]
+        return np.concatenate([x for x, _ in parts]), np.concatenate([J for _, J in parts])
+
+    def _one(self, m: Measured, sol: Solution | None, p: Floats) -> tuple[Floats, Floats]:
+        if m.kind == "period":
+            return self._period(m, p)
+        assert sol is not None
+        if m.kind == "event":
+            return _events(m, sol, self.names)
+        places = np.searchsorted(sol.t, m.t)
+        J = np.array([sol.sensitivity(m.name, name)[places] for name in self.names]).T
+        return (_signal(sol, m.name)[places] - m.x) / m.sigma, J / m.sigma[:, None]
+
+    def _period(self, m: Measured, p: Floats) -> tuple[Floats, Floats]:
+        self.cycle = limit_cycle(self.with_values(p), start=self.cycle)
+        slopes = np.array([self.cycle.sensitivity("period", name) for name in self.names])
+        return (self.cycle.period - m.x) / m.sigma, slopes / m.sigma[:, None]
+
+
+def _signal(sol: Solution, name: str) -> Floats:
+    dof = name.removesuffix(".velocity")
+    return sol.velocity(dof) if name.endswith(".velocity") else sol[dof]
+
+
+def _events(m: Measured, sol: Solution, names: tuple[str, ...]) -> tuple[Floats, Floats]:
+    """Times of the first transitions of a kind; those that have not come count with the end of the run."""
+    contact, _, kind = m.name.rpartition(".")
+    if contact not in sol.contact_names:
+        raise unknown_name("contact in data", contact, sol.contact_names)
+    found = sol.events.of(kind=kind, contact=contact)[: m.x.size]
+    t = np.concatenate([found.t, np.full(m.x.size - len(found), sol.t_end)])
+    J = np.zeros((m.x.size, len(names)))
+    for i, event in enumerate(found):
+        J[i] = [event.sensitivity(name) for name in names]
+    return (t - m.x) / m.sigma, J / m.sigma[:, None]

@@ -1,0 +1,243 @@
+"""Poincaré sections of runs, and what they show over a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fricmb._simulate import simulate
+from fricmb._sweep import sweep
+from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.errors import IntegrationError, unknown_name
+
+if TYPE_CHECKING:
+    from fricmb.plot._branches import DiagramPlots
+    from fricmb.scene import Scene
+    from fricmb.solution import Solution
+
+#: The run is looked at this many times a period of its highest frequency, and at its accepted steps.
+_POINTS = 4000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Poincare:
+    """Where a motion meets a section.
+
+    Attributes
+    ----------
+    t : (n,)
+    q, v : (n_dof, n)
+    dofs : tuple of str
+    """
+
+    t: Floats
+    q: Floats
+    v: Floats
+    dofs: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> Floats:
+        """A degree of freedom, or with ".velocity" behind its name its velocity (n,)."""
+        dof, velocity = name.removesuffix(".velocity"), name.endswith(".velocity")
+        if dof not in self.dofs:
+            raise unknown_name("degree of freedom", name, self.dofs)
+        found: Floats = (self.v if velocity else self.q)[self.dofs.index(dof)]
+        return found
+
+
+def poincare_section(
+    sol: Solution,
+    section: tuple[str, float] | None = None,
+    *,
+    period: float | None = None,
+    rising: bool | None = True,
+    discard: float = 0.5,
+) -> Poincare:
+    """Where a run passes a section, or where it is once a period.
+
+    Parameters
+    ----------
+    sol : Solution
+        With its dense output.
+    section : (str, float), optional
+        A signal of ``sol.columns()`` and its value, ``("mass.x.velocity", 0.0)``; or give ``period``.
+    period : float, optional
+        Of a drive.
+    rising : bool or None
+        Passes in which the signal rises, falls, or both (None).
+    discard : float
+        Part of the run that is left out at its start.
+
+    Returns
+    -------
+    Poincare
+
+    Raises
+    ------
+    AnalysisError
+        For arguments that cannot be.
+    """
+    if (section is None) == (period is None):
+        raise AnalysisError("poincare_section: give either section= or period=")
+    if not 0.0 <= discard < 1.0:
+        raise AnalysisError(f"poincare_section: discard must lie between 0 and 1; got {discard!r}")
+    begin = sol.t_start + discard * (sol.t_end - sol.t_start)
+    if period is not None:
+        t = np.arange(np.ceil(begin / period - 1e-9), np.floor(sol.t_end / period + 1e-9) + 1.0) * period
+    else:
+        assert section is not None
+        t = _passes(sol, *section, begin, rising)
+    seen = sol.at(t)
+    return Poincare(t=t, q=seen.q, v=seen.v, dofs=sol.dof_names)
+
+
+def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool | None) -> Floats:
+    from scipy.optimize import brentq
+
+    def value(t: Floats) -> Floats:
+        dof = name.removesuffix(".velocity")
+        seen = sol.at(t)
+        return (seen.velocity(dof) if name.endswith(".velocity") else seen[dof]) - level
+
+    rows = sol.run.rows().samples.t
+    t = np.unique(np.concatenate([np.linspace(begin, sol.t_end, _POINTS), rows[rows >= begin]]))
+    x = value(t)
+    up = (x[:-1] < 0.0) & (x[1:] >= 0.0)
+    down = (x[:-1] > 0.0) & (x[1:] <= 0.0)
+    chosen = up if rising else down if rising is not None else up | down
+    found = [
+        brentq(lambda s: float(value(np.array([s]))[0]), t[i], t[i + 1], xtol=1e-13, rtol=1e-13)
+        for i in np.flatnonzero(chosen)
+    ]
+    return np.array(found, dtype=float)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BifurcationDiagram:
+    """What runs settle to, over a parameter.
+
+    Attributes
+    ----------
+    over, signal : str
+    values : (n_values,)
+    points : tuple of (n_i,)
+        The signal at the passes of a section, for each value; empty for a run that failed, or does not pass it.
+    failed : tuple of (float, str)
+        Values of runs that failed, and why.
+    """
+
+    over: str
+    signal: str
+    values: Floats
+    points: tuple[Floats, ...]
+    failed: tuple[tuple[float, str], ...]
+
+    def count(self, tolerance: float = 1e-4) -> Floats:
+        """Number of different points (n_values,), those within a part of the whole extent being the same."""
+        every = np.concatenate([*self.points, np.zeros(0)])
+        near = tolerance * float(np.ptp(every)) if every.size else 0.0
+        return np.array([0 if not p.size else 1 + int((np.diff(np.sort(p)) > near).sum()) for p in self.points])
+
+    @property
+    def plot(self) -> DiagramPlots:
+        """Pictures: ``found.plot.diagram()``."""
+        from fricmb.plot._branches import DiagramPlots
+
+        return DiagramPlots(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Reduce:
+    """What is kept of a run, in its worker."""
+
+    section: tuple[str, float] | None
+    period: float | None
+    rising: bool | None
+    discard: float
+    signal: str
+
+    def __call__(self, sol: Solution) -> Floats:
+        section = poincare_section(sol, self.section, period=self.period, rising=self.rising, discard=self.discard)
+        return section[self.signal]
+
+
+def bifurcation_diagram(
+    scene: Scene,
+    over: str,
+    values: ArrayLike,
+    *,
+    t_end: float,
+    signal: str,
+    section: tuple[str, float] | None = None,
+    period: float | None = None,
+    rising: bool | None = True,
+    discard: float = 0.5,
+    follow: bool = False,
+    progress: bool = True,
+    workers: Any = None,
+    **options: Any,
+) -> BifurcationDiagram:
+    """What plain runs settle to over a parameter: for motion that has no branch of cycles.
+
+    Parameters
+    ----------
+    scene : Scene
+    over : str
+        Out of ``scene.parameters``.
+    values : (n_values,)
+    t_end : float
+        Length of each run.
+    signal : str
+        A degree of freedom, or its velocity ("mass.x.velocity").
+    section, period, rising, discard
+        As :func:`poincare_section`.  A drive's period that depends on ``over`` has to be left to a section.
+    follow : bool
+        Start each run where the one before has ended, one after the other: shows hysteresis.  Default: each from the
+        scene's own start, on all cores.
+    progress : bool
+    workers : int, optional
+        As :func:`fricmb.sweep`.
+    **options
+        As :func:`fricmb.simulate`.
+
+    Returns
+    -------
+    BifurcationDiagram
+    """
+    grid = np.asarray(values, dtype=float)
+    if grid.ndim != 1 or not np.isfinite(grid).all():
+        raise AnalysisError(f"bifurcation_diagram: values must be (n,) and finite; got shape {grid.shape}")
+    keep = _Reduce(section=section, period=period, rising=rising, discard=discard, signal=signal)
+    runs = [{over: value} for value in grid.tolist()]
+    if follow:
+        results = _followed(scene, runs, t_end, keep, progress, options)
+    else:
+        results = sweep(scene, runs, t_end=t_end, reduce=keep, progress=progress, workers=workers, **options)
+    failed = [isinstance(found, IntegrationError) for found in results]
+    return BifurcationDiagram(
+        over=over, signal=signal, values=grid,
+        points=tuple(np.zeros(0) if bad else found for bad, found in zip(failed, results, strict=True)),
+        failed=tuple((float(x), str(r)) for x, r, bad in zip(grid, results, failed, strict=True) if bad),
+    )  # fmt: skip
+
+
+def _followed(
+    scene: Scene, runs: Sequence[dict[str, float]], t_end: float, keep: _Reduce, progress: bool, options: Any
+) -> list[Any]:
+    from fricmb.analysis._progress import bar
+
+    before: Solution | None = None
+    found: list[Any] = []
+    with bar(len(runs), "run", "diagram", progress) as shown:
+        for run in runs:
+            t = 0.0 if before is None else before.t_end
+            try:
+                before = simulate(scene, parameters=run, t_end=t + t_end, initial=before, **options)
+                found.append(keep(before))
+            except IntegrationError as error:
+                found.append(error)
+            shown.update()
+    return found
