@@ -13,13 +13,15 @@ from fricmb._fit._model import Model
 from fricmb._fit._result import Fit
 from fricmb._fit._uncertainty import uncertainty
 from fricmb.analysis._progress import bar
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import FricmbError, SceneError, unknown_name
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene
 
 Loss = Literal["linear", "soft_l1", "huber", "cauchy", "arctan"]
 #: Parts of the data that are fitted one after the other where the window grows.
 _WINDOWS = (0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.8, 1.0)
+#: Residuals below this part of the extent of the data are none.
+_EXACT = 1e-4
 #: Residuals of all the data that are this many times those of a part of them: the fit is in a false minimum.
 _FALSE = 1.4
 
@@ -100,7 +102,7 @@ def fit(
     rng, best = np.random.default_rng(0), None
     with bar(len(stages), "window", "fit", progress) as shown:
         for i in range(starts):
-            p = first if i == 0 else low + (high - low) * rng.random(low.size)
+            p = first if i == 0 else _another(model, low, high, rng)
             found = _through(model, stages, p, bounds, priors or {}, loss, shown if i == 0 else None)
             if best is None or found.cost < best.cost:
                 best = found
@@ -139,8 +141,27 @@ def _through(
             noise.append(float(np.sqrt(residuals @ residuals / max(residuals.size - p.size, 1))))
         if shown is not None:
             shown.update()
-    plausible = noise[-1] <= max(_FALSE * min(noise), 1e-6 * max(noise), 1e-12)
+    plausible = noise[-1] <= max(_FALSE * min(noise), _EXACT * _extent(model.measured))
     return _Found(model=part, p=p, J=J, cost=noise[-1], plausible=plausible)
+
+
+def _another(model: Model, low: Floats, high: Floats, rng: np.random.Generator) -> Floats:
+    """A start within the bounds that the scene accepts."""
+    for _ in range(100):
+        p = np.asarray(low + (high - low) * rng.random(low.size))
+        try:
+            model.with_values(p)
+        except FricmbError:  # mu_k above mu_s, say
+            continue
+        return p
+    raise SceneError("parameters: hardly any values within the bounds are ones that the scene accepts")
+
+
+def _extent(measured: tuple[Measured, ...]) -> float:
+    """Size of what was measured, in units of its errors."""
+    parts = [(m.x - (m.x.mean() if m.kind == "signal" else 0.0)) / m.sigma for m in measured]
+    values = np.concatenate(parts)
+    return float(np.sqrt(values @ values / values.size))
 
 
 def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float]], Floats]:

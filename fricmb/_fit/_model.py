@@ -11,11 +11,13 @@ import numpy as np
 from fricmb._fit._data import Measured
 from fricmb._simulate import simulate
 from fricmb.analysis.cycles import Cycle, limit_cycle
-from fricmb.errors import unknown_name
+from fricmb.errors import FricmbError, unknown_name
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene
 from fricmb.solution import Solution
 
+#: Residuals where there is no run.
+_FAR = 1e8
 #: Transitions that a run has not had yet are waited for this much longer than the last one measured.
 _LONGER = 1.25
 
@@ -41,8 +43,17 @@ class Model:
         )  # fmt: skip
 
     def residuals(self, p: Floats) -> Floats:
-        """(Prediction - measurement)/error of everything measured (n,)."""
-        return self._at(p)[0]
+        """(Prediction - measurement)/error of everything measured (n,).
+
+        Far off where a scene cannot have such values (mu_k above mu_s) or cannot be run with them: steps there are
+        taken back.
+        """
+        try:
+            return self._at(p)[0]
+        except FricmbError:
+            if self.runs == 1:
+                raise
+            return np.full(sum(m.x.size for m in self.measured), _FAR)
 
     def jacobian(self, p: Floats) -> Floats:
         """Derivative (n, n_p) of the residuals."""

@@ -78,7 +78,7 @@ def test_stick_appears_on_the_way_back(leine):
 
 
 def test_a_cycle_that_shrinks_to_rest():
-    """Steady slip loses stability where the slope of friction is the damping: 3/(1 + 3V)^2 = c, V = (sqrt(30) - 1)/3."""
+    """Steady slip gets unstable where the slope of friction is the damping: 3/(1 + 3V)^2 = c, V = (sqrt(30) - 1)/3."""
     scene = fm.models.belt_oscillator(belt=1.6, damping=0.1, law=LEINE)
     start = scene.with_parameters({"mass.position.x": 1.0 / 5.8 + 0.73, "mass.velocity.x": 0.0})
     cycle = fm.analysis.limit_cycle(scene, start=fm.simulate(start, t_end=13.0, rtol=1e-8), period=6.285)
