@@ -22,8 +22,9 @@ Loss = Literal["linear", "soft_l1", "huber", "cauchy", "arctan"]
 _WINDOWS = (0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.8, 1.0)
 #: Residuals below this part of the extent of the data are none.
 _EXACT = 1e-4
-#: Residuals of all the data that are this many times those of a part of them: the fit is in a false minimum.
-_FALSE = 1.4
+#: Residuals of all the data that are larger than those of a part by more than this many of their standard deviations
+#: are those of a false minimum.
+_DEVIATIONS = 3.5
 
 
 def fit(
@@ -130,18 +131,19 @@ def _through(
     shown: Any,
 ) -> _Found:  # fmt: skip
     """From the first window to the last, each started where the one before has ended."""
-    noise = []
+    noise, likely = [], []
     for i, t in enumerate(stages):
         part = model.until(t)
         p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
         model.runs += part.runs
         model.cycle = part.cycle
         residuals = part.residuals(p)
-        if residuals.size > 3 * p.size or i == len(stages) - 1:
-            noise.append(float(np.sqrt(residuals @ residuals / max(residuals.size - p.size, 1))))
+        freedom = max(residuals.size - p.size, 1)
+        noise.append(float(np.sqrt(residuals @ residuals / freedom)))
+        likely.append(noise[-1] * (1.0 + _DEVIATIONS / np.sqrt(2.0 * freedom)))
         if shown is not None:
             shown.update()
-    plausible = noise[-1] <= max(_FALSE * min(noise), _EXACT * _extent(model.measured))
+    plausible = noise[-1] <= max(min(likely), _EXACT * _extent(model.measured))
     return _Found(model=part, p=p, J=J, cost=noise[-1], plausible=plausible)
 
 
