@@ -114,8 +114,8 @@ def time_switches(value: Any, parameters: Sequence[Any]) -> list[dict[str, str |
     return switches(value, sympy.Symbol("t", real=True), parameters)
 
 
-def switches(value: Any, t: Any, parameters: Sequence[Any]) -> list[dict[str, str | None]]:
-    """Where an expression of time switches: the function that changes sign and, where it is known, the instant."""
+def switching_functions(value: Any) -> list[Any]:
+    """What an expression switches on: functions at whose sign changes it has a jump or a kink."""
     functions: list[Any] = []
     for node in sympy.preorder_traversal(sympy.sympify(value)):
         if isinstance(node, sympy.Heaviside | sympy.Abs | sympy.sign):
@@ -128,8 +128,13 @@ def switches(value: Any, t: Any, parameters: Sequence[Any]) -> list[dict[str, st
         elif isinstance(node, sympy.floor | sympy.ceiling | sympy.Mod):
             argument = node.args[0] if len(node.args) == 1 else node.args[0] / node.args[1]
             functions.append(sympy.sin(sympy.pi * argument))
+    return list(dict.fromkeys(functions))
+
+
+def switches(value: Any, t: Any, parameters: Sequence[Any]) -> list[dict[str, str | None]]:
+    """Where an expression of time switches: the function that changes sign and, where it is known, the instant."""
     found: list[dict[str, str | None]] = []
-    for function in dict.fromkeys(functions):
+    for function in switching_functions(value):
         if t not in function.free_symbols or function.free_symbols - {t, *parameters}:
             continue
         entry = {"function": parameter_source(function, parameters, (t,)), "instant": None}

@@ -11,6 +11,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Body, Contact, Joint, ModalBody, RigidBody
+from fricmb.sensitivity._breakpoints import Breakpoints, timed_of
 from fricmb.sensitivity._contacts import Rubs
 from fricmb.sensitivity._found import Found, whole
 from fricmb.sensitivity._motions import Frame, Moment
@@ -77,6 +78,7 @@ class Equations:
         self.acting: list[Acting] = []
         for part in scene.parts:
             self._take(part, part.name in held)
+        self.breakpoints = self._breakpoints(piece, parameters)
         self.inverse = np.linalg.inv(self.M)
         self._projectors: dict[bytes, tuple[Floats, Floats, Floats]] = {}
 
@@ -96,6 +98,18 @@ class Equations:
         found = acting(self.scene, part, self.frame.index, self.seeds)
         if found is not None:
             self.acting.append(found)
+
+    def _breakpoints(self, piece: Any, parameters: tuple[str, ...]) -> Breakpoints:
+        """Breakpoints of the run, told to the motions that are given."""
+        systems = [member.system for member in piece.mechanics.members if "system" in vars(member)]
+        times = [s.problem_for(piece.t_start, piece.t_end).signals.breakpoints for s in systems]
+        t = np.concatenate([np.zeros(0), *times])
+        t = t[(t > piece.t_start) & (t < piece.t_end)]
+        timed = timed_of(self.scene, self.acting, self.seeds) if t.size else []
+        found = Breakpoints(t, timed, parameters, self.n_y)
+        for time, dt in zip(found.t.tolist(), found.dt, strict=True):
+            self.frame.breaks.append((time, {self.n_y + int(j): float(dt[j]) for j in np.flatnonzero(dt)}))
+        return found
 
     def rows(self, k: int) -> slice:
         """Rows of a contact."""

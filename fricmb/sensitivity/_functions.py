@@ -16,6 +16,7 @@ Stated = tuple[Sequence[Any], Sequence[Any]]
 
 _stated: dict[Hashable, Stated] = {}
 _compiled: dict[Hashable, tuple[Callable[..., Any], list[tuple[int, int]]]] = {}
+_switching: dict[Hashable, list[tuple[Callable[..., Any], tuple[int, ...]]]] = {}
 
 
 class Function:
@@ -44,6 +45,18 @@ class Function:
             partials[i].append((slope, arguments[j]))
         return [composed(value, own) for value, own in zip(values[:count], partials, strict=True)]
 
+    def switching(self, time: int) -> list[tuple[Callable[..., Any], tuple[int, ...]]]:
+        """What it switches on that varies with argument number ``time``: slopes by arguments, and which these are.
+
+        A function of all arguments gives the value, then the slopes.
+        """
+        key = (self._key, time)
+        if key not in _switching:
+            if self._key not in _stated:
+                _stated[self._key] = self._make()
+            _switching[key] = _conditions(*_stated[self._key], time)
+        return _switching[key]
+
     def _function(self, active: tuple[int, ...]) -> tuple[Callable[..., Any], list[tuple[int, int]]]:
         key = (self._key, active)
         found = _compiled.get(key)
@@ -71,6 +84,24 @@ def _with_slopes(
                 places.append((i, j))
     made = sympy.lambdify(list(arguments), [_lengths(e) for e in [*plain, *slopes]], _MODULES, cse=True)
     return made, places
+
+
+def _conditions(
+    arguments: Sequence[Any], outputs: Sequence[Any], time: int
+) -> list[tuple[Callable[..., Any], tuple[int, ...]]]:
+    """Functions at whose sign changes outputs jump: values and slopes, with the arguments that these belong to."""
+    import sympy
+
+    from fricmb.equations._expression import switching_functions
+
+    stated = dict.fromkeys(c for output in outputs for c in switching_functions(output))
+    found = []
+    for condition in stated:
+        if arguments[time] in condition.free_symbols:
+            own = tuple(j for j, argument in enumerate(arguments) if argument in condition.free_symbols)
+            values = [condition, *(sympy.diff(condition, arguments[j]) for j in own)]
+            found.append((sympy.lambdify(list(arguments), values, _MODULES), own))
+    return found
 
 
 def element_function(element: Any, n: int) -> Function:

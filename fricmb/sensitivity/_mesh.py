@@ -10,7 +10,7 @@ import numpy as np
 from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._phases import Phases
+from fricmb.sensitivity._phases import BESIDE, Phases
 
 #: Stages of the steps, and of the formula that tells how fine they are.
 STAGES, COARSE = 5, 3
@@ -58,7 +58,8 @@ class Stepper:
     def _some(self, formula: Formula, t: Floats, h: Floats, phase: Ints) -> Floats:
         e, s = self.equations, formula.c.size
         # where a function of time jumps, the end of a stretch has not seen it yet
-        ends = np.nextafter(self.phases.t[phase + 1], -np.inf)
+        ends = self.phases.t[phase + 1]
+        ends = ends - BESIDE * np.maximum(1.0, np.abs(ends))
         times = np.minimum(t[:, None] + h[:, None] * formula.c, np.maximum(ends, t)[:, None]).ravel()
         at = np.repeat(phase, s)
         field = e.field(self.sample(times), self.phases.mode[:, at], self.phases.sign[:, at])

@@ -15,6 +15,8 @@ from fricmb.sensitivity._functions import expression_function
 from fricmb.sensitivity._seeds import Seeds
 from fricmb.values import is_expression, value_of
 
+#: How far beside a breakpoint a function of time is evaluated, relative to 1 or the time.
+_BESIDE = 1e-13
 #: Coefficients of a motion's rate on the rates of the degrees of freedom.
 Row = list[tuple[int, float]]
 
@@ -56,6 +58,7 @@ class Given:
             for s in held
         ]
         self.function = expression_function(value, (TIME, *moved, *rates, *held), order)
+        self.arguments = [Dual(value=0.0), *[None] * (len(moved) + len(rates)), *self.held]
 
     def at(self, moment: Moment) -> Dual:
         """Value with its slopes in a moment."""
@@ -74,7 +77,8 @@ class Given:
 class Frame:
     """What tells a name's motion; ``columns``: their number without time, whose column is the last.
 
-    ``start``: time at which prescribed positions stand where the declaration or an earlier run puts them.
+    ``start``: time at which prescribed positions stand where the declaration or an earlier run puts them;
+    ``breaks``: times at which functions of time break, and their derivatives by parameter column, set once known.
     """
 
     scene: Scene
@@ -84,6 +88,7 @@ class Frame:
     n: int
     time_column: int
     start: float
+    breaks: list[tuple[float, dict[int, float]]] = field(default_factory=list)
     _prescribed: dict[str, tuple[Given, ...]] = field(default_factory=dict)
 
     def prescribed(self, name: str) -> tuple[Given, ...]:
@@ -175,19 +180,36 @@ class Moment:
             if j != frame.time_column:
                 moved = slope * (self.t - frame.start) if rate.number is not None else self._integral(rate, j)
                 slopes[j] = slopes.get(j, 0.0) + moved
+        if rate.number is None:
+            for j, moved in self._jumps(rate).items():
+                slopes[j] = slopes.get(j, 0.0) + moved
         slopes[frame.time_column] = velocity.value
         value = offset.value + velocity.value * self.t if rate.number is not None else frame.driven(name, self.t)
         return Motion(position=Dual(value=value, slopes=slopes), rate=velocity, drift=drift.over(self.time), row=[])
 
+    def _jumps(self, rate: Given) -> dict[int, Floats]:
+        """What moving breakpoints of a given velocity add to slopes of the position: (v- - v+) dt_b after each."""
+        found: dict[int, Floats] = {}
+        for t, moved in self.frame.breaks:
+            beside = t + _BESIDE * max(1.0, abs(t)) * np.array([-1.0, 1.0])
+            before, after = np.broadcast_to(rate.over(Dual(value=beside)).value, 2)
+            for j, dt in moved.items():
+                found[j] = found.get(j, 0.0) + (before - after) * dt * (self.t >= t)
+        return found
+
     def _integral(self, rate: Given, column: int) -> Floats:
         """The integral of a slope of a given velocity from the start to each time, by Gauss's rule."""
         order = np.argsort(self.t, kind="stable")
-        ends = np.concatenate([np.linspace(self.frame.start, self.t[order[0]], 65)[:-1], self.t[order]])
+        first = self.t[order[0]]
+        breaks = [t for t, _ in self.frame.breaks]
+        inside = [t for t in breaks if self.frame.start < t < first]
+        between = np.sort(np.concatenate([np.linspace(self.frame.start, first, 65)[:-1], inside]))
+        ends = np.concatenate([between, self.t[order]])
         x, w = np.polynomial.legendre.leggauss(8)
         half = 0.5 * np.diff(ends)
         nodes = ends[:-1, None] + half[:, None] * (1.0 + x)
         slope = rate.over(Dual(value=nodes, slopes={})).slopes[column]
         sums = np.cumsum(half * (np.broadcast_to(slope, nodes.shape) @ w))
         found = np.empty_like(self.t)
-        found[order] = sums[63:]
+        found[order] = sums[between.size - 1 :]
         return found

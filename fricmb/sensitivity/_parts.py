@@ -31,6 +31,7 @@ class Acts:
         self.forms = element.local_coordinates()
         self.function = element_function(element, len(self.forms))
         self.numbers = seeds.numbers(element, f"{element.name}.")
+        self.label = element._label()
 
     def add(self, moment: Moment, found: Found) -> None:
         """Its forces."""

@@ -13,7 +13,7 @@ from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
 from fricmb.sensitivity._seeds import STATE
-from fricmb.sensitivity._transitions import TOUCHES, Transitions, happenings, held
+from fricmb.sensitivity._transitions import TOUCHES, Transitions, happenings, held, one_sided
 
 #: More states than this are not carried: maps of steps are dense.
 MOST = 120
@@ -42,17 +42,23 @@ class Tangent:
         self.states = state_names(sol.names) if STATE in names else ()
         self.columns = (*self.states, *self.parameters)
         sample = piece.trajectory.sample
-        self.phases = phases_of(piece, np.asarray(sol.events.t), sol.names.row)
+        breakpoints = e.breakpoints
+        self.phases = phases_of(piece, np.asarray(sol.events.t), sol.names.row, breakpoints.t)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, _scale(piece.rows()), self.rtol)
-        happened = happenings(sol.events, sol.names, self.phases)
-        breakpoints = _breakpoints(piece)
+        happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving())
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         start = sample(self.phases.t[:1])
-        S = held(e, start, self.phases.mode[:, 0], self.phases.sign[:, 0], self._begin())
+        begin = (e, start, self.phases.mode[:, 0], self.phases.sign[:, 0], self._begin())
+        one_sided_by, S = one_sided(*begin), held(*begin)
         self._march(S, transitions, len(sol.events))
-        self.notes = tuple(transitions.notes)
+        starts = [
+            f"contact {name!r} starts at rest and slips from there on: derivatives with respect to"
+            f" {', '.join(repr(self.columns[j]) for j in by)}, which give it a speed, are one-sided"
+            for name, by in one_sided_by.items()
+        ]
+        self.notes = (*starts, *transitions.notes)
 
     def _begin(self) -> Floats:
         """Derivatives of the initial state (n_y, columns)."""
@@ -143,15 +149,6 @@ def _scale(rows: Any) -> Floats:
         size = np.abs(values).max(axis=1, initial=0.0)
         found.append(np.where(size > 0.0, size, size.max(initial=0.0) or 1.0))
     return np.concatenate(found)
-
-
-def _breakpoints(piece: Any) -> Floats:
-    found = [member.system.problem.signals.breakpoints for member in piece.mechanics.members if _runs(member)]
-    return np.concatenate(found) if found else np.zeros(0)
-
-
-def _runs(member: Any) -> bool:
-    return "system" in vars(member)
 
 
 def _check(sol: Any, equations: Equations) -> None:

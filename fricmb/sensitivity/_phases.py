@@ -11,6 +11,11 @@ from fricmb.errors import SceneError
 from fricmb.integrate.problem import Codes, Floats, Ints
 from fricmb.integrate.run.chunked_run import KeptTrajectory
 
+#: Times this close, relative to 1 or themselves, are the same breakpoint.
+SAME = 1e-11
+#: How far beside them functions of time are evaluated, relative to 1 or the time.
+BESIDE = 1e-14
+
 
 @dataclass(frozen=True, kw_only=True)
 class Phases:
@@ -34,13 +39,15 @@ class Phases:
         return found
 
 
-def phases_of(piece: Any, events: Floats, row: Ints) -> Phases:
-    """Stretches of one piece of a run; ``row``: first rows of contacts."""
+def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats) -> Phases:
+    """Stretches of one piece of a run; ``row``: first rows of contacts; ``breakpoints``: of functions of time."""
     trajectory = piece.trajectory
     if isinstance(trajectory, KeptTrajectory):
         raise SceneError("sensitivities: a run without dense output has none; simulate with dense=True")
     t = np.unique(np.concatenate([piece.rows().t, events]))
     t = t[(t >= piece.t_start) & (t <= piece.t_end)]
+    far = [b for b in breakpoints if np.abs(t - b).min() > SAME * max(1.0, abs(b))]
+    t = np.union1d(t, far)
     middle = 0.5 * (t[:-1] + t[1:])
     seen = trajectory.sample(middle)
     sign = np.where(seen.g < 0.0, -1.0, 1.0)

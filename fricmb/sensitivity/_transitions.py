@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import STICK, Codes, Floats, Ints
+from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate.trajectory import Samples
+from fricmb.sensitivity._breakpoints import Breakpoints
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations, Field
 from fricmb.sensitivity._found import whole
-from fricmb.sensitivity._phases import Phases
+from fricmb.sensitivity._phases import BESIDE, Phases
 
 #: An event function counts as 0 within this share of its scale, or this many tolerances.
 _ZERO, _TOLERANCES = 1e-7, 100.0
@@ -48,8 +49,8 @@ class Trigger:
     transversality: float
 
 
-def happenings(events: Any, names: Any, phases: Phases) -> list[Happening]:
-    """Events of one piece that stand at the same time, together."""
+def happenings(events: Any, names: Any, phases: Phases, moving: Floats) -> list[Happening]:
+    """Events of one piece that stand at the same time, together, and breakpoints that parameters move (n_b,)."""
     held = list(events)
     t = np.array([event.t for event in held])
     found = []
@@ -64,7 +65,13 @@ def happenings(events: Any, names: Any, phases: Phases) -> list[Happening]:
             phase=int(np.searchsorted(phases.t, time)),
         )
         found.append(one)
-    return found
+    seen = {one.phase for one in found}
+    for time in moving.tolist():
+        phase = int(np.argmin(np.abs(phases.t - time)))
+        if phase not in seen:
+            own = np.zeros(0, dtype=np.int64)
+            found.append(Happening(t=float(phases.t[phase]), events=own, contacts=[], kinds=[], phase=phase))
+    return sorted(found, key=lambda one: one.phase)
 
 
 class Transitions:
@@ -73,12 +80,12 @@ class Transitions:
     Parameters
     ----------
     happened : list of Happening
-    breakpoints : (n_b,)
-        Times at which functions of time have kinks.
+    breakpoints : Breakpoints
+        Of functions of time.
     """
 
     def __init__(
-        self, equations: Equations, phases: Phases, sample: Any, happened: list[Happening], breakpoints: Floats,
+        self, equations: Equations, phases: Phases, sample: Any, happened: list[Happening], breakpoints: Breakpoints,
         rtol: float,
     ) -> None:  # fmt: skip
         self.equations, self.phases, self.happened, self.breakpoints = equations, phases, happened, breakpoints
@@ -90,9 +97,11 @@ class Transitions:
             times = np.array([one.t for one in happened])
             begin = np.array([one.phase for one in happened])
             self._samples = sample(times)
-            before = replace(self._samples, t=np.nextafter(times, -np.inf))
+            # functions of time may jump here, at an instant that is known to some units of round-off
+            beside = BESIDE * np.maximum(1.0, np.abs(times))
+            before, after = (replace(self._samples, t=times + sign * beside) for sign in (-1.0, 1.0))
             self.before = equations.field(before, phases.mode[:, begin - 1], phases.sign[:, begin - 1])
-            self.after = equations.field(self._samples, phases.mode[:, begin], phases.sign[:, begin])
+            self.after = equations.field(after, phases.mode[:, begin], phases.sign[:, begin])
             self.speeds = np.abs(self._samples.v).max(axis=1)
             self._beginnings()
 
@@ -102,11 +111,19 @@ class Transitions:
             for k, kind in zip(one.contacts, one.kinds, strict=True):
                 if self.equations.contacts[k].d > 1 and kind in ("stick", "slip"):
                     ends = kind == "stick"
+                    if not ends and self._moves_on(i, k):
+                        continue
                     phase = one.phase - 1 if ends else one.phase
                     samples, mode = _one(self._samples, i), self.phases.mode[:, [phase]]
                     sign = direction_at_rest(self.equations, samples, mode, self.phases.sign[:, [phase]], k)
                     own = self.equations.field(samples, mode, sign)
                     _put(self.before if ends else self.after, i, own)
+
+    def _moves_on(self, i: int, k: int) -> bool:
+        """Whether slip begins with a speed: what a contact touches has jumped."""
+        g, W = whole(self.after.found.g[k], len(self.happened), self.equations.columns)
+        speed = float(np.abs(W[i, :, self.equations.n : 2 * self.equations.n]).max(axis=0) @ self.speeds) + 1e-300
+        return bool(np.linalg.norm(g[i]) > 1e-3 * speed)
 
     def jump(self, i: int, S: Floats, t: float) -> tuple[Floats, Floats, list[float]]:
         """Derivatives after happening i from those before (n_y, n_p); of its time, and transversalities by event.
@@ -116,12 +133,14 @@ class Transitions:
         one = self.happened[i]
         triggers = [self._trigger(i, j, t) for j in range(len(one.contacts))]
         rates = [trigger.transversality for trigger in triggers]
-        self._say_unsafe(i, triggers)
-        least = min(triggers, key=lambda trigger: trigger.residual)
         chosen = [trigger for trigger in triggers if trigger.residual <= self.zero]
-        if not chosen and np.any(np.abs(self.breakpoints - one.t) <= 1e-12 * max(1.0, abs(one.t))):
-            return S + 0.0, np.zeros(S.shape[1]), [np.inf] * len(rates)
-        chosen = chosen or [least]
+        given = self.breakpoints.at(one.t)
+        if not chosen and given is not None:
+            # a function of time breaks, and what changes follows at once
+            dt = np.concatenate([np.zeros(S.shape[1] - given.size), given])
+            return S + np.outer(self.before.y_dot[i] - self.after.y_dot[i], dt), dt, [np.inf] * len(rates)
+        self._say_unsafe(i, triggers)
+        chosen = chosen or [min(triggers, key=lambda trigger: trigger.residual)]
         dts = [self._moved(trigger, S) for trigger in chosen]
         if len(chosen) > 1:
             self._say_together(one, chosen, dts)
@@ -339,6 +358,23 @@ def held(equations: Equations, samples: Samples, mode: Codes, sign: Floats, S: F
     _, B, _ = equations.projector(field.found, stuck)
     found = S.copy()
     found[equations.n : 2 * equations.n] -= B @ total(slopes[0], S, equations.n_y)
+    return found
+
+
+def one_sided(equations: Equations, samples: Samples, mode: Codes, sign: Floats, S: Floats) -> dict[str, Ints]:
+    """Contacts at rest at the start that slip from there on, and the columns of S that give them a speed.
+
+    A speed along the slip that begins and one against it are not two sides of one thing: there is no derivative.
+    """
+    field = equations.field(samples, mode[:, None], sign[:, None])
+    found = {}
+    for k, contact in equations.contacts.items():
+        g, slopes = whole(field.found.g[k], 1, equations.columns)
+        if contact.smooth or mode[k] != SLIP or np.any(np.abs(g) > 1e-14):
+            continue
+        columns = np.flatnonzero(np.any(np.abs(total(slopes[0], S, equations.n_y)) > 1e-14, axis=0))
+        if columns.size:
+            found[contact.name] = columns
     return found
 
 

@@ -13,8 +13,12 @@ def _ends(sol: Any) -> np.ndarray:
     return np.concatenate([sol.q[:, -1], sol.v[:, -1], sol.events.t])
 
 
-def _kinds(sol: Any) -> list[tuple[str, str]]:
-    return sorted((event.contact, event.kind) for event in sol.events)
+def _kinds(sol: Any) -> dict[str, list[str]]:
+    """Of each contact what happens to it, in order."""
+    found: dict[str, list[str]] = {}
+    for event in sol.events:
+        found.setdefault(event.contact, []).append(event.kind)
+    return found
 
 
 def _run(scene: Any, name: str, value: float, options: dict[str, Any]) -> Any:

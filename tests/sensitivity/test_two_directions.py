@@ -78,3 +78,15 @@ def test_slip_that_ends_is_projected():
     assert sol.mode("rub")[i] == 0
     assert sol.sensitivity("block.x.velocity", "belt.velocity.x")[i] == pytest.approx(1.0, abs=1e-12)
     assert sol.sensitivity("block.y.velocity", "belt.velocity.x")[i] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_start_at_rest_about_to_slip_is_one_sided():
+    """A speed along the slip that begins and one against it shift what follows by different amounts."""
+    block = fm.Body("block", mass=1.0, axes="xy", position={"x": 0.2, "y": 0.9})
+    springs = [fm.Spring("kx", block, axis="x", stiffness=1.0), fm.Spring("ky", block, axis="y", stiffness=2.3)]
+    rub = fm.Contact("rub", block, law=fm.laws.Coulomb(mu_s=0.6, mu_k=0.4), normal_force=1.0, axes="xy")
+    scene = fm.Scene("puck", [block, *springs, rub])
+    sol = fm.simulate(scene, t_end=1.0, sensitivities=("block.velocity.x", "kx.stiffness"))
+    assert any("starts at rest" in note and "'block.velocity.x', which" in note for note in sol.stats.notes)
+    sol = fm.simulate(scene, t_end=1.0, sensitivities=("kx.stiffness",))
+    assert not any("one-sided" in note for note in sol.stats.notes)
