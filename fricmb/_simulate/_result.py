@@ -24,11 +24,11 @@ POWER, SPEED = 1e-9, 1e-12
 
 def make_solution(
     mechanics: SceneMechanics, trajectory: Trajectory, span: Span, method: str, why: str, begin: float,
-    compile_s: float, rtol: float | None, atol: tuple[float, ...] | None = None,
+    compile_s: float, rtol: float | None, atol: tuple[float, ...] | None = None, ended: bool = False,
 ) -> Solution:  # fmt: skip
     """The solution of a run; ``begin`` is when the call began (perf_counter); ``rtol`` None: fixed steps.
 
-    ``atol``: as in :class:`Stats`.
+    ``atol``: as in :class:`Stats`.  ``ended``: the run was ended from outside, so no part of the scene is to blame.
 
     Raises
     ------
@@ -75,7 +75,8 @@ def make_solution(
     else:
         t = float(trajectory.t[-1])
         reason, end = failure, t
-    reason = f"{reason}{blame(mechanics, trajectory, t)}"
+    if not ended:
+        reason = f"{reason}{blame(mechanics, trajectory, t)}"
     partial = None
     while partial is None and end is not None:
         times = None if span.t_eval is None else span.t_eval[span.t_eval <= end]

@@ -137,7 +137,7 @@ def simulate(
         def finish(trajectory: Trajectory, part: Span) -> Solution:
             how = (chosen.name, chosen.why, begin, compiling.seconds, accuracy, floors(tolerance))
             with watching(None):
-                return make_solution(chosen.mechanics, trajectory, part, *how)
+                return make_solution(chosen.mechanics, trajectory, part, *how, ended=watch.reason is not None)
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}

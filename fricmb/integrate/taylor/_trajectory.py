@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,7 @@ class TaylorRun(Trajectory):
         self._marks = marks.held
         self._kept = None if held is None else _samples(problem, held, slice(0, taken))
 
+    @cached_property
     def _row_times(self) -> tuple[Floats, Codes]:
         """Times of the rows, and whether the left-hand value is meant."""
         starts = np.append(self._steps[:, 0], self.end.t)
@@ -69,9 +71,11 @@ class TaylorRun(Trajectory):
             inner = starts[~np.isin(starts, events)]
             t = np.concatenate([inner, events, events])
             left = np.concatenate([np.zeros(len(inner)), np.ones(len(events)), np.zeros(len(events))])
+            order = np.lexsort((-left, t))
+            t, left = t[order], left[order]
             # transitions at one instant share their rows
-            table = np.unique(np.stack([t, 1.0 - left], axis=1), axis=0)
-            return table[:, 0], (1.0 - table[:, 1]).astype(np.int8)
+            new = np.append(True, (np.diff(t) > 0.0) | (np.diff(left) != 0.0))
+            return t[new], left[new].astype(np.int8)
         thin = max(1, -(-len(starts) * width // ROWS))
         chosen = np.append(starts[:-1:thin], starts[-1])
         return chosen, np.zeros(len(chosen), np.int8)
@@ -79,11 +83,11 @@ class TaylorRun(Trajectory):
     @property
     def t(self) -> Floats:
         """Times of the rows."""
-        return self._row_times()[0]
+        return self._row_times[0]
 
     def rows(self) -> Samples:
         """Values at the steps, and on both sides of transitions where these are not too many."""
-        return self._again(*self._row_times())
+        return self._again(*self._row_times)
 
     def sample(self, t: Floats) -> Samples:
         """Values at any times within the run."""
