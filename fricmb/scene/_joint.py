@@ -151,3 +151,8 @@ class Joint(Part):
     def observed(self) -> dict[str, LinearForm]:
         """Relative motions of the joint by name (its joint coordinates): ``sol["hinge.angle"]``."""
         return {}
+
+
+def kept_distance(x: tuple[Any, ...], length: Any) -> tuple[Any, ...]:
+    """That the vector x has a length: a constraint of unit slope along it."""
+    return (sum(c**2 for c in x) / (2 * length) - length / 2,)

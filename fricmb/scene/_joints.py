@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._joint import Joint
-from fricmb.scene._plane_joint import PlaneJoint
+from fricmb.scene._joint import Joint, kept_distance
+from fricmb.scene._plane_joint import BetweenPoints, PlaneJoint
 from fricmb.scene._rigid import angle_of, start_angle
 
 
@@ -142,7 +142,7 @@ class Prismatic(PlaneJoint):
 
 
 @dataclass(frozen=True, eq=False)
-class Rod(PlaneJoint):
+class Rod(BetweenPoints):
     """A massless rod: two points keep their distance.  Reaction: force along the rod, > 0 where it pushes.
 
     Parameters
@@ -158,17 +158,9 @@ class Rod(PlaneJoint):
     _: KW_ONLY
     length: Any
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.local_coordinates()
-
-    def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """The distance of the points."""
-        return self.apart()
-
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Of unit slope along the rod."""
-        return ((x[0] ** 2 + x[1] ** 2) / (2 * self.length) - self.length / 2,)
+        return kept_distance(x, self.length)
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,3 +23,15 @@ class PlaneJoint(Joint):
         """Relative angle less its declared start."""
         a, b = self.angles()
         return a - b - LinearForm((), start_angle(self.a) - start_angle(self.b))
+
+
+class BetweenPoints(PlaneJoint):
+    """A joint that sees the vector between its two points alone."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.local_coordinates()
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """The vector between the points."""
+        return self.apart()

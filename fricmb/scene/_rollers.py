@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 from fricmb.errors import SceneError
 from fricmb.scene._expressions import check_expression
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._joint import kept_distance
 from fricmb.scene._one_sided import OneSided
-from fricmb.scene._plane_joint import PlaneJoint
+from fricmb.scene._plane_joint import BetweenPoints, PlaneJoint
 from fricmb.scene._rigid import angle_of
 
 
@@ -89,7 +90,7 @@ class RollerOnLine(Surface):
 
 
 @dataclass(frozen=True, eq=False)
-class RollerOnCircle(Surface):
+class RollerOnCircle(BetweenPoints, Surface):
     """A point of a stays on a circle about b.  Reaction: force on a, outward.
 
     Parameters
@@ -108,17 +109,9 @@ class RollerOnCircle(Surface):
     _: KW_ONLY
     radius: Any
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.local_coordinates()
-
-    def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """The distance of the points."""
-        return self.apart()
-
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Of unit slope outward."""
-        return ((x[0] ** 2 + x[1] ** 2) / (2 * self.radius) - self.radius / 2,)
+        return kept_distance(x, self.radius)
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Counter-clockwise along the circle."""

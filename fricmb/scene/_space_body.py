@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, ClassVar
 
 import numpy as np
@@ -69,6 +70,10 @@ class SpaceBody(PartEnd):
         """Diagonal of the mass matrix; ``read``: gives number or symbol of a slot."""
         raise NotImplementedError
 
+    def turning_forms(self) -> tuple[LinearForm, ...]:
+        """The coordinates that turn."""
+        return tuple(LinearForm.of({f"{self.name}.{c}": 1.0}) for c in self.turning)
+
     def least_masses(self) -> tuple[float, ...]:
         """What coordinates count at least where changes are measured: above 0 where one may have no mass."""
         return (0.0,) * len(self.dof_names)
@@ -112,6 +117,12 @@ class SpaceBody(PartEnd):
         """The centre of mass along an axis."""
         return LinearForm.of({f"{self.name}.{letter}": 1.0})
 
+    def _set_triples(self, *arguments: str) -> None:
+        """Check vectors of the declaration, and keep them by letters."""
+        for argument in arguments:
+            triple = check_triple(self, argument, getattr(self, argument))
+            self._set(argument, MappingProxyType(dict(zip(LETTERS, triple, strict=True))))
+
     def _check_points(self, argument: str) -> None:
         given = getattr(self, argument)
         if not isinstance(given, Mapping):
@@ -120,7 +131,7 @@ class SpaceBody(PartEnd):
             if not isinstance(name, str) or not name.isidentifier() or name in self._taken():
                 self._refuse(argument, name, f"keyed by names that are identifiers, none of {self._taken()}")
         checked = {name: self.check_offset(f"{argument}[{name!r}]", value) for name, value in given.items()}
-        self._set(argument, checked)
+        self._set(argument, MappingProxyType(checked))
 
     def _taken(self) -> tuple[str, ...]:
         return (*LETTERS, *self.turning, *self.seen)
@@ -135,6 +146,21 @@ class SpaceBody(PartEnd):
         if not isinstance(name, str) or not name.isidentifier() or name in self._taken():
             self._refuse("point", name, f"named by an identifier, none of {self._taken()}")
         return SpacePoint(self, name, self.check_offset(f"point {name!r}", offset))
+
+
+class InnerConstraint(Joint):
+    """What ties the coordinates of one body together."""
+
+    @property
+    def relative(self) -> bool:
+        """Of one body alone."""
+        return True
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """What turns."""
+        body: Any = self.a
+        forms: tuple[LinearForm, ...] = body.turning_forms()
+        return forms
 
 
 def with_inner(parts: Iterable[Any]) -> list[Any]:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import LETTERS
-from fricmb.scene._space_body import Read, SpaceBody, check_triple, plain
+from fricmb.scene._space_body import Read, SpaceBody, plain
 from fricmb.values import value_of
 
 
@@ -65,9 +65,7 @@ class Ball(SpaceBody):
         super().__post_init__()
         for argument in ("mass", "radius", *(("inertia",) if self.inertia is not None else ())):
             self._set(argument, self._number(argument, getattr(self, argument), above=0.0))
-        for argument in ("position", "velocity", "angular_velocity"):
-            triple = check_triple(self, argument, getattr(self, argument))
-            self._set(argument, MappingProxyType(dict(zip(LETTERS, triple, strict=True))))
+        self._set_triples("position", "velocity", "angular_velocity")
 
     def turned_start(self, argument: str) -> tuple[float, ...]:
         """Turned by nothing, with the angular velocity."""
@@ -83,4 +81,4 @@ class Ball(SpaceBody):
 
     def spins(self) -> tuple[LinearForm, ...]:
         """Coordinates whose rates are the angular velocity."""
-        return tuple(LinearForm.of({f"{self.name}.{c}": 1.0}) for c in self.turning)
+        return self.turning_forms()

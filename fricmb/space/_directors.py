@@ -14,7 +14,7 @@ from fricmb.integrate.problem import Floats
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._part import LETTERS
-from fricmb.scene._space_body import Read, SpaceBody, SpacePoint, check_triple, plain
+from fricmb.scene._space_body import InnerConstraint, Read, SpaceBody, SpacePoint, check_triple, plain
 from fricmb.space._turn import dot, rotation
 from fricmb.values import value_of
 
@@ -90,12 +90,9 @@ class RigidBody(SpaceBody):
         super().__post_init__()
         self._set("mass", self._number("mass", self.mass, above=0.0))
         self._set("inertia", self._principal())
-        for argument in ("position", "velocity", "angular_velocity"):
-            triple = check_triple(self, argument, getattr(self, argument))
-            self._set(argument, MappingProxyType(dict(zip(LETTERS, triple, strict=True))))
+        self._set_triples("position", "velocity", "angular_velocity")
         self._set("orientation", rotation(self._label(), self.orientation))
         self._check_points("points")
-        self._set("points", MappingProxyType(self.points))
 
     def _principal(self) -> tuple[Any, ...]:
         """Principal moments that a body can have."""
@@ -179,18 +176,8 @@ class RigidBody(SpaceBody):
 
 
 @dataclass(frozen=True, eq=False)
-class Orthonormal(Joint):
+class Orthonormal(InnerConstraint):
     """Keeps the axes of a body unit vectors at right angles."""
-
-    @property
-    def relative(self) -> bool:
-        """Of one body alone."""
-        return True
-
-    def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """The nine components."""
-        body: Any = self.a
-        return tuple(LinearForm.of({f"{body.name}.{name}": 1.0}) for name in body.turning)
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Lengths, then right angles."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from fricmb.integrate.problem import Floats
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._part import GROUND, LETTERS, End
-from fricmb.scene._space_body import SpaceBody
+from fricmb.scene._space_body import SpaceBody, check_triple
 from fricmb.space._directors import RigidBody
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import triad, unit
@@ -31,6 +32,9 @@ def constant(vector: Any) -> Forms:
 class SpaceJoint(Joint):
     """A joint between two ends in space."""
 
+    #: Arguments that are directions in space.
+    directions: ClassVar[tuple[str, ...]] = ()
+
     def __post_init__(self) -> None:
         super().__post_init__()
         for argument in ("a", "b"):
@@ -38,6 +42,22 @@ class SpaceJoint(Joint):
             if end.letters is not None and set(end.letters) != set(LETTERS):
                 accepted = "a body of fm.space, one of its points, fm.space.ground_point(x, y, z) or GROUND"
                 self._refuse(argument, end.end_name, accepted)
+        for argument in self.directions:
+            self._set(argument, check_triple(self, argument, getattr(self, argument)))
+            self.direction(argument)
+        self._check_own()
+        self.local_coordinates()
+
+    def _check_own(self) -> None:
+        """What a type asks of its ends and numbers, before its coordinates are formed."""
+
+    def direction(self, argument: str) -> Floats:
+        """A declared direction (3,), a unit vector."""
+        return unit(self._label(), argument, value_of(getattr(self, argument)))
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """The vector between the points."""
+        return self.apart()
 
     @property
     def relative(self) -> bool:
@@ -77,14 +97,16 @@ class SpaceJoint(Joint):
         return constant(direction)
 
 
+@dataclass(frozen=True, eq=False)
 class AxisJoint(SpaceJoint):
     """A joint about or along an axis that both ends carry."""
 
+    directions: ClassVar[tuple[str, ...]] = ("axis",)
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axis")
+    _: KW_ONLY
     axis: Any
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        unit(self._label(), "axis", value_of(self.axis))
+    def _check_own(self) -> None:
         if isinstance(self.a.owner, Rotor) and isinstance(self.b.owner, Rotor):
             raise SceneError(
                 f"{self._label()}: one of a and b must be a fm.space.RigidBody or the ground; both are rotors, which"
@@ -93,7 +115,7 @@ class AxisJoint(SpaceJoint):
 
     def axis_unit(self) -> Floats:
         """The axis (3,) at the declared start."""
-        return unit(self._label(), "axis", value_of(self.axis))
+        return self.direction("axis")
 
     def turn(self) -> tuple[LinearForm, ...]:
         """What tells the rate of a about the axis relative to b, behind :meth:`hinge`: eight forms.

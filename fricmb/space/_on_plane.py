@@ -18,7 +18,7 @@ from fricmb.space._ball import Ball
 from fricmb.space._directors import RigidBody
 from fricmb.space._joint import SpaceJoint
 from fricmb.space._rotor import Rotor
-from fricmb.space._turn import cross, dot, triad, unit
+from fricmb.space._turn import cross, dot, triad
 from fricmb.values import is_expression, value_of
 
 #: What touches the plane, by what is declared.
@@ -85,6 +85,7 @@ class OnPlane(OneSided, SpaceJoint):
 
     only_relative: ClassVar[bool] = False
     slip_rows: ClassVar[int] = 2
+    directions: ClassVar[tuple[str, ...]] = ("normal",)
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "normal", "through")
     _: KW_ONLY
     normal: Any
@@ -93,20 +94,16 @@ class OnPlane(OneSided, SpaceJoint):
     turning: Any = 0.0
     shape: str | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
+    def _check_own(self) -> None:
         if self.b is not GROUND:
             self._refuse("b", self.b, "left out: the plane is fixed")
-        self._set("normal", check_triple(self, "normal", self.normal))
         self._set("through", check_triple(self, "through", self.through))
-        unit(self._label(), "normal", value_of(self.normal))
         found = self._shape()
         if self.shape not in (None, found):
             self._refuse("shape", self.shape, f"left out (it is {found!r}, from a)")
         self._set("shape", found)
         self._set("radius", self._radius(found))
         self._set("turning", check_expression(self, "turning", self.turning, motions=False))
-        self.local_coordinates()
 
     def _takes_expression(self, field: str) -> bool:
         return field == "turning"
@@ -144,7 +141,7 @@ class OnPlane(OneSided, SpaceJoint):
 
     def frame(self) -> Floats:
         """Directions 1 and 2 of the plane, and its normal, as rows (3, 3)."""
-        e = unit(self._label(), "normal", value_of(self.normal))
+        e = self.direction("normal")
         u, w = triad(e)
         return np.array([u, w, e])
 

@@ -14,8 +14,8 @@ from fricmb.integrate.problem import Floats
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
-from fricmb.scene._part import GROUND, LETTERS, End
-from fricmb.scene._space_body import Read, SpaceBody, SpacePoint, check_triple, plain
+from fricmb.scene._part import GROUND, End
+from fricmb.scene._space_body import InnerConstraint, Read, SpaceBody, SpacePoint, check_triple, plain
 from fricmb.space._turn import cross, dot, unit
 from fricmb.values import value_of
 
@@ -90,9 +90,7 @@ class Rotor(SpaceBody):
         super().__post_init__()
         for argument in ("mass", "inertia_across", "inertia_axial"):
             self._set(argument, self._number(argument, getattr(self, argument), above=0.0))
-        for argument in ("position", "velocity"):
-            triple = check_triple(self, argument, getattr(self, argument))
-            self._set(argument, MappingProxyType(dict(zip(LETTERS, triple, strict=True))))
+        self._set_triples("position", "velocity")
         self._set("axis", check_triple(self, "axis", self.axis))
         unit(self._label(), "axis", value_of(self.axis))
         self._set("spin", self._number("spin", self.spin))
@@ -153,11 +151,11 @@ class Rotor(SpaceBody):
 
     def axis_forms(self) -> tuple[LinearForm, ...]:
         """The axis n."""
-        return tuple(LinearForm.of({f"{self.name}.axis_{c}": 1.0}) for c in LETTERS)
+        return self.turning_forms()[:3]
 
     def spin_form(self) -> LinearForm:
         """The angle of spin."""
-        return LinearForm.of({f"{self.name}.spin": 1.0})
+        return self.turning_forms()[3]
 
     def inner(self) -> Joint:
         """The axis has length 1."""
@@ -169,18 +167,12 @@ class Rotor(SpaceBody):
 
 
 @dataclass(frozen=True, eq=False)
-class UnitAxis(Joint):
+class UnitAxis(InnerConstraint):
     """Keeps the axis of a rotor a unit vector."""
-
-    @property
-    def relative(self) -> bool:
-        """Of one body alone."""
-        return True
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """The axis."""
-        body: Any = self.a
-        return body.axis_forms()  # type: ignore[no-any-return]
+        return super().local_coordinates()[:3]
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Half of what its square is beside 1."""

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 from fricmb.errors import SceneError
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._part import LETTERS
 from fricmb.scene._space_body import SpacePoint, check_triple
 from fricmb.space._ball import Ball
 from fricmb.space._directors import RigidBody
@@ -66,8 +65,7 @@ class Torque(Element):
             return (*body.spins(), *(still for _ in range(13)))
         if isinstance(body, Rotor):
             return (*(still for _ in range(3)), *body.axis_forms(), body.spin_form(), *(still for _ in range(9)))
-        forms = (LinearForm.of({f"{body.name}.{name}": 1.0}) for name in body.turning)
-        return (*(still for _ in LETTERS), *(still for _ in range(4)), *forms)
+        return (*(still for _ in range(7)), *body.turning_forms())
 
     def define_force(self, x: tuple[Any, ...], x_dot: tuple[Any, ...], t: Any) -> tuple[Any, ...]:
         """``tau`` on angles; ``tau x n`` and ``tau . n`` on axis and spin; ``tau x d/2`` on each axis of a body."""

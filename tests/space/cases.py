@@ -69,3 +69,15 @@ def slider_crank():
         fm.space.Prismatic("guide", slider, axis=(1, 0, 0)),
     ]
     return fm.Scene("slider crank in space", [crank, rod, slider, *joints, DOWN])
+
+
+def wheel_on_an_arm():
+    """A spinning wheel before the end of an arm that a hook holds."""
+    arm = fm.space.RigidBody(
+        "arm", mass=1.0, inertia=(0.02, 0.02, 0.01), position=(0, 0.3, 0),
+        points={"hub": (0, 0.3, 0), "eye": (0, -0.3, 0)},
+    )  # fmt: skip
+    wheel = fm.space.Rotor(
+        "wheel", mass=0.8, inertia_across=0.01, inertia_axial=0.02, position=(0, 0.6, 0), axis=(0, 1, 0), spin=60.0
+    )
+    return arm, wheel, fm.space.Spherical("hook", arm.point("eye"))

@@ -9,7 +9,7 @@ import pytest
 import fricmb as fm
 
 sys.path.insert(0, str(Path(__file__).parent))
-from cases import DOWN
+from cases import DOWN, wheel_on_an_arm
 
 SPACE, G = fm.space, 9.81
 M, C, MU, R = 2.0, 0.02, 0.1, 0.02
@@ -75,21 +75,11 @@ def test_dry_pendulum_in_space_is_that_of_the_plane():
 
 def test_gyroscope_with_a_dry_axle():
     """A spinning wheel on a swinging arm: its axle bears what turns the axis, and the ledger closes."""
-    arm = SPACE.RigidBody(
-        "arm",
-        mass=1.0,
-        inertia=(0.02, 0.02, 0.01),
-        position=(0, 0.3, 0),
-        points={"hub": (0, 0.3, 0), "eye": (0, -0.3, 0)},
-    )
-    wheel = SPACE.Rotor(
-        "wheel", mass=0.8, inertia_across=0.01, inertia_axial=0.02, position=(0, 0.6, 0), axis=(0, 1, 0), spin=60.0
-    )
+    arm, wheel, hook = wheel_on_an_arm()
     axle = SPACE.Revolute(
         "axle", wheel, arm.point("hub"), axis=(0, 1, 0), radius=0.01, length=0.05, thrust_radius=0.01,
         friction=fm.laws.Coulomb(mu_s=0.2),
     )  # fmt: skip
-    hook = SPACE.Spherical("hook", arm.point("eye"))
     sol = fm.simulate(fm.Scene("gyroscope", [arm, wheel, hook, axle, DOWN]), t_end=1.0, rtol=1e-8)
     assert np.abs(sol.energy.residual).max() < 1e-7
     # torque about the wheel's axis is friction alone: C s'' = -mu r N, the load from the reaction

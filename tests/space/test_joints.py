@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 import fricmb as fm
 
 sys.path.insert(0, str(Path(__file__).parent))
-from cases import DOWN, case, pendulum, slider_crank, vector
+from cases import DOWN, case, pendulum, slider_crank, vector, wheel_on_an_arm
 
 SPACE = fm.space
 
@@ -200,18 +200,8 @@ def test_rotor_on_either_end_of_a_hinge():
     """A wheel in a swinging arm: declared as wheel on arm, and as arm on wheel; the torques only change sign."""
 
     def scene(first):
-        arm = SPACE.RigidBody(
-            "arm",
-            mass=1.0,
-            inertia=(0.02, 0.02, 0.01),
-            position=(0, 0.3, 0),
-            points={"hub": (0, 0.3, 0), "eye": (0, -0.3, 0)},
-        )
-        wheel = SPACE.Rotor(
-            "wheel", mass=0.8, inertia_across=0.01, inertia_axial=0.02, position=(0, 0.6, 0), axis=(0, 1, 0), spin=60.0
-        )
+        arm, wheel, hook = wheel_on_an_arm()
         ends = (wheel, arm.point("hub")) if first else (arm.point("hub"), wheel)
-        hook = SPACE.Spherical("hook", arm.point("eye"))
         return fm.Scene("gyroscope", [arm, wheel, hook, SPACE.Revolute("axle", *ends, axis=(0, 1, 0)), DOWN])
 
     one, two = (fm.simulate(scene(first), t_end=0.5, rtol=1e-9) for first in (True, False))
