@@ -12,7 +12,7 @@ from fricmb._fit._data import Measured, read
 from fricmb._fit._model import Model
 from fricmb._fit._result import Fit
 from fricmb._fit._uncertainty import uncertainty
-from fricmb.analysis._progress import bar
+from fricmb._simulate._progress import bar
 from fricmb.errors import FricmbError, SceneError, unknown_name
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene

@@ -1,4 +1,4 @@
-"""The progress bar of a run."""
+"""Progress bars on the terminal: over the time of a run, and over pieces of work of any kind."""
 
 from __future__ import annotations
 
@@ -23,6 +23,25 @@ def progress_bar(shown: bool, t_start: float, t_end: float) -> Iterator[Progress
         yield _forward(bar, t_start)
         # methods tell of whole pieces of work, the last of which may end before the run does
         bar.update(t_end - t_start - bar.n)
+
+
+class _NoBar:
+    """No bar: tqdm would start a thread even for one that is not shown."""
+
+    def update(self, n: int = 1) -> None:
+        """Nothing."""
+
+
+@contextmanager
+def bar(total: int, unit: str, what: str, shown: bool, *, done: int = 0) -> Iterator[Any]:
+    """A bar over pieces of work with ``update(n)``, or nothing that has the same; ``done``: pieces that are there."""
+    if not shown:
+        yield _NoBar()
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=total, initial=done, unit=unit, desc=what) as made:
+        yield made
 
 
 def _forward(bar: Any, t_start: float) -> Progress:

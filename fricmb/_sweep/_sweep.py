@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from os import PathLike
 from typing import Any
 
 import fricmb
+from fricmb._simulate._progress import bar
 from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
@@ -90,14 +90,14 @@ def sweep(
             if there:
                 del missing[i]
     made = outcomes(job, dict(missing), workers, run_limit)
-    with _bar(len(values), len(values) - len(missing), progress) as bar:
+    with bar(len(values), "run", "sweep", progress, done=len(values) - len(missing)) as shown:
         try:
             for i, result in made:
                 results[i] = result
                 del missing[i]
                 if kept is not None and not _is_lost(result):
                     kept.put(values[i], result)
-                bar.update()
+                shown.update()
         except KeyboardInterrupt as stop:
             stop.results = results  # type: ignore[attr-defined]
             done = f"{len(values) - len(missing)} of {len(values)} runs are done"
@@ -116,21 +116,3 @@ def _checked(run: Any, i: int) -> Mapping[str, Any]:
     if not isinstance(run, Mapping):
         raise SceneError(f"runs: entry {i} is {run!r}; expected a dict of parameter names and values")
     return run
-
-
-class _NoBar:
-    """No bar: tqdm would start a thread even for one that is not shown."""
-
-    def update(self) -> None:
-        """Nothing."""
-
-
-@contextmanager
-def _bar(total: int, done: int, progress: bool) -> Iterator[Any]:
-    if not progress:
-        yield _NoBar()
-        return
-    from tqdm import tqdm
-
-    with tqdm(total=total, initial=done, unit="run", desc="sweep") as bar:
-        yield bar

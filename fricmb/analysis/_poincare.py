@@ -227,7 +227,7 @@ def bifurcation_diagram(
 def _followed(
     scene: Scene, runs: Sequence[dict[str, float]], t_end: float, keep: _Reduce, progress: bool, options: Any
 ) -> list[Any]:
-    from fricmb.analysis._progress import bar
+    from fricmb._simulate._progress import bar
 
     before: Solution | None = None
     found: list[Any] = []

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
+from fricmb._simulate._progress import bar
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis.cycles._border import beyond, on_border, solve_border
 from fricmb.analysis.cycles._branch import Branch
@@ -81,11 +79,11 @@ def continue_cycle(
 def follow(point: Point, to: float, points: int, largest: float, progress: bool) -> Branch:
     """A branch from one of its points in the direction given there."""
     walk = Walk(point=point, to=to, begin=point.value, largest=largest)
-    with _bar(points, progress) as bar:
+    with bar(points, "cycle", "branch", progress) as shown:
         while not walk.ended and len(walk.cycles) < points:
             before = len(walk.cycles)
             walk.step()
-            bar.update(len(walk.cycles) - before)
+            shown.update(len(walk.cycles) - before)
     return Branch(
         over=point.over, to=to, cycles=tuple(walk.cycles), special=tuple(walk.special), places=tuple(walk.places),
         ended=walk.ended or f"after the {points} cycles asked for",
@@ -274,11 +272,3 @@ def _oriented(cut: Orbit, point: Point) -> Floats:
     ahead = direction(cut, point.over, point.p_scale)
     tail = 1 if cut.shooting.drive is not None else 2
     return ahead if float(ahead[-tail:] @ point.forward[-tail:]) >= 0.0 else -ahead
-
-
-@contextmanager
-def _bar(total: int, progress: bool) -> Iterator[Any]:
-    from fricmb.analysis._progress import bar
-
-    with bar(total, "cycle", "branch", progress) as shown:
-        yield shown

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fricmb._simulate import simulate
+from fricmb._simulate._progress import bar
 from fricmb.analysis._errors import AnalysisError, Floats
-from fricmb.analysis._progress import bar
 from fricmb.analysis.cycles._flow import check_scene
 
 if TYPE_CHECKING:

@@ -1,0 +1,73 @@
+"""Transitions of a solution, and its derivatives."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from fricmb.errors import SceneError
+from fricmb.integrate.problem import Floats
+from fricmb.solution._derivatives import Derivatives
+from fricmb.solution._events import Events
+from fricmb.solution._recorded import Recorded
+
+
+class Differentiated(Recorded):
+    """Transitions, and derivatives of what a run found."""
+
+    @cached_property
+    def events(self) -> Events:
+        """Transitions of the run in time order."""
+        if self._events is None:
+            (piece,) = self.run.pieces
+            found = Events.from_transitions(piece.trajectory.transitions, self.names.contacts)
+            self._events = found if piece.t_end >= piece.trajectory.t[-1] else found.until(piece.t_end)
+        return self._events
+
+    def sensitivity(self, signal: str, name: str) -> Floats:
+        """Derivative (n_t,) of a signal with respect to a parameter or an initial value, at fixed times.
+
+        Exact through stick and slip: transitions move with the parameter, and that is part of the derivative.
+
+        Parameters
+        ----------
+        signal : str
+            A degree of freedom or point ("pad.x"), its velocity ("pad.x.velocity"), a law's state ("lining.state.z").
+        name : str
+            One of the names that ``simulate(sensitivities=...)`` was given; after "state" also "pad.position.x",
+            "pad.velocity.x", "lining.state.z" for the values that the run starts with.
+
+        Raises
+        ------
+        SceneError
+            Where the run was made without; UnknownNameError lists names near.
+        """
+        return self.derivatives.signal(self.names, signal, name, self.record.samples)
+
+    @property
+    def monodromy(self) -> Floats:
+        """Derivative of the state at the end with respect to that at the start (n_y, n_y), y = q over v over z.
+
+        Needs ``simulate(sensitivities="state")``; at the start of a run in stick, what sticks is held together.
+        """
+        return self.derivatives.monodromy
+
+    @property
+    def derivatives(self) -> Derivatives:
+        """All derivatives as arrays, over the times of the solution."""
+        if self._derivatives is None:
+            if not self._asked:
+                raise SceneError(
+                    "this solution has no derivatives: simulate with sensitivities=(names), or sensitivities="
+                    '"state"; joined runs have none, each of their parts has its own'
+                )
+            from fricmb.sensitivity import derive
+
+            derive(self, self._asked)
+        assert self._derivatives is not None
+        return self._derivatives
+
+    def take_derivatives(self, derivatives: Derivatives) -> None:
+        """Keep derivatives, those of its events with the events."""
+        self._asked, self._derivatives = derivatives.asked, derivatives
+        events = self.events.with_derivatives(derivatives.columns, derivatives.moved, derivatives.transversality)
+        self.__dict__["events"] = self._events = events

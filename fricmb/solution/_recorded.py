@@ -1,0 +1,150 @@
+"""What a run has recorded: times, motion, and the run behind it for other times."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.errors import IntegrationError, SceneError, unknown_name
+from fricmb.integrate import Start
+from fricmb.integrate.problem import Floats
+from fricmb.solution._derivatives import Derivatives
+from fricmb.solution._events import Events
+from fricmb.solution._names import Names
+from fricmb.solution._run import Record, Run, first_bad, is_finite
+from fricmb.solution._stats import Stats
+from fricmb.solution._stored import Stored
+from fricmb.values import Units
+
+
+class Recorded:
+    """Times and motion of a run; :class:`Solution` is made of it."""
+
+    def __init__(
+        self, *, names: Names, run: Run, stats: Stats, events: Events | None = None, times: Floats | None = None
+    ) -> None:
+        self.names = names
+        self.stats = stats
+        self._run: Run | Stored = run
+        self._events = events
+        self._span = run.t_start, run.t_end
+        self.has_rows = times is None
+        self._energies: tuple[Floats, Floats] | None = None
+        self._units: Units | None = None
+        self._asked: tuple[str, ...] = ()
+        self._derivatives: Derivatives | None = None
+        self.record = finite(run.rows() if times is None else run.sample(times))
+
+    @property
+    def t(self) -> Floats:
+        """Times (n_t,)."""
+        return self.record.samples.t
+
+    @property
+    def q(self) -> Floats:
+        """Positions (n_dof, n_t), in the order of ``sol.names.dofs``."""
+        return self.record.samples.q
+
+    @property
+    def v(self) -> Floats:
+        """Velocities (n_dof, n_t)."""
+        return self.record.samples.v
+
+    @property
+    def t_start(self) -> float:
+        """Start of the run, whatever the times of the solution."""
+        return self._span[0]
+
+    @property
+    def t_end(self) -> float:
+        """End of the run."""
+        return self._span[1]
+
+    @property
+    def dof_names(self) -> tuple[str, ...]:
+        """Names of the rows of q and v."""
+        return self.names.dofs
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Names of the contacts."""
+        return self.names.contacts
+
+    def __getitem__(self, name: str) -> Floats:
+        """Position (n_t,) of a degree of freedom, a point ("plate.tip.x") or a driven body ("belt.x").
+
+        Of bodies in space also "rod.rotation" (3, 3, n_t), "rod.omega" and "axle.axis" (3, n_t).
+        """
+        return self._motion(name, 0)
+
+    def velocity(self, name: str) -> Floats:
+        """Velocity (n_t,) of a degree of freedom, a point or a driven body."""
+        return self._motion(name, 1)
+
+    def _motion(self, name: str, derivative: int) -> Floats:
+        names, values = self.names, self.v if derivative else self.q
+        try:
+            if name in names.dof_index:
+                return row_of(values, names.dof_index[name])
+            if name in names.motions:
+                motion = names.motions[name]
+                return motion.velocity(self.q, self.v) if derivative else motion.position(self.q)
+            if name in names.vectors:
+                if derivative:
+                    raise SceneError(f"velocity: {name!r} is no coordinate whose rate is kept; sol[{name!r}] has it")
+                return names.vectors[name].value(self.q, self.v)
+            if name in names.signals:
+                return self.run.signal(names.signals[name], self.t)[derivative]
+        except TypeError:  # an unhashable name
+            pass
+        raise unknown_name("motion", name, names.known_motions())
+
+    def __call__(self, t: Any) -> Floats:
+        """State at any time of the run, q over v: (2 n_dof, len(t)), or (2 n_dof,) for a single time.
+
+        At a transition the right-hand value.  Raises SceneError for a time outside the run.
+        """
+        run = self.run
+        samples = finite(run.sample(run.inside(t))).samples
+        state = np.concatenate((samples.q, samples.v))
+        return state[:, 0] if np.ndim(t) == 0 else state
+
+    @property
+    def run(self) -> Run:
+        """The run behind the arrays (of a loaded file opened at first use)."""
+        if not isinstance(self._run, Run):
+            self._run = self._run.open()
+        return self._run
+
+    @property
+    def scene(self) -> Any:
+        """The scene that was run, with the values it was run with (of joined runs the last)."""
+        return self.run.scene
+
+    @property
+    def units(self) -> Units:
+        """Names of the units, those of the scene (of a loaded file without opening it)."""
+        if self._units is None:
+            self._units = getattr(self.scene, "units", None) or Units()
+        return self._units
+
+    @property
+    def end(self) -> Start:
+        """State, law states, contact modes and slip directions at the end of the run."""
+        return self.run.end
+
+
+def row_of(values: Floats, index: int) -> Floats:
+    """One signal of many."""
+    signal: Floats = values[index]
+    return signal
+
+
+def finite(record: Record) -> Record:
+    """The record, or IntegrationError where a value in it is not finite."""
+    samples = record.samples
+    if is_finite(samples, record.moving):
+        return record
+    t = float(samples.t[first_bad(samples)])
+    raise IntegrationError(f"the run is not finite at t = {t:.10g}", t=t, reason="a value is not finite")
