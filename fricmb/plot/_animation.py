@@ -15,7 +15,7 @@ from matplotlib.patches import Circle, Polygon
 
 from fricmb.analysis import AnalysisError
 from fricmb.plot._contact import OPEN, SLIP, STICK
-from fricmb.plot._make_sketch import shown_span, sketch_of_run, sketch_of_scene
+from fricmb.plot._make_sketch import in_space, shown_span, sketch_of_run, sketch_of_scene
 from fricmb.plot._sketch import Floats, Link, Mark, Shape, Sketch, Touch, coil, pot
 from fricmb.plot._style import Paint, drawn, figure_of, name_figure, paint
 
@@ -254,6 +254,10 @@ def canvas(sketch: Sketch, ax: Axes | None = None) -> tuple[Figure, Axes]:
 @drawn
 def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
     """A scene at its start: bodies with their names, springs and dampers, joints, contacts."""
+    if in_space(scene):
+        from fricmb.plot.space import draw_in_space
+
+        return draw_in_space(scene, ax)
     sketch = sketch_of_scene(scene)
     figure, panel = canvas(sketch, ax)
     drawing = Drawing(sketch, panel)
@@ -267,19 +271,18 @@ def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
     return figure
 
 
-def legend(ax: Axes, colours: Paint, touches: list[Touch]) -> None:
-    """What the colours of contacts mean."""
-    if not touches:
-        return
-    modes = {int(m) for touch in touches if touch.mode is not None for m in np.unique(touch.mode)}
+def legend(ax: Axes, colours: Paint, modes: set[int], *, arrows: bool, cones: bool = False) -> None:
+    """What the colours of contacts mean, and arrows and the signs of break-away forces, where there are any."""
     named = {STICK: ("stick", colours.stick), SLIP: ("slip", colours.slip), OPEN: ("open", colours.paper)}
     for mode, (label, colour) in named.items():
         if mode in modes:
             ax.plot([], [], "o", color=colour, markeredgecolor=colours.ink, label=label)
-    ax.plot([], [], color=colours.ink, linewidth=2.0, label="friction")
-    if any(touch.limit is not None and not touch.turns for touch in touches):
+    if arrows:
+        ax.plot([], [], color=colours.ink, linewidth=2.0, label="friction")
+    if cones:
         ax.plot([], [], "--", color=colours.quiet, label="break-away")
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, fontsize="x-small", borderaxespad=0.0)
+    if modes:
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, fontsize="x-small", borderaxespad=0.0)
 
 
 @drawn
@@ -305,10 +308,7 @@ def animate(
         return file
     begin, end, count = shown_span(sol, t_start, t_end)
     frames = count if frames is None else frames
-    sketch = sketch_of_run(sol, np.linspace(begin, end, frames), magnify)
-    figure, ax = canvas(sketch)
-    drawing = Drawing(sketch, ax)
-    legend(ax, paint(), sketch.touches)
+    figure, drawing = _of_run(sol, np.linspace(begin, end, frames), magnify)
     moving = animation.FuncAnimation(figure, drawing.show, frames=frames, interval=1000 / fps, blit=False)
     if file is None:
         return moving
@@ -317,6 +317,20 @@ def animate(
     else:
         moving.save(file, writer=animation.FFMpegWriter(fps=round(fps)), dpi=120)
     return file
+
+
+def _of_run(sol: Solution, times: Floats, magnify: float | None) -> tuple[Figure, Any]:
+    """A figure, and the drawing in it that shows a run at given times."""
+    if in_space(sol.scene):
+        from fricmb.plot.space import space_drawing_of_run
+
+        return space_drawing_of_run(sol, times)
+    sketch = sketch_of_run(sol, times, magnify)
+    figure, ax = canvas(sketch)
+    modes = {int(mode) for touch in sketch.touches if touch.mode is not None for mode in np.unique(touch.mode)}
+    cones = any(touch.limit is not None and not touch.turns for touch in sketch.touches)
+    legend(ax, paint(), modes, arrows=True, cones=cones)
+    return figure, Drawing(sketch, ax)
 
 
 def _check_kind(file: Path) -> None:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._style import drawn, figure_of, finish, paint, panels
-from fricmb.plot._velocities import is_angle
+from fricmb.plot._units import unit_of
 
 if TYPE_CHECKING:
     from fricmb.analysis import BifurcationDiagram, Branch, Cycle
@@ -61,7 +61,7 @@ class BranchPlots:
             (curve,) = panel.plot(x, y, color=colour, label=None if text in known else text, **drawn_as)
             curve.set_gid("branch" if i == 0 else None)
         self._mark(panel, name)
-        unit = units.time if name == "period" else "rad" if is_angle(name) else units.length
+        unit = units.time if name == "period" else unit_of(name, units)
         measured = f"period [{unit}]" if name == "period" else f"amplitude of {name} [{unit}]"
         finish(panel, x=branch.over, y=measured, legend=True)
         return figure_of([panel])

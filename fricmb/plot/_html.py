@@ -9,6 +9,8 @@ from html import escape
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -22,6 +24,16 @@ def block(*parts: str) -> str:
 def resource(name: str) -> str:
     """A file that lies beside this one."""
     return files("fricmb.plot").joinpath(name).read_text(encoding="utf-8")
+
+
+def rounded(values: Any, digits: int = 6) -> list[float]:
+    """Numbers with as many digits as a picture shows; of a constant one."""
+    return [float(f"{x:.{digits}g}") for x in np.asarray(values, dtype=float).tolist()]
+
+
+def short(values: Any) -> list[float]:
+    """The same; of what does not change the first alone."""
+    return rounded(values[:1] if np.ptp(values) == 0.0 else values)
 
 
 def _table(rows: list[tuple[str, str]]) -> str:

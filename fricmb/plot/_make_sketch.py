@@ -40,21 +40,31 @@ def sketch_of_run(sol: Solution, times: Floats, magnify: float | None = None) ->
     return sketch
 
 
+def in_space(scene: Any) -> bool:
+    """Whether a scene has bodies in space, and pictures of three dimensions."""
+    return any(isinstance(body, SpaceBody) for body in scene.bodies)
+
+
 def is_drawn(scene: Any) -> bool:
-    """Whether there are pictures of a scene: of the plane, and not of too many bodies."""
-    flat = not any(isinstance(body, SpaceBody) for body in scene.bodies)
-    return flat and len(scene.bodies) + len(scene.driven) <= DRAWN
+    """Whether there are pictures of a scene: not of too many bodies."""
+    return len(scene.bodies) + len(scene.driven) <= DRAWN
+
+
+def check_drawn(scene: Any) -> None:
+    """Refuse a scene of too many bodies.
+
+    Raises
+    ------
+    AnalysisError
+        With their number.
+    """
+    if not is_drawn(scene):
+        count = len(scene.bodies) + len(scene.driven)
+        raise AnalysisError(f"a scene of {count} bodies is not drawn; at most {DRAWN} are")
 
 
 def _sketch(scene: Any, position: Motion, t: Floats, magnify: float | None) -> Sketch:
-    count = len(scene.bodies) + len(scene.driven)
-    if count > DRAWN:
-        raise AnalysisError(f"a scene of {count} bodies is not drawn; at most {DRAWN} are")
-    if any(isinstance(body, SpaceBody) for body in scene.bodies):
-        raise AnalysisError(
-            "a scene with bodies in space is not drawn: pictures of scenes are of the plane; sol['rod.x'] and"
-            " sol['rod.rotation'] hold what to draw with matplotlib"
-        )
+    check_drawn(scene)
     if any(isinstance(body, RigidBody) for body in scene.bodies) or scene.joints:
         return linkage(scene, position, t)
     return boxes(scene, position, t, magnify)

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 
 from fricmb.plot._fine import Floats, period_of, refined, window_of
 from fricmb.plot._style import THIN, finish, paint
-from fricmb.plot._units import Units
-from fricmb.plot._velocities import SOLID, is_angle
+from fricmb.plot._units import Units, unit_of, unit_of_rate
+from fricmb.plot._velocities import SOLID
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -26,8 +26,7 @@ Curve = Callable[["Solution"], Floats]
 def draw_phase(sol: Solution, name: str, span: tuple[float, float], ax: Axes, units: Units) -> None:
     """Velocity over position; of a contact the plane of relative velocity, or force over it in one dimension."""
     if name not in sol.contact_names:
-        angle = is_angle(name)
-        x, v = ("rad", units.angular_velocity) if angle else (units.length, units.velocity)
+        x, v = unit_of(name, units), unit_of_rate(name, units)
         _curve(sol, lambda seen: np.array([seen[name], seen.velocity(name)]), span, ax)
         finish(ax, x=f"{name} [{x}]", y=f"velocity of {name} [{v}]", legend=_named(ax))
     elif len(sol.names.axes(name)) == 2:
@@ -55,10 +54,10 @@ def draw_path(sol: Solution, x: str, y: str, span: tuple[float, float], ax: Axes
     _curve(sol, lambda seen: np.array([seen[x], seen[y]]), span, ax)
     seen = sol.at(np.array([span[0]]))
     ax.plot(seen[x], seen[y], "o", color=paint().ink, markersize=4, label="start")
-    labels = (f"{name} [{'rad' if is_angle(name) else units.length}]" for name in (x, y))
+    labels = (f"{name} [{unit_of(name, units)}]" for name in (x, y))
     finish(ax, x=next(labels), y=next(labels), legend=True)
     held = ax.dataLim
-    if is_angle(x) == is_angle(y) and held.width > 0 and held.height > 0:
+    if unit_of(x, units) == unit_of(y, units) and held.width > 0 and held.height > 0:
         if 1 / _NARROW < held.height / held.width < _NARROW:
             ax.set_aspect("equal", adjustable="datalim")
         else:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from fricmb.plot._fine import Floats, period_of, refined, window_of
 from fricmb.plot._style import NAMED_CURVES, figure_of, finish, line, name_figure, paint, panels, remark
-from fricmb.plot._units import Units
+from fricmb.plot._units import Units, is_angle, is_direction, unit_of_rate
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -39,11 +39,6 @@ def velocity_of(sol: Solution, name: str, row: int) -> Floats:
     return sol.velocity(name) if row < 0 else sol.relative_velocity(name)[row]
 
 
-def is_angle(name: str) -> bool:
-    """Whether a dof or a relative motion is a rotation."""
-    return name.endswith(".angle")
-
-
 def panels_of(sol: Solution, names: Iterable[str] | None, units: Units, *, one: bool) -> list[Panel]:
     """What stands in which panel: a panel for each direction, for the modes of a body, for directions of contacts.
 
@@ -53,7 +48,7 @@ def panels_of(sol: Solution, names: Iterable[str] | None, units: Units, *, one: 
     for name in _default(sol) if names is None else names:
         for key, label, curve in _curves(sol, name, units):
             found.setdefault("" if one else key, Panel(label=label)).curves.append(curve)
-    if one and len({c[1].rpartition(".")[2] == "angle" for panel in found.values() for c in panel.curves}) > 1:
+    if one and len({unit_of_rate(c[1], units) for panel in found.values() for c in panel.curves}) > 1:
         found[""].label = f"velocity [{units.velocity}]"
     return list(found.values())
 
@@ -81,6 +76,8 @@ def _curves(sol: Solution, name: str, units: Units) -> list[tuple[str, str, tupl
         return [(f"modes {owner}", f"modal velocity of {owner}", (last, name, -1))]
     if is_angle(name):
         return [("angle", f"angular velocity [{units.angular_velocity}]", (name, name, -1))]
+    if is_direction(name):
+        return [(f"axes {owner}", f"rate of axes of {owner} [{units.rate}]", (last, name, -1))]
     return [(last, f"velocity [{units.velocity}]", (name, name, -1))]
 
 

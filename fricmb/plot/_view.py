@@ -10,9 +10,10 @@ import numpy as np
 
 from fricmb.plot._contact import STICK, phases
 from fricmb.plot._fine import Floats
-from fricmb.plot._html import block, resource
-from fricmb.plot._make_sketch import DRAWN, PICTURES, is_drawn, shown_span, sketch_of_run
+from fricmb.plot._html import block, resource, rounded, short
+from fricmb.plot._make_sketch import DRAWN, PICTURES, in_space, is_drawn, shown_span, sketch_of_run
 from fricmb.plot._sketch import Sketch, Touch
+from fricmb.plot._units import unit_of, unit_of_rate
 from fricmb.solution._stored import Stored
 
 if TYPE_CHECKING:
@@ -36,19 +37,22 @@ def solution_html(
     times = _times(sol, begin, end, len(names))
     every = sol.at(times).columns()
     drawn = is_drawn(sol.scene)
+    spatial = drawn and in_space(sol.scene)
     data = {
-        "t": _rounded(times, 9),
+        "t": rounded(times, 9),
         "span": [begin, end],
         "seconds": max(2.0, _SWING * pictures / PICTURES),
         "time": sol.units.time,
-        "signals": {name: _rounded(every[name]) for name in names},
+        "signals": {name: rounded(every[name]) for name in names},
         "labels": {name: _unit(name, sol.units) for name in names},
         "stick": _stuck(sol),
         "bounds": _bounds(sol, names) if (end - begin) < 0.5 * (sol.t_end - sol.t_start) else None,
-        "sketch": _sketch(sketch_of_run(sol, times, magnify)) if drawn else None,
+        "sketch": _sketch(sketch_of_run(sol, times, magnify)) if drawn and not spatial else None,
+        "space": _in_space(sol, times) if spatial else None,
         **_first(sol, names),
     }
-    script = resource("view.js").replace("DATA", json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
+    script = resource("view.js").replace("SPACE", resource("space/space.js") if spatial else "null")
+    script = script.replace("DATA", json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
     return block(
         f"<b>{escape(str(sol.scene.name))}</b>",
         _controls(names, drawn),
@@ -105,19 +109,10 @@ _SPEEDS = ("0.25", "0.5", "1", "2", "4")
 
 def _times(sol: Solution, begin: float, end: float, signals: int) -> Floats:
     """Times of the whole run, most of them in the part that is shown first."""
-    moved = 3 * min(DRAWN, len(sol.scene.bodies) + len(sol.scene.driven))
+    moved = (7 if in_space(sol.scene) else 3) * min(DRAWN, len(sol.scene.bodies) + len(sol.scene.driven))
     count = int(np.clip(_NUMBERS / max(1, signals + moved), 300, _TIMES))
     whole = np.linspace(sol.t_start, sol.t_end, count // 3 if end - begin < sol.t_end - sol.t_start else count)
     return np.unique(np.concatenate((whole, np.linspace(begin, end, count - len(whole) or 2))))
-
-
-def _rounded(values: Any, digits: int = 6) -> list[float]:
-    """Numbers with as many digits as a picture shows; of a constant one."""
-    return [float(f"{x:.{digits}g}") for x in np.asarray(values, dtype=float).tolist()]
-
-
-def _short(values: Floats) -> list[float]:
-    return _rounded(values[:1] if np.ptp(values) == 0.0 else values)
 
 
 def _unit(name: str, units: Units) -> str:
@@ -128,11 +123,10 @@ def _unit(name: str, units: Units) -> str:
     if "normal_force" in words or "force" in words:
         return units.force
     rate = "velocity" in words or "relative_velocity" in words
-    if "angle" in words:
-        return units.angular_velocity if rate else "1" if units.dimensionless else "rad"
     if words[-1 - rate][:4] == "mode" or "state" in words:
         return ""
-    return units.velocity if rate else units.length
+    motion = ".".join(words[:-1] if rate and "velocity" in words else words)
+    return unit_of_rate(motion, units) if rate else unit_of(motion, units)
 
 
 def _first(sol: Solution, names: list[str]) -> dict[str, Any]:
@@ -151,8 +145,8 @@ def _bounds(sol: Solution, names: list[str]) -> dict[str, Any]:
     values = {}
     for name in names:
         rows = np.asarray(seen[name], dtype=float).reshape(_BINS, _SAMPLES)
-        values[name] = [_rounded(rows.min(axis=1), 5), _rounded(rows.max(axis=1), 5)]
-    return {"t": _rounded(0.5 * (edges[:-1] + edges[1:]), 8), "values": values}
+        values[name] = [rounded(rows.min(axis=1), 5), rounded(rows.max(axis=1), 5)]
+    return {"t": rounded(0.5 * (edges[:-1] + edges[1:]), 8), "values": values}
 
 
 def _stuck(sol: Solution) -> dict[str, list[list[float]]]:
@@ -162,6 +156,12 @@ def _stuck(sol: Solution) -> dict[str, list[list[float]]]:
         bounds, mode = phases(sol, name)
         found[name] = [[float(bounds[i]), float(bounds[i + 1])] for i in np.flatnonzero(mode == STICK)]
     return found
+
+
+def _in_space(sol: Solution, times: Floats) -> dict[str, Any]:
+    from fricmb.plot.space import space_data, space_sketch_of_run
+
+    return space_data(space_sketch_of_run(sol, times))
 
 
 def _sketch(sketch: Sketch) -> dict[str, Any]:
@@ -176,15 +176,15 @@ def _sketch(sketch: Sketch) -> dict[str, Any]:
             {
                 "name": shape.name,
                 "face": shape.face,
-                "outline": [_rounded(point, 5) for point in shape.outline],
-                "marks": [[_rounded(point, 5) for point in mark] for mark in shape.marks],
+                "outline": [rounded(point, 5) for point in shape.outline],
+                "marks": [[rounded(point, 5) for point in mark] for mark in shape.marks],
                 "label": shape.label,
                 "band": shape.band,
             }
             for shape in sketch.shapes
         ],
-        "places": [[_short(row) for row in place] for place in sketch.places],
-        "strokes": {str(k): _short(shift) for k, shift in sketch.strokes.items()},
+        "places": [[short(row) for row in place] for place in sketch.places],
+        "strokes": {str(k): short(shift) for k, shift in sketch.strokes.items()},
         "links": [vars(link) for link in sketch.links],
         "marks": [vars(mark) for mark in sketch.marks],
         "touches": [_touch(touch) for touch in sketch.touches],
@@ -200,9 +200,9 @@ def _touch(touch: Touch) -> dict[str, Any]:
     return {
         "at": touch.at,
         "turns": touch.turns,
-        "force": [_short(row) for row in force],
-        "limit": None if touch.limit is None else _short(touch.limit),
+        "force": [short(row) for row in force],
+        "limit": None if touch.limit is None else short(touch.limit),
         "mode": touch.mode[:1].tolist() if np.ptp(touch.mode) == 0 else touch.mode.tolist(),
-        "along": _rounded(along / size) if size > 0.0 else [1.0, 0.0],
+        "along": rounded(along / size) if size > 0.0 else [1.0, 0.0],
         "planar": bool(np.ptp(force[0]) > 0.0 and np.ptp(force[1]) > 0.0),
     }

@@ -150,8 +150,14 @@
   }
 
   // ---- the scene
+  const inSpace = data.space ? SPACE(scene, data.space, () => drawScene()) : null;
   function drawScene() {
     const sketch = data.sketch;
+    if (inSpace) {
+      const [p, w, h] = pen(scene), [i, share] = moment(now);
+      inSpace(p, w, h, colour, between, i, share); legend(p, data.space.touches);
+      return;
+    }
     if (!sketch || !scene) return;
     const [p, w, h] = pen(scene), [left, right, bottom, top] = sketch.view;
     const scale = Math.min(w / (right - left), h / (top - bottom));

@@ -56,3 +56,31 @@ def test_view(page_of_a_run, size, theme):
         assert np.isfinite(told)
         browser.close()
     assert complaints == []
+
+
+def test_a_scene_in_space_is_turned_by_dragging(tmp_path):
+    ball = fm.space.Ball("ball", mass=0.1, radius=0.03, position=(0, 0, 0.03), velocity=(1, 0, 0))
+    cloth = fm.space.OnPlane("cloth", ball, normal=(0, 0, 1), friction=fm.laws.Coulomb(mu_s=0.2), push_only=True)
+    scene = fm.Scene("billiard", [ball, cloth, fm.Gravity("weight", acceleration={"z": -9.81})])
+    path = fm.simulate(scene, t_end=0.3, rtol=1e-6).plot.view(tmp_path / "view.html")
+    with playwright.sync_playwright() as start:
+        browser = start.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_context(viewport={"width": 1280, "height": 800}, offline=True).new_page()
+        complaints = []
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.goto(path.as_uri())
+        picture = "document.querySelector('canvas.scene').toDataURL()"
+        before = page.evaluate(picture)
+        box = page.locator("canvas.scene").bounding_box()
+        page.mouse.move(box["x"] + 100, box["y"] + 100)
+        page.mouse.down()
+        page.mouse.move(box["x"] + 180, box["y"] + 130)
+        page.mouse.up()
+        turned = page.evaluate(picture)
+        page.mouse.move(box["x"] + 60, box["y"] + 90)
+        assert before != turned == page.evaluate(picture)
+        page.fill("input[type=range]", "500")
+        assert page.evaluate(picture) != turned
+        browser.close()
+    assert complaints == []
