@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numba.core import event as numba_event
 
 import fricmb as fm
 
@@ -87,20 +88,22 @@ class Outcome:
 class Worker:
     """A process of its own for runs that might not end.
 
-    It is ended after ``limit`` seconds of its processor (where that is known, else of the clock), and begun again; the
-    first seconds of a process go into loading compiled code.
+    It is ended after ``limit`` seconds of its processor (where that is known, else of the clock), and begun again.
+    What it compiles, or loads of what was compiled, does not count.
     """
 
     def __init__(self, limit: float = 20.0) -> None:
         self.limit = limit
         self.process: Any = None
+        self.compiling: Any = None
 
     def ask(self, *arguments: Any) -> Outcome:
         """As :func:`attempt`; "late" where it took too long."""
         if self.process is None:
             context = multiprocessing.get_context("spawn")
             self.pipe, other = context.Pipe()
-            self.process = context.Process(target=serve, args=(other,), daemon=True)
+            self.compiling = context.Array("d", 2, lock=False)  # loading the package counts likewise
+            self.process = context.Process(target=serve, args=(other, self.compiling), daemon=True)
             self.process.start()
         self.pipe.send(arguments)
         before = self.spent()
@@ -119,12 +122,14 @@ class Worker:
         return Outcome("late", f"not done within {self.limit:g} s")
 
     def spent(self) -> float:
-        """Seconds of the processor that the process has used."""
+        """Seconds of the processor that the process has used, but for those that went into compiling."""
         stat = Path(f"/proc/{self.process.pid}/stat")
         if not stat.exists():
             return time.monotonic()
         user, system = stat.read_text().rpartition(")")[2].split()[11:13]
-        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+        used = (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+        done, since = self.compiling
+        return (used if since < 0.0 else since) - done
 
     def stop(self) -> None:
         """End the process."""
@@ -134,6 +139,31 @@ class Worker:
             self.process = None
 
 
+class CompileClock(numba_event.Listener):
+    """Tells another process of seconds spent loading and compiling.
+
+    ``told`` (2,): seconds that are over, and since when it has been at it (or -1).
+    """
+
+    def __init__(self, told: Any) -> None:
+        self.told = told
+        self.depth = 1
+        self.on_end(None)
+
+    def on_start(self, event: Any) -> None:
+        """The outermost of compilations begins."""
+        if self.depth == 0:
+            self.told[1] = time.process_time()
+        self.depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """It is over."""
+        self.depth -= 1
+        if self.depth == 0:
+            self.told[0] += time.process_time() - self.told[1]
+            self.told[1] = -1.0
+
+
 def end_with_parent() -> None:
     """This process ends when the one that began it does, however that happens: killed, it could not tell us."""
     parent = multiprocessing.parent_process()
@@ -141,9 +171,10 @@ def end_with_parent() -> None:
         threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
 
 
-def serve(pipe: Any) -> None:
-    """What the process does."""
+def serve(pipe: Any, told: Any) -> None:
+    """What the process does; ``told`` see :class:`CompileClock`."""
     end_with_parent()
+    numba_event.register("numba:compiler_lock", CompileClock(told))
     while True:
         try:
             arguments = pipe.recv()

@@ -136,3 +136,18 @@ def crossing_at_points(tab: Tableau, first: float, values: Floats) -> float:
                 return float(last_x + (x - last_x) * last / (last - value))
             last, last_x = value, x
     return 2.0
+
+
+@kernel
+def crossing_at_stages(tab: Tableau, first: float, values: Floats) -> float:
+    """Like :func:`first_crossing` from the stages alone, by straight lines.
+
+    For forces of redundant contacts: they jump between two stages where a load is shared in another way from there on,
+    and a polynomial through a jump swings below 0 beside it.
+    """
+    last_x, last = 0.0, first
+    for j in range(tab.c.shape[0]):
+        if values[j] < 0.0:
+            return float(last_x + (tab.c[j] - last_x) * last / (last - values[j]))
+        last, last_x = values[j], tab.c[j]
+    return 2.0

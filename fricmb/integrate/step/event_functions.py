@@ -11,8 +11,11 @@ from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_
 from fricmb.integrate.model.law_values import break_away
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
-from fricmb.integrate.step.crossing import crossing_at_points, first_crossing
+from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
 from fricmb.integrate.step.radau_step import OneStep
+
+#: A slip speed below this part of the velocities that it is the difference of is round-off: the slip begins.
+BEGINS = 1e-13
 
 
 @block
@@ -30,16 +33,9 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
         for j in range(n_s):
             share_load(packed, s, y.mode, w.N[j], w.F[j], y.way, 1.0)
     for k in range(y.mode.shape[0]):
-        row0 = packed.ports.row[k]
-        d = packed.ports.row[k + 1] - row0
         x = 2.0
         if packed.ports.law[k] != LAW_SMOOTH and y.mode[k] == SLIP:
-            for j in range(n_s):
-                one.margin[j] = w.r[j, k]
-            if packed.ports.soft[0] > 0.0:
-                x = crossing_at_points(tab, slip_speed(y.g, row0, d), one.margin)
-            else:
-                x = first_crossing(tab, slip_speed(y.g, row0, d), one.margin, one.series)
+            x = slip_crossing(packed, y, one, k)
         elif y.mode[k] == STICK:
             x = cone_crossing(packed, s, y, end, one, k)
         if packed.ports.var[k] >= 0:
@@ -48,6 +44,26 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
             found[0] = x
             first = k
     return first if n_s > 0 else -1
+
+
+@kernel
+def slip_crossing(packed: Packed, y: State, one: OneStep, k: int) -> float:
+    """Where the speed of a contact that slips first passes 0; 2 where it does not.
+
+    Slip that only begins, at 0 up to round-off, rises from there, whatever the polynomial makes of its first moment:
+    where the acceleration does not jump it rises by less than the stages resolve.
+    """
+    row0 = packed.ports.row[k]
+    first = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+    grain = BEGINS * y.size[row0] + 1e-4 * packed.ports.noise[k]
+    begins = first <= grain
+    for j in range(one.tab.c.shape[0]):
+        one.margin[j] = one.w.r[j, k] + (grain if begins else 0.0)
+    if begins:
+        first = 0.0
+    if packed.ports.soft[0] > 0.0:
+        return crossing_at_points(one.tab, first, one.margin)
+    return first_crossing(one.tab, first, one.margin, one.series)
 
 
 @kernel
@@ -77,7 +93,10 @@ def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair
-    x = first_crossing(one.tab, first + hair, one.margin, one.series)
+    if packed.ports.soft[0] > 0.0:
+        x = crossing_at_stages(one.tab, first + hair, one.margin)
+    else:
+        x = first_crossing(one.tab, first + hair, one.margin, one.series)
     if x > 1.0 and last < 0.0:
         before = one.tab.c[n_s - 2] if n_s > 1 else 0.0
         inner = one.margin[n_s - 2] - hair if n_s > 1 else first
