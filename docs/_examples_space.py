@@ -13,6 +13,20 @@ _PICTURE = """
 figure, ax = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
 """
 
+_AXLE = (
+    "import matplotlib.pyplot as plt\nimport numpy as np\n"
+    'axle = fm.space.Rotor("axle", mass=1250.0, inertia_across=700.0, inertia_axial=110.0, position=(0, 0.005, 0.45),\n'
+    '                      axis=(0, 1, 0), spin=120.0 / 0.45, stations={"left": 0.75, "right": -0.75})\n'
+    'spring = fm.Spring("across", axle, axis="y", stiffness=3e5)\n' + _DOWN
+)
+_WHEELS = """
+wheels = [
+    fm.space.WheelRail(side, axle.station(side), through=(0, y, 0), rolling_radius=0.45, conicity=0.05,
+                       speed=120.0, friction=creep)
+    for side, y in (("left", 0.75), ("right", -0.75))
+]
+"""
+
 
 def _run(parts: str, shown: str, t_end: float = 1.0) -> str:
     """A scene of these parts, run, and what is printed of it."""
@@ -54,6 +68,24 @@ EXAMPLES = {
     + _PICTURE
     + 'seen = sol.at(np.linspace(0.0, 1.0, 400))\nax.plot(seen.t, np.hypot(*seen.relative_velocity("cloth")))\n'
     + 'ax.set(xlabel="time", ylabel="slip speed")\n',
+    "space.kalker": "found = fm.space.kalker(a=6e-3, b=5e-3, shear_modulus=8e10, poisson=0.28)\nprint(found)\n",
+    "space.WheelRail": _AXLE
+    + "creep = fm.space.ShenHedrickElkins(mu=0.3, f11=8e6, f22=7e6, speed=120.0)\n"
+    + _WHEELS
+    + _run("axle, spring, *wheels, weight", 'sol["axle.y"][-1]')
+    + _PICTURE
+    + 'seen = sol.at(np.linspace(0.0, 1.0, 400))\nax.plot(seen.t, seen["axle.y"])\n'
+    + 'ax.set(xlabel="time", ylabel="displacement")\n',
+    "space.LinearCreep": "import matplotlib.pyplot as plt\nimport numpy as np\n"
+    "given = {'f11': 8e6, 'f22': 8e6, 'speed': 50.0}\n"
+    "laws = [fm.space.LinearCreep(**given), fm.space.ShenHedrickElkins(mu=0.3, **given),\n"
+    "        fm.space.Polach(mu=0.3, A=0.4, B=0.6, **given)]\n"
+    "slip = np.linspace(0.0, 1.0, 200)\n"
+    + _PICTURE
+    + "for law in laws:\n"
+    "    ax.plot(slip / 50.0, -law.force([slip, 0 * slip], 60e3)[0], label=type(law).__name__)\n"
+    'ax.set(xlabel="creepage", ylabel="force, N", ylim=(0, 3e4))\nax.legend()\n'
+    "print(laws[1].force([0.1, 0.05], 60e3).round(3))\n",
     "space.turned": "print(fm.space.turned(axis=(0, 0, 1), angle=0.1)[0])\n",
     "space.Spherical": _hung('joint = fm.space.Spherical("joint", arm.point("top"))'),
     "space.Revolute": _hung('joint = fm.space.Revolute("joint", arm.point("top"), axis=(0, 1, 0))'),
@@ -65,4 +97,7 @@ EXAMPLES = {
     "space.Fixed": _hung('joint = fm.space.Fixed("joint", arm.point("top"))'),
     "space.Rod": _hung('joint = fm.space.Rod("joint", arm.point("top"), fm.space.ground_point(0, 0, 1), length=1.0)'),
 }
-SHARED = {"space.ground_point": "space.Rod"}
+SHARED = {
+    "space.ground_point": "space.Rod", "space.KalkerCoefficients": "space.kalker",
+    **dict.fromkeys(("space.ShenHedrickElkins", "space.Polach"), "space.LinearCreep"),
+}

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._steady import SteadySliding, steady_sliding
-from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, eigenpairs, follow, refine
+from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, follow, refine
 from fricmb.values import DIMENSIONS, Units
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def complex_eigenvalues(
     def solve(value: float) -> Pairs:
         steady = _steady(scene, {over: value}, speeds)
         dofs[:] = [steady.system.dof_names[i] for i in steady.free]
-        return eigenpairs(steady.matrix())
+        return steady.eigenpairs()
 
     found = follow(solve, grid)
     critical = crossings(solve, grid, found)
@@ -214,7 +214,7 @@ def stability_map(
     unstable = np.zeros((first.size, second.size), dtype=np.int64)
     for i, a in enumerate(first.tolist()):
         for j, b in enumerate(second.tolist()):
-            found = eigenpairs(_steady(scene, {over[0]: a, over[1]: b}, speeds).matrix())[0]
+            found = _steady(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
             if not found.size:
                 continue
             scale = float(np.abs(found).max())

@@ -63,7 +63,7 @@ def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -
         states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
         N[k], N_X = _normal(system, k, X)
         r[k] = float(np.linalg.norm(g[rows]))
-        F[rows], rate[states], J = _friction(system, k, g[rows], float(r[k]), float(N[k]), z[states])
+        F[rows], rate[states], J = friction_at(system, k, g[rows], float(r[k]), float(N[k]), z[states])
         # J over (g, N, z) of (F, z')
         d, W = F[rows].size, contacts.W[:, rows]
         both_X = J[:, :d] @ g_X[rows] + np.outer(J[:, d], N_X)
@@ -98,7 +98,7 @@ def stiffness_without_friction(system: System, q: Floats, v: Floats) -> Floats:
     return 0.5 * (K + K.T)
 
 
-def _forms(table: Templates, k: int, n_X: int) -> Floats:
+def slopes_of(table: Templates, k: int, n_X: int) -> Floats:
     """Slopes (n_x, n_X) of the arguments of function k."""
     first, last = int(table.x_start[k]), int(table.x_start[k + 1])
     slopes = np.zeros((last - first, n_X))
@@ -113,7 +113,7 @@ def _add_elements(system: System, X: Floats, force: Floats, force_X: Floats) -> 
     table = elements.table
     for k in range(len(table.address)):
         first, last = int(elements.f_start[k]), int(elements.f_start[k + 1])
-        slopes = _forms(table, k, X.size)
+        slopes = slopes_of(table, k, X.size)
         n_f, n_x = last - first, len(slopes)
         out = evaluate(table, k, arguments(table, k, X[:, None]), n_f * (1 + n_x) + 3)[:, 0]
         local_X = out[n_f : n_f * (1 + n_x)].reshape(n_f, n_x) @ slopes
@@ -130,7 +130,7 @@ def _normal(system: System, k: int, X: Floats) -> tuple[float, Floats]:
     if contacts.normal[k] == NORMAL_CONSTANT:
         return float(contacts.N[k]), np.zeros(X.size)
     table = contacts.normal_table
-    slopes = _forms(table, k, X.size)
+    slopes = slopes_of(table, k, X.size)
     n_out = 1 + len(slopes) + (2 if contacts.normal[k] == NORMAL_LAW else 0)
     out = evaluate(table, k, arguments(table, k, X[:, None]), n_out)[:, 0]
     if out[0] <= 0.0:
@@ -138,7 +138,7 @@ def _normal(system: System, k: int, X: Floats) -> tuple[float, Floats]:
     return float(out[0]), out[1 : 1 + len(slopes)] @ slopes
 
 
-def _friction(system: System, k: int, g: Floats, r: float, N: float, z: Floats) -> tuple[Floats, Floats, Floats]:
+def friction_at(system: System, k: int, g: Floats, r: float, N: float, z: Floats) -> tuple[Floats, Floats, Floats]:
     """Force (d,), state rates (n_z,) and their Jacobian (d+n_z, d+1+n_z) over (g, N, z) of a sliding contact."""
     contacts = system.problem.contacts
     if contacts.law[k] == LAW_SMOOTH:

@@ -10,9 +10,10 @@ import numpy as np
 
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._linearise import Linearised, linearise
+from fricmb.analysis._track import Pairs, eigenpairs
 from fricmb.errors import unknown_name
 from fricmb.integrate.problem import LAW_SMOOTH, Ints
-from fricmb.system import System, build
+from fricmb.system import MechanismSystem, System, build
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
@@ -107,6 +108,10 @@ class SteadySliding:
         middle = np.linalg.solve(M, self.at.force_y[np.ix_(i, columns)]) if i.size else np.zeros((0, columns.size))
         return np.vstack([top, middle, self.at.rate_y[:, columns]])
 
+    def eigenpairs(self) -> Pairs:
+        """Eigenvalues of :meth:`matrix` and unit eigenvectors by rows, which begin with ``free``."""
+        return eigenpairs(self.matrix())
+
     def _index(self, name: str) -> int:
         names = self.system.dof_names
         if name not in names:
@@ -151,13 +156,15 @@ def steady_sliding(scene: Scene, *, speeds: Mapping[str, float] | None = None) -
     Newton's method with the analytic Jacobian of the scene, from its initial positions; a free rigid motion stays where
     it starts.
     """
-    if scene.is_mechanism:
-        raise AnalysisError("steady_sliding: takes no bodies that turn and joints")
     system = build(scene)
     held = dict(speeds or {})
     for name in held:
         if name not in system.dof_names:
             raise unknown_name("degree of freedom in speeds", name, system.dof_names)
+    if isinstance(system, MechanismSystem):
+        from fricmb.analysis._steady_motion import steady_motion
+
+        return steady_motion(scene, system, held)
     v = np.array([float(held.get(name, 0.0)) for name in system.dof_names])
     free = np.array([i for i, name in enumerate(system.dof_names) if name not in held], dtype=np.int64)
     q, z = _solve(system, v, free)
@@ -210,15 +217,20 @@ def _residual(system: System, q: Floats, v: Floats, z: Floats, free: Ints) -> Fl
     return np.concatenate([at.force[free], at.rate])
 
 
-def _check(system: System, at: Linearised, q: Floats, v: Floats, z: Floats, free: Ints) -> None:
-    """Refuse what is no steady sliding."""
-    names, contacts = system.dof_names, system.problem.contacts
+def check_slides(system: System, at: Linearised) -> None:
+    """Refuse contacts that stick."""
     for k, name in enumerate(system.contact_names):
-        if at.r[k] == 0.0 and at.N[k] > 0.0 and contacts.law[k] != LAW_SMOOTH:
+        if at.r[k] == 0.0 and at.N[k] > 0.0 and system.problem.contacts.law[k] != LAW_SMOOTH:
             raise AnalysisError(
                 f"steady_sliding: contact {name!r} does not slide; drive one of its ends, give it slide=, or give"
                 " speeds={...}"
             )
+
+
+def _check(system: System, at: Linearised, q: Floats, v: Floats, z: Floats, free: Ints) -> None:
+    """Refuse what is no steady sliding."""
+    names = system.dof_names
+    check_slides(system, at)
     scale = _scale(system, at, q)
     off = np.abs(at.force[free])
     if off.size and off.max() > 1e-9 * scale:
