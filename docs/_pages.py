@@ -15,7 +15,8 @@ from fricmb.models import catalogue
 # Dimensions of arguments of models, by what they are called; "" where there is none.
 DIMENSIONS = {
     "mass": "mass", "masses": "mass", "support": "mass", "pad_mass": "mass", "density": "mass/length",
-    "inertia": "mass length^2", "length": "length", "radius": "length", "crank": "length", "rod": "length",
+    "inertia": "mass length^2", "inertia_across": "mass length^2", "inertia_axial": "mass length^2", "reach": "length",
+    "tip_radius": "length", "length": "length", "radius": "length", "crank": "length", "rod": "length",
     "coupler": "length", "rocker": "length", "half": "length", "pin": "length", "bump": "length", "eps": "length",
     "x0": "length", "position": "length", "kick": "length", "angle": "rad", "angles": "rad",
     "stiffness": "force/length", "coupling": "force/length", "ground": "force/length", "k1": "force/length",
@@ -24,7 +25,8 @@ DIMENSIONS = {
     "amplitude": "force", "preload": "force", "load": "force", "torque": "force length",
     "mu_k_N": "force", "mu_s_N": "force", "speed": "length/time", "belt": "length/time", "velocity": "length/time",
     "v0": "length/time", "u0": "length/time", "table": "length/time", "rotor_velocity": "modal",
-    "frequency": "rad/time", "spin": "rad/time",
+    "frequency": "rad/time", "spin": "rad/time", "angular_velocity": "rad/time", "rates": "rad/time",
+    "turning": "rad/time",
 }  # fmt: skip
 NUMBERS = [
     "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",

@@ -19,6 +19,11 @@ TELLING = {
     "painleve_rod": ["rod.angle"],
     "four_bar": ["crank.angle", "rocker.angle"],
     "drive_train": ["wheel.angle", "disc.angle"],
+    "heavy_top": ["top.axis_x", "top.axis_z"],
+    "rising_top": ["top.axis_z", "top.spin"],
+    "billiard": ["ball.x", "ball.y", "ball.turn_x"],
+    "rolling_coin": ["coin.x", "coin.axis_z"],
+    "turntable": ["ball.x", "ball.y"],
 }
 
 

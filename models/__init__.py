@@ -9,6 +9,7 @@ if __name__ != "fricmb.models":
 from fricmb.models._catalogue import Model, catalogue
 from fricmb.models.andrews import andrews
 from fricmb.models.belt_oscillator import belt_oscillator
+from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
@@ -16,20 +17,25 @@ from fricmb.models.drive_train import drive_train
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
+from fricmb.models.heavy_top import heavy_top
 from fricmb.models.minimal_flutter import minimal_flutter
 from fricmb.models.pad_rotor import pad_rotor
 from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
+from fricmb.models.rising_top import rising_top
+from fricmb.models.rolling_coin import rolling_coin
 from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
+from fricmb.models.turntable import turntable
 
 __all__ = [
     "Model",
     "andrews",
     "belt_oscillator",
+    "billiard",
     "block_stack",
     "brake4dof",
     "car_axis",
@@ -38,13 +44,17 @@ __all__ = [
     "dry_pendulum",
     "four_bar",
     "friction_oscillator",
+    "heavy_top",
     "minimal_flutter",
     "pad_rotor",
     "painleve_rod",
     "planar_oscillator",
     "puck_on_belt",
+    "rising_top",
+    "rolling_coin",
     "rotor_doublet",
     "slider_crank",
     "sprag_slip",
     "stick_slip_chain",
+    "turntable",
 ]

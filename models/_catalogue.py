@@ -10,6 +10,7 @@ from types import MappingProxyType
 import fricmb as fm
 from fricmb.models.andrews import andrews
 from fricmb.models.belt_oscillator import belt_oscillator
+from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
@@ -17,15 +18,19 @@ from fricmb.models.drive_train import drive_train
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
+from fricmb.models.heavy_top import heavy_top
 from fricmb.models.minimal_flutter import minimal_flutter
 from fricmb.models.pad_rotor import pad_rotor
 from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
+from fricmb.models.rising_top import rising_top
+from fricmb.models.rolling_coin import rolling_coin
 from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
+from fricmb.models.turntable import turntable
 from fricmb.values import DIMENSIONLESS, SI, Units
 
 
@@ -77,6 +82,11 @@ _MODELS = (
     Model(build=painleve_rod, t_end=0.2, units=SI),
     Model(build=four_bar, t_end=2.0, units=SI),
     Model(build=drive_train, t_end=20.0, units=SI),
+    Model(build=heavy_top, t_end=1.0, units=SI),
+    Model(build=rising_top, t_end=6.0, units=SI),
+    Model(build=billiard, t_end=1.0, units=SI),
+    Model(build=rolling_coin, t_end=2.0, units=SI),
+    Model(build=turntable, t_end=3.0, units=SI),
 )
 
 #: The built-in models by name.

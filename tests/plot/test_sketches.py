@@ -161,6 +161,7 @@ def test_every_model_is_drawn(theme, tmp_path):
             assert {body.name for body in scene.bodies} <= texts, name
             assert figure.get_suptitle() == scene.name
     figure.savefig(tmp_path / "scene.svg")
+    scene = fm.models.drive_train()
     _, ax = plt.subplots()
     assert scene.draw(ax=ax) is ax.figure
 

@@ -51,7 +51,7 @@ class SpaceDrawing:
         self.pins = self._dots(self.paint.paper)
         self.arrows = [self._line(2.0, self.paint.ink, zorder=8) for _ in sketch.touches]
         self.touches = [self._dots(self.paint.quiet) for _ in sketch.touches]
-        self.names = [ax.text(0, 0, 0, f" {solid.name}", fontsize=7, zorder=10) for solid in sketch.solids]
+        self.names = [ax.text(0, 0, 0, solid.name, fontsize=7, ha="center", zorder=10) for solid in sketch.solids]
         self.clock = ax.set_title("", loc="left", fontsize=9)
         self.show(0)
 
@@ -107,7 +107,7 @@ class SpaceDrawing:
             line.set_data_3d(*joined([edge for edge, seen in zip(turned, facing, strict=True) if seen]))
             middle = self.sketch.places[k, :, i]
             top = max(float(points[:, 2].max()) for points in (middle[None], *moved, *turned))
-            self.names[k].set_position_3d((middle[0], middle[1], top + 0.02 * self.sketch.size))
+            self.names[k].set_position_3d((middle[0], middle[1], top + 0.05 * self.sketch.size))
 
 
 def shaded(colour: Any, face: Floats) -> tuple[float, ...]:
