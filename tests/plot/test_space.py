@@ -183,3 +183,23 @@ def test_turns_of_a_page_do_not_jump(runs):
     data = space_data(sketch)
     assert data["touches"][0]["mode"].count(0) > 0
     assert len(data["solids"][0]["place"][0]) == 400
+
+
+def test_wheels_stand_on_their_rails():
+    axle = fm.space.Rotor(
+        "axle", mass=1250.0, inertia_across=700.0, inertia_axial=100.0, position=(0, 0, 0.45), axis=(0, 1, 0),
+        spin=100.0, stations={"left": 0.75, "right": -0.75},
+    )  # fmt: skip
+    creep = fm.space.LinearCreep(f11=8e6, f22=7e6, speed=45.0)
+    wheels = [
+        fm.space.WheelRail(side, axle.station(side), through=(0, y, 0), rolling_radius=0.45, speed=45.0, friction=creep)
+        for side, y in (("left", 0.75), ("right", -0.75))
+    ]
+    sketch = space_sketch_of_scene(fm.Scene("axle", [axle, *wheels, WEIGHT]))
+    assert [touch.at[:, 0].round(12).tolist() for touch in sketch.touches] == [[0, 0.75, 0], [0, -0.75, 0]]
+    for rail, y in zip(sketch.rails, (0.75, -0.75), strict=True):
+        assert rail[:, 1:] == pytest.approx(np.array([[y, 0.0]] * 2))
+        assert np.ptp(rail[:, 0]) > 1.0
+    corners = sketch.moved(0, sketch.solids[0].corners(), 0)
+    assert corners[:, 2].min() == pytest.approx(0.0, abs=0.01)
+    assert np.ptp(corners[:, 1]) == pytest.approx(1.5, abs=0.1)

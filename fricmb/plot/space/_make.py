@@ -10,7 +10,7 @@ from fricmb.plot._contact import static_limit
 from fricmb.plot._layout import owner
 from fricmb.plot._make_sketch import check_drawn
 from fricmb.plot._sketch import Floats, Motion, motions_at_start, motions_of
-from fricmb.plot.space._shapes import ball, cone, cuboid, cylinder_of, disc, edges_of
+from fricmb.plot.space._shapes import axle, ball, cone, cuboid, cylinder_of, disc, edges_of
 from fricmb.plot.space._sketch import FIXED, Floor, Solid, SpaceLink, SpaceSketch, SpaceTouch, Spot
 from fricmb.plot.space._turns import turns_of
 from fricmb.scene import Contact, RigidBody, SpaceBody, t
@@ -49,10 +49,10 @@ def space_sketch_of_run(sol: Solution, times: Floats) -> SpaceSketch:
 
 def _directions(part: Any) -> Floats | None:
     """Directions of space (d, 3) that a friction force has; None where it is none at a point."""
-    from fricmb.space import OnPlane
+    from fricmb.space import OnPlane, WheelRail
 
-    if isinstance(part, OnPlane):
-        return part.frame()[:2]
+    if isinstance(part, OnPlane | WheelRail):
+        return np.asarray(part.frame()[:2])
     if isinstance(part, Contact):
         along = np.zeros((len(part.directions()), 3))
         for k, row in enumerate(part.directions()):
@@ -134,6 +134,9 @@ class _Making:
 
     def _rotor(self, body: Any) -> Solid:
         """The disc whose edge touches a plane, else the cylinder that has its inertia; tips, the axis."""
+        wheels = self._wheels(body)
+        if wheels:
+            return axle(str(body.name), wheels)
         mass, _, _, across, _, _, axial = body.masses()
         radius, half = cylinder_of(mass, across, axial)
         radius = next((float(value_of(joint.radius)) for joint in self._edges(body)), radius)
@@ -147,6 +150,13 @@ class _Making:
         if max(ends) - min(ends) > 2.0 * half:
             solid.edge(np.array([[0.0, 0.0, min(ends)], [0.0, 0.0, max(ends)]]))
         return solid
+
+    def _wheels(self, body: Any) -> list[tuple[float, float]]:
+        """Places of wheels on an axle, and their radii."""
+        from fricmb.space import WheelRail
+
+        held = [j for j in self.scene.joints if isinstance(j, WheelRail) and j.a.owner is body]
+        return [(j.a.offset[0], float(value_of(j.rolling_radius))) for j in held]
 
     def _edges(self, body: Any) -> list[Any]:
         """Contacts of the edge of a disc."""
@@ -183,7 +193,7 @@ class _Making:
     # ---- joints, contacts, springs
 
     def _joint(self, joint: Any) -> None:
-        from fricmb.space import OnPlane, Rod
+        from fricmb.space import OnPlane, Rod, WheelRail
 
         sketch = self.sketch
         if isinstance(joint, Rod):
@@ -193,6 +203,13 @@ class _Making:
             at = self._lowest(joint)
             start = np.array([float(c) for c in value_of(joint.through)])
             sketch.floors.append(Floor(through=start, frame=joint.frame(), angle=self._turned(joint.turning)))
+        elif isinstance(joint, WheelRail):
+            along, up = joint.direction("along"), joint.direction("up")
+            at = self._at(joint.a) - float(value_of(joint.rolling_radius)) * up[:, None]
+            run = (at.T - at[:, 0]) @ along
+            reach = float(value_of(joint.rolling_radius))
+            ends = np.array([run.min() - 2.0 * reach, run.max() + 2.0 * reach])
+            sketch.rails.append(np.array([float(c) for c in value_of(joint.through)]) + np.outer(ends, along))
         elif not getattr(joint.a, "letters", None):
             return
         else:

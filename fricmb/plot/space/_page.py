@@ -19,6 +19,7 @@ def space_data(sketch: SpaceSketch) -> dict[str, Any]:
         "solids": [_solid(sketch, k) for k in range(len(sketch.solids))],
         "links": [{"kind": link.kind, "a": _spot(link.a), "b": _spot(link.b)} for link in sketch.links],
         "pins": [_spot(pin) for pin in sketch.pins],
+        "rails": [[rounded(point) for point in rail] for rail in sketch.rails],
         "floors": [
             {
                 "through": rounded(floor.through),

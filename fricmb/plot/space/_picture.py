@@ -41,6 +41,8 @@ class SpaceDrawing:
         ax.set_box_aspect(np.ptp(sketch.box, axis=1), zoom=1.0)
         ax.computed_zorder = False
         self.floors = [self._line(0.5, self.paint.quiet, zorder=0) for _ in sketch.floors]
+        for rail in sketch.rails:
+            ax.plot(*rail.T, color=self.paint.quiet, linewidth=2.0, zorder=1)
         for k in range(len(sketch.solids)):
             way = sketch.path(k) if sketch.t.size > 1 else None
             if way is not None:

@@ -69,6 +69,15 @@ def cone(name: str, radius: float, base: float, tip: float) -> Solid:
     return Solid(name=name, faces=faces, shades=[(4 * i // ROUND) % 2 for i in range(ROUND)])
 
 
+def axle(name: str, wheels: list[tuple[float, float]]) -> Solid:
+    """Wheels on a bar along the z axis, each by its place and radius."""
+    radius = max(radius for _, radius in wheels)
+    bar = disc(name, 0.12 * radius, max(abs(place) for place, _ in wheels))
+    for place, own in wheels:
+        bar.joined(disc(name, own, FLAT * own), np.array([0.0, 0.0, place]))
+    return bar
+
+
 def edges_of(mass: float, inertia: Floats) -> Floats:
     """Edges (3,) of the cuboid that has a mass and principal moments: ``a_i^2 = 6 (sum J - 2 J_i)/m``."""
     edges = np.sqrt(np.maximum(0.0, 6.0 * (inertia.sum() - 2.0 * inertia) / mass))

@@ -101,6 +101,8 @@ class SpaceSketch:
         Its axes, as columns.
     pins : list of Spot
         Where joints are.
+    rails : list of (k, 3)
+        Lines that rest.
     box : (3, 2)
         Least and largest x, y, z of all that is drawn, in all pictures.
     """
@@ -114,6 +116,7 @@ class SpaceSketch:
     pins: list[Spot] = field(default_factory=list)
     touches: list[SpaceTouch] = field(default_factory=list)
     floors: list[Floor] = field(default_factory=list)
+    rails: list[Floats] = field(default_factory=list)
     box: Floats = field(default_factory=lambda: np.array([[-1.0, 1.0]] * 3))
 
     @property
@@ -151,7 +154,7 @@ class SpaceSketch:
         n = self.t.size
         seen = np.unique(np.linspace(0, n - 1, 40).astype(int))
         corners = [self.moved(k, solid.corners(), i) for k, solid in enumerate(self.solids) for i in seen]
-        corners += [self.where(pin, 0)[None] for pin in self.pins]
+        corners += [self.where(pin, 0)[None] for pin in self.pins] + self.rails
         corners += [self.where(end, i)[None] for link in self.links for end in (link.a, link.b) for i in seen]
         every = np.concatenate(corners) if corners else np.zeros((1, 3))
         for floor in self.floors:

@@ -58,6 +58,7 @@
         for (const [a, b] of [[u, v], [v, u]]) stroke([-1, 1].map(y => sum(sum(f.through, a, y * f.half), b, x)));
       }
     }
+    p.lineWidth = 2; sketch.rails.forEach(stroke); p.lineWidth = 0.7;
     for (const s of sketch.solids) if (s.path) stroke(s.place[0].map((_, k) => s.place.map(v => v[Math.min(k, v.length - 1)])));
 
     const order = pose.map((q, k) => [dot(q.place, towards), k]).sort((a, b) => a[0] - b[0]);
