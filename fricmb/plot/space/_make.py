@@ -155,7 +155,7 @@ class _Making:
         """Places of wheels on an axle, and their radii."""
         from fricmb.space import WheelRail
 
-        held = [j for j in self.scene.joints if isinstance(j, WheelRail) and j.a.owner is body]
+        held: list[Any] = [j for j in self.scene.joints if isinstance(j, WheelRail) and j.a.owner is body]
         return [(j.a.offset[0], float(value_of(j.rolling_radius))) for j in held]
 
     def _edges(self, body: Any) -> list[Any]:
