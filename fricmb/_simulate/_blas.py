@@ -32,8 +32,7 @@ def blas_threads(scene: Scene) -> AbstractContextManager[Any]:
     The setting belongs to the process: of several threads the first that asks has it (so does threadpoolctl), and has
     given it back when its run ends.
     """
-    parts = getattr(scene, "parts", ())  # what is no scene is told so further on
-    if len(parts) > MANY or sum(len(getattr(part, "dof_names", ())) for part in parts) > MANY:
+    if len(getattr(scene, "dof_names", ())) > MANY:  # what is no scene is told so further on
         return nullcontext()
     context: AbstractContextManager[Any] = _controller().limit(limits=1)
     return context

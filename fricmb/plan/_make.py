@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from fricmb.plan._plan import Island, Plan
 from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
+from fricmb.plan._same import outline_of
 from fricmb.plan._tree import topology
 from fricmb.plan._truncate import truncated
 from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene
@@ -61,10 +63,27 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     key = ("plan", None if wanted is None else wanted.key)
     found = scene._cache.get(key)
     if found is None:
-        with no_collection(len(scene.parts)):
-            plan = _make(scene, wanted)
+        plan = _plan_of(scene, wanted)
         cautions = (*short.notes, *plan.cautions)
         found = scene._cache[key] = replace(plan, notes=(*cautions, *plan.notes), cautions=cautions)
+    return found
+
+
+#: Plans that scenes of one family keep together.
+MANY = 16
+
+
+def _plan_of(scene: Scene, wanted: Wanted | None) -> Plan:
+    """The plan, taken from another scene of the family where that has the same."""
+    plans: dict[Any, Plan] = scene._shared.setdefault("plans", {})
+    key = None if wanted is None else wanted.key, scene.name, outline_of(scene)
+    found = plans.get(key)
+    if found is None:
+        with no_collection(len(scene.parts)):
+            found = _make(scene, wanted)
+        for old in list(plans)[: len(plans) + 1 - MANY]:
+            plans.pop(old, None)
+        plans[key] = found
     return found
 
 

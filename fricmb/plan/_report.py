@@ -82,9 +82,13 @@ def empty(links: Links, inside: Flags) -> list[Omission]:
     ]
 
 
+def zeros(part: Part) -> tuple[str, ...]:
+    """Numbers of a part that are 0."""
+    return tuple([path for path, value in part.numeric_slots().items() if np.ndim(value) == 0 and value == 0.0])
+
+
 def _why(part: Part) -> tuple[str, str]:
-    zero = [path for path, value in part.numeric_slots().items() if np.ndim(value) == 0 and value == 0.0]
-    return type(part).__name__, ", ".join(f"{path} = 0" for path in zero) or "has no effect"
+    return type(part).__name__, ", ".join(f"{path} = 0" for path in zeros(part)) or "has no effect"
 
 
 def resting(scene: Scene, islands: Iterable[Island]) -> list[Omission]:

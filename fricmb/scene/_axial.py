@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 from typing import Any
 
 from fricmb.scene._axes import check_axis, check_ends, components, direction
@@ -44,4 +45,8 @@ class AxialElement(Element):
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Distance of the ends along the axis."""
+        return self._coordinates
+
+    @cached_property
+    def _coordinates(self) -> tuple[LinearForm, ...]:
         return (direction(self, "axis", self.axis, self.a, self.b).form,)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 from itertools import combinations
 from math import inf
 from typing import Any, ClassVar, Literal
@@ -139,6 +140,10 @@ class Contact(Part):
 
     def directions(self) -> tuple[Direction, ...]:
         """Tangential directions, one or two, each with the motion of a less that of b along it (without slide)."""
+        return self._directions
+
+    @cached_property
+    def _directions(self) -> tuple[Direction, ...]:
         if self.axes is not None:
             labels = ("t",) if len(self.axes) == 1 else ("t1", "t2", "t3")
             return tuple(

@@ -75,6 +75,8 @@ class Part(Declaration):
 
     def with_ends(self, changed: dict[str, Part]) -> Self:
         """A copy that refers to the changed parts (by name); itself, if it refers to none of them."""
+        if not any(end.owner.name in changed for end in self.ends()):
+            return self
         new: dict[str, Any] = {}
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)

@@ -19,7 +19,7 @@ from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
-from fricmb.scene._part import LETTERS, Part
+from fricmb.scene._part import LETTERS, End, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.values import DIMENSIONS, Units, value_of
@@ -254,7 +254,7 @@ class Scene:
     def initial_values(self, dofs: Sequence[str] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Declared initial q and v of the named dofs, (n,) each; default: all."""
         names = self.dof_names if dofs is None else dofs
-        if names is self.dof_names:
+        if names is self.dof_names or names == self.dof_names:
             return self._all_initial_values()
         place = {name: i for i, name in enumerate(names)}
         values = np.zeros((2, len(names)))
@@ -327,9 +327,11 @@ class Scene:
         changed = {name: part for name, part in changed.items() if part is not self._by_name[name]}
         if not changed:
             return self
-        replaced = [changed.get(part.name, part) for part in self.parts]
+        parts = [changed.get(part.name, part) for part in self.parts]
+        if any(isinstance(part, (BODIES, End)) for part in changed.values()):
+            parts = [part.with_ends(changed) for part in parts]
         scene = object.__new__(type(self))
-        scene._fill(self.name, [part.with_ends(changed) for part in replaced], self.units, self._shared)
+        scene._fill(self.name, parts, self.units, self._shared)
         return scene
 
     def with_units(self, units: Units) -> Scene:

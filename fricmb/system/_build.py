@@ -58,10 +58,10 @@ SPECTRUM = 500
 
 def _spectrum(linear: Linear, n: int, dofs: Sequence[str]) -> tuple[Floats, Floats]:
     """Frequencies and damping ratios, none for large coupled structures, after a check of the mass matrix."""
-    M = linear.csr("M")
-    if n <= SPECTRUM or not M.is_diagonal():
+    if n <= SPECTRUM or not linear.csr("M").is_diagonal():
         check_mass(linear.M, dofs)
         return spectrum(linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n])
+    M = linear.csr("M")
     check_masses(M.diagonal(), dofs)
     K, C = (linear.csr(name).block(slice(0, n), slice(0, n)) for name in ("Kx", "Cx"))
     if K.is_diagonal() and C.is_diagonal():

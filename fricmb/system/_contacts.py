@@ -27,7 +27,7 @@ from fricmb.scene import Contact, Joint
 from fricmb.scene._lines import Rows
 from fricmb.system._lined import moved, prescribed
 from fricmb.system._motions import Motions
-from fricmb.system._structure import is_sparse, matrix_of
+from fricmb.system._structure import DENSE, dense_of, is_sparse, matrix_of
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
 from fricmb.system._try_law import try_law
 from fricmb.values import is_expression, value_of
@@ -204,9 +204,11 @@ class ContactArrays:
         m, n_c = len(self.rows), len(self.law)
         rows, normal_rows = (self.rows, self.normal_rows) if dense else ([], [])
         size = n if dense else 0
-        W = matrix_of([(i, a, c) for a, row in enumerate(rows) for i, c in row.q], (size, m), self.lined)
-        Wu = matrix_of([(a, j, -c) for a, row in enumerate(rows) for j, c in row.u], (m, n_u), self.driven)
-        Wn = matrix_of([(i, k, c) for k, row in enumerate(normal_rows) for i, c in row.q], (size, n_c))
+        given: Any = {
+            "W": ([(i, a, c) for a, row in enumerate(rows) for i, c in row.q], (size, m), self.lined),
+            "Wu": ([(a, j, -c) for a, row in enumerate(rows) for j, c in row.u], (m, n_u), self.driven),
+            "Wn": ([(i, k, c) for k, row in enumerate(normal_rows) for i, c in row.q], (size, n_c)),
+        }
         others: dict[str, Any] = {
             "row": np.array(self.row_start, dtype=np.int64),
             "w": np.array(self.w, dtype=float) + 0.0,
@@ -221,9 +223,12 @@ class ContactArrays:
             "normal_table": self.normal_table.build(n, n_u),
             "N0": np.array(self.N0, dtype=float),
         }
-        if is_sparse(n, len(W.value) + len(Wn.value)):
-            return SparseContacts(W=W, Wu=Wu, Wn=Wn, **others)
-        return Contacts(W=W.dense(), Wu=Wu.dense(), Wn=Wn.dense(), **others)
+        if n > DENSE:
+            found = {name: matrix_of(*entries) for name, entries in given.items()}
+            if is_sparse(n, len(found["W"].value) + len(found["Wn"].value)):
+                return SparseContacts(**found, **others)
+        others |= {name: dense_of(*entries) for name, entries in given.items()}
+        return Contacts(**others)
 
 
 def _check_cone(contact: Contact | Joint, mu_s: float, limit: float) -> None:

@@ -182,18 +182,24 @@ class Structure:
     def linear(self, n_u: int) -> Linear:
         """The constant matrices."""
         n = self.n
-        M, B = matrix_of(self.M, (n, n)), matrix_of(self.B, (n, n_u))
-        Kx = matrix_of(self.K, (n + n_u, n + n_u), self.lined.K)
-        Cx = matrix_of(self.C, (n + n_u, n + n_u), self.lined.C)
+        both = (n + n_u, n + n_u)
         places = np.concatenate([np.array([i for i, _ in self.f], dtype=np.int64), *(i for i, _ in self.lined.f)])
         forces = np.concatenate([np.array([v for _, v in self.f], dtype=float), *(v for _, v in self.lined.f)])
         fx = np.bincount(places, forces, n + n_u).astype(float)
-        if is_sparse(n, len(M.value) + len(Kx.value) + len(Cx.value)):
-            return SparseLinear(M=M, Kx=Kx, Cx=Cx, fx=fx, B=B)
-        return Linear(M=M.dense(), Kx=Kx.dense(), Cx=Cx.dense(), fx=fx, B=B.dense())
+        given: Any = {
+            "M": (self.M, (n, n)), "Kx": (self.K, both, self.lined.K), "Cx": (self.C, both, self.lined.C),
+            "B": (self.B, (n, n_u)),
+        }  # fmt: skip
+        if n > DENSE:
+            found = {name: matrix_of(*entries) for name, entries in given.items()}
+            if is_sparse(n, sum(len(found[name].value) for name in ("M", "Kx", "Cx"))):
+                return SparseLinear(**found, fx=fx)
+        return Linear(**{name: dense_of(*entries) for name, entries in given.items()}, fx=fx)
 
     def elements(self, n_u: int) -> Elements:
         """The nonlinear elements."""
+        if not self.spread:
+            return Elements()
         rows = [row for element in self.spread for row in element]
         return Elements(
             table=self.table.build(self.n, n_u),
@@ -217,11 +223,26 @@ def matrix_of(
     entries: Sequence[tuple[int, int, float]], shape: tuple[int, int], more: Sequence[tuple[Any, Any, Any]] = ()
 ) -> Csr:
     """A matrix of entries one by one, and of arrays of them."""
-    columns: Any = zip(*entries, strict=True) if entries else ((), (), ())
-    if more:
-        columns = [np.concatenate(held) for held in zip(columns, *more, strict=True)]
-    i, j, values = columns
+    i, j, values = _columns(entries, more)
     return Csr.of_entries(i, j, values, shape)
+
+
+def dense_of(
+    entries: Sequence[tuple[int, int, float]], shape: tuple[int, int], more: Sequence[tuple[Any, Any, Any]] = ()
+) -> Floats:
+    """The same as a dense array; entries of one place are added up in the order given, too."""
+    if not entries and not more:
+        return np.zeros(shape)
+    i, j, values = _columns(entries, more)
+    places = np.asarray(i, dtype=np.int64) * shape[1] + np.asarray(j, dtype=np.int64)
+    full: Floats = np.bincount(places, values, shape[0] * shape[1]).astype(float, copy=False).reshape(shape)
+    return full
+
+
+def _columns(entries: Sequence[tuple[int, int, float]], more: Sequence[tuple[Any, Any, Any]]) -> Any:
+    """Rows, columns and values."""
+    columns: Any = zip(*entries, strict=True) if entries else ((), (), ())
+    return [np.concatenate(held) for held in zip(columns, *more, strict=True)] if more else columns
 
 
 def _argument(kind: str, i: int, rows: Sequence[Row]) -> Argument:

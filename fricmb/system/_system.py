@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fricmb.errors import unknown_name
-from fricmb.integrate.csr import Csr
-from fricmb.integrate.problem import NORMAL_LAW, Floats, Problem, Start, Templates
+from fricmb.integrate.problem import NORMAL_LAW, Floats, Problem, SparseLinear, Start, Templates
 from fricmb.integrate.trajectory import Samples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._evaluate import arguments, evaluate
@@ -83,9 +82,9 @@ class System:
     # -- energies -----------------------------------------------------------------------------------------------
     def kinetic(self, samples: Samples) -> Floats:
         """Kinetic energy (n_t,)."""
-        M, v = self._mass, samples.v
-        if M.is_diagonal():
-            energy: Floats = 0.5 * (M.diagonal() @ (v * v))
+        masses, v = self._masses, samples.v
+        if masses is not None:
+            energy: Floats = 0.5 * (masses @ (v * v))
             return energy
         return np.asarray(0.5 * np.einsum("it,it->t", v, self.problem.linear.M @ v))
 
@@ -101,8 +100,14 @@ class System:
         return total
 
     @cached_property
-    def _mass(self) -> Csr:
-        return self.problem.linear.csr("M")
+    def _masses(self) -> Floats | None:
+        """The mass matrix where it is diagonal."""
+        linear = self.problem.linear
+        if not isinstance(linear, SparseLinear):
+            diagonal = np.diagonal(linear.M).copy()
+            return diagonal if np.count_nonzero(linear.M) == np.count_nonzero(diagonal) else None
+        M = linear.csr("M")
+        return M.diagonal() if M.is_diagonal() else None
 
     @cached_property
     def _linear(self) -> Stored:

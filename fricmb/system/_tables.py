@@ -80,6 +80,8 @@ class TableBuilder:
 
     def build(self, n: int, n_u: int) -> Templates:
         """The packed table for n degrees of freedom and n_u signals."""
+        if not self._address:
+            return Templates()
         offset = (0, 1, 1 + n, 1 + 2 * n, 1 + 2 * n + n_u)
         entries = [entry for argument in self._arguments for entry in argument.entries]
         lengths = [len(argument.entries) for argument in self._arguments]

@@ -22,7 +22,6 @@ def test_a_run_in_pieces_is_the_run(method, monkeypatch):
     belt = fm.models.belt_oscillator()
     whole = fm.simulate(belt, t_end=3000.0, rtol=1e-8, t_eval=LONG, method=method, dense=True)
     monkeypatch.setattr("fricmb._simulate._keep.MEMORY", 1e4)
-    belt = fm.models.belt_oscillator()  # without the room that the first run made
     kept = fm.simulate(belt, t_end=3000.0, rtol=1e-8, t_eval=LONG, method=method)
     assert kept.t.tolist() == LONG.tolist()
     scale = np.abs(whole.q).max(axis=1, keepdims=True)

@@ -20,7 +20,6 @@ from fricmb.integrate.collocation._prepare import (
     is_stiff,
     longest_step,
     model,
-    run_of,
     set_longest_step,
     with_rows,
 )  # fmt: skip
@@ -37,8 +36,9 @@ from fricmb.integrate.collocation._single import (
 )  # fmt: skip
 from fricmb.integrate.collocation._structure import NoBlocks
 from fricmb.integrate.collocation._trajectory import SingleRun
+from fricmb.integrate.collocation._workspace import borrowed, may_grow, within
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
@@ -97,7 +97,7 @@ class Collocation(Integrator):
             if is_single(problem):
                 model(problem)
             free_blocks(problem)
-            stuck_together = packed_of(problem).ports.soft[0] > 0.0
+            stuck_together = softness(problem) > 0.0
         except NoBlocks as error:
             return f"collocation needs the structure in blocks; here {error}"
         if stuck_together:
@@ -171,8 +171,15 @@ def _run_single(
     problem: Problem, start: Start, t_end: float, tolerance: Tolerance, s: int, safety: float,
     progress: Callable[[float], None] | None, memory: float | None = None,
 ) -> Trajectory:  # fmt: skip
-    held = run_of(problem, s)
-    run = held[0]
+    with borrowed(problem, s) as held:
+        return _run_in(held, problem, start, t_end, tolerance, s, safety, progress, memory)
+
+
+def _run_in(
+    held: list[Run], problem: Problem, start: Start, t_end: float, tolerance: Tolerance, s: int, safety: float,
+    progress: Callable[[float], None] | None, memory: float | None,
+) -> Trajectory:  # fmt: skip
+    run = within(held[0], memory)
     if t_end > start.t:
         set_longest_step(run, longest_step(problem, s, t_end - start.t))
     _set_state(problem, run, start, tolerance)
@@ -181,7 +188,7 @@ def _run_single(
         code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.sx[0] + pause)
         if code == FULL and ended() is None:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
-            if memory is not None and 2 * sum(x.nbytes for x in rows) > memory:
+            if not may_grow(rows, memory):
                 break
             run = held[0] = with_rows(run, Rows(*[np.concatenate([x, np.zeros_like(x)]) for x in rows]))
         elif code == PAUSE and progress is not None and ended() is None:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.collocation._layout import CHANGE
-from fricmb.integrate.collocation._nodes import RUNGS, TERMS, Z_EXACT, nodes
+from fricmb.integrate.collocation._general_prepare import free_blocks
+from fricmb.integrate.collocation._nodes import RUNGS, Z_EXACT, nodes
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._signals import linear_signals
-from fricmb.integrate.collocation._single import BLOCKS
 from fricmb.integrate.collocation._structure import blocks
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.problem_cache import kept
@@ -65,21 +65,12 @@ class Rows(NamedTuple):
     events: Floats
 
 
-class Tables(NamedTuple):
-    """Weights by step size; ``slots``: slot of a rung or -1, then how many were used (slot 0: steps off the ladder)."""
-
-    tb: Floats
-    tk: Floats
-    ladder: Floats
-    slots: Ints
-
-
 def _model(problem: Problem) -> Model:
     n, linear, contacts = problem.n, problem.linear, problem.contacts
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
     W = np.ascontiguousarray(contacts.W)
     m = W.shape[1]
-    slip, stick = blocks(M, K, C, W, ()), blocks(M, K, C, W, tuple(range(m)))
+    slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
     start, rate = linear_part(problem)
     Ku = linear.B - linear.Kx[:n, n:]
     Minv = np.linalg.inv(M)
@@ -157,15 +148,6 @@ def set_longest_step(run: Run, longest: float) -> None:
         run.slots[-1] = 0
 
 
-def _tables(p: Model, s: int) -> Tables:
-    n, m = p.blk.shape[2], p.co.shape[1]
-    per_slot = 6 * n * s + (m * s) ** 2
-    count = 1 + int(np.clip(4_000_000 // per_slot, 12, 48))
-    slots = np.full(RUNGS + 2, -1, dtype=np.int64)
-    slots[-1] = 0
-    return Tables(np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, s)), np.zeros(RUNGS + 1), slots)
-
-
 def rows(n: int, m: int, s: int, size: int) -> Rows:
     """Room for ``size`` steps, phases and events."""
     width = 4 + 3 * n + m * s + s + 1
@@ -173,24 +155,21 @@ def rows(n: int, m: int, s: int, size: int) -> Rows:
     return Rows(np.zeros((size, width)), kinds, np.zeros((size, 5 * n + 2)), np.zeros((size, 2)))
 
 
-def _run(problem: Problem, s: int) -> Run:
-    p, nd = model(problem), nodes(s)
-    n, m = problem.n, problem.m
-    tab = _tables(p, s)
-    # the last line of wk has a name (CHANGE): few nodes need as many lines
-    lines = (3, max(s, CHANGE) + 1, s + 1)
-    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n, TERMS), lines))
-    state = np.zeros((4, n)), np.zeros((2, m)), np.zeros(5), np.zeros(8, dtype=np.int64)
-    parts: list[Any] = [*p, *nd, *tab, bx, nx, kappa, np.zeros(n, np.int64), wk, *state, *rows(n, m, s, 512)]
-    return room(Run._make([*parts, addresses(*BLOCKS)]))
+@lru_cache(maxsize=64)
+def _nothing(s: int) -> Run:
+    """Empty arrays, and the tables for s nodes."""
+    kinds = dict.fromkeys(("flags", "slots", "terms", "si", "kinds", "places"), np.int64)
+    axes = {"mat": 4, "tb": 4, "tk": 4} | dict.fromkeys(("blk", "co", "ci", "row", "dof", "con", "nx", "wk"), 3)
+    axes |= dict.fromkeys(("lim", "flags", "ladder", "slots", "terms", "sx", "si", "places"), 1)
+    empty = {name: np.zeros((0,) * axes.get(name, 2), kinds.get(name, float)) for name in Run._fields}
+    return room(Run(**(empty | nodes(s)._asdict())))
 
 
-def run_of(problem: Problem, s: int) -> list[Run]:
-    """The arrays of a one-contact problem with s nodes, in a list of one (its rows may be exchanged for more)."""
-    return kept(problem, ("run", s), lambda: [_run(problem, s)])
+def run_of(problem: Problem, s: int) -> Run:
+    """The constants of a one-contact problem with s nodes, to look at rows with: there is nothing to work in."""
+    return kept(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)._asdict()))
 
 
 def with_rows(run: Run, new: Rows) -> Run:
     """The same run with other rows."""
-    keep: list[Any] = [getattr(run, name) for name in Run._fields[: -1 - len(Rows._fields)]]
-    return room(Run._make([*keep, *new, run.places]))
+    return with_arrays(run, **new._asdict())

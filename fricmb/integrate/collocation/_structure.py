@@ -17,6 +17,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.by_content import by_content
 
 #: A pole of the state matrix with its eigenvector.
 Pole = tuple[complex, NDArray[np.complex128]]
@@ -54,6 +55,14 @@ class Blocks:
     force_1: Floats
     stuck_motion: Floats
     modal: bool
+
+
+def _inverse_factor(M: Floats) -> Floats:
+    """Inverse of the lower factor of the mass matrix."""
+    diagonal = np.diagonal(M)
+    if np.count_nonzero(M) == np.count_nonzero(diagonal):
+        return np.diag(1.0 / np.sqrt(diagonal))
+    return np.asarray(scipy.linalg.solve_triangular(np.linalg.cholesky(M), np.eye(len(M)), lower=True))
 
 
 def _null_basis(Linv: Floats, W: Floats) -> Floats:
@@ -139,10 +148,11 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     return w2, d, T
 
 
+@by_content
 def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -> Blocks:
     """The structure M q'' + C q' + K q with the rows ``stuck`` of W held; raises NoBlocks where it has no such form."""
     n, rows = len(M), list(stuck)
-    Linv = scipy.linalg.solve_triangular(np.linalg.cholesky(M), np.eye(n), lower=True) if n else np.zeros((0, 0))
+    Linv = _inverse_factor(M)
     Wz = W[:, rows]
     N = _null_basis(Linv, Wz)
     G = np.zeros((n, W.shape[1]))
@@ -152,18 +162,19 @@ def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -
     b = N.shape[1]
     Kz, Cz = N.T @ K @ N, N.T @ C @ N
     proportional = _proportional(Kz, Cz)
-    zero = np.zeros((b, b))
+    solid = np.ascontiguousarray
     if proportional is not None:
         w2, d, E = proportional
-        T = np.block([[E, zero], [zero, E]])
-        Tinv = T.T
-    else:
-        w2, d, T = _general(Kz, Cz)
-        Tinv = np.linalg.inv(T)
-    solid = np.ascontiguousarray
+        shapes, nothing = solid(N @ E), np.zeros((n, b))
+        return Blocks(
+            w2=w2, d=d, q_u=shapes, q_v=nothing, v_u=nothing, v_v=shapes, force_0=nothing.T.copy(),
+            force_1=solid(E.T @ N.T), stuck_motion=G, modal=True,
+        )  # fmt: skip
+    w2, d, T = _general(Kz, Cz)
+    Tinv = np.linalg.inv(T)
     return Blocks(
         w2=w2, d=d,
         q_u=solid(N @ T[:b, :b]), q_v=solid(N @ T[:b, b:]), v_u=solid(N @ T[b:, :b]), v_v=solid(N @ T[b:, b:]),
         force_0=solid(Tinv[:b, b:] @ N.T), force_1=solid(Tinv[b:, b:] @ N.T), stuck_motion=G,
-        modal=proportional is not None,
+        modal=False,
     )  # fmt: skip

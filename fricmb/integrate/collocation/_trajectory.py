@@ -36,7 +36,7 @@ class SingleRun(Trajectory):
     def _run(self) -> Run:
         """The arrays of the problem with the rows of this run."""
         if self._arrays is None:
-            self._arrays = with_rows(run_of(self.problem, self._s)[0], self._rows)
+            self._arrays = with_rows(run_of(self.problem, self._s), self._rows)
         return self._arrays
 
     def attach(self, problem: Problem) -> None:

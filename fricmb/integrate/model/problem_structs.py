@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.csr import Csr
-from fricmb.integrate.model.structure import Structure, pack_structure
+from fricmb.integrate.model.structure import Structure, inverse_mass, pack_structure
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
+from fricmb.integrate.run.by_content import by_content
 from fricmb.integrate.run.problem_cache import kept
 
 
@@ -74,11 +74,27 @@ class Packed(NamedTuple):
     breakpoints: Floats
 
 
+@by_content
 def _softness(D: Floats) -> float:
     """Relative softening of stuck contacts: 0, or a trifle where rows of W depend on one another (least-norm force)."""
     if len(D) == 0 or np.linalg.matrix_rank(D, hermitian=True) == len(D):
         return 0.0
     return 1e-7  # squared in two iterations below round-off; shares of a load differ by round-off over it
+
+
+def mobility_at_contacts(problem: Problem) -> Floats:
+    """D = W^T M^-1 W (m, m), made once per problem object."""
+
+    def make() -> Floats:
+        W = np.ascontiguousarray(problem.contacts.W)
+        return np.ascontiguousarray(W.T @ (inverse_mass(problem) @ W))
+
+    return kept(problem, "mobility at contacts", make)
+
+
+def softness(problem: Problem) -> float:
+    """What :class:`Ports` calls ``soft``; known without all that is packed beside it."""
+    return kept(problem, "softness", lambda: _softness(mobility_at_contacts(problem)))
 
 
 def _table(templates: Templates) -> Table:
@@ -102,13 +118,12 @@ def _pack(problem: Problem) -> Packed:
     varies = contacts.normal != NORMAL_CONSTANT
     var = np.where(varies, np.cumsum(varies) - 1, -1).astype(np.int64)
     W = solid(contacts.W)
-    Minv = Csr((problem.n, problem.n), structure.Minv_start, structure.Minv_index, structure.Minv)
-    D = solid(W.T @ (Minv @ W))
     ports = Ports(
-        solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu), D,
+        solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu),
+        mobility_at_contacts(problem),
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
-        (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([_softness(D)]),
+        (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([softness(problem)]),
         np.zeros(problem.n_c),
     )  # fmt: skip
     spread = Spread(

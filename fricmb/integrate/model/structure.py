@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.model.band_ordering import band_order
-from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, SparseLinear
+from fricmb.integrate.run.by_content import by_content
+from fricmb.integrate.run.problem_cache import kept
 
 
 class Structure(NamedTuple):
@@ -48,12 +51,26 @@ class Structure(NamedTuple):
 
 
 def inverse_mass(problem: Problem) -> Csr:
-    """M^-1: a diagonal where M is one."""
+    """M^-1, made once per problem object: a diagonal where M is one."""
+    return kept(problem, "inverse mass", lambda: _inverse_mass(problem))
+
+
+def _inverse_mass(problem: Problem) -> Csr:
+    if not isinstance(problem.linear, SparseLinear):
+        return _dense_inverse(np.asarray(problem.linear.M, dtype=float))
     M = problem.linear.csr("M")
     if M.is_diagonal():
         places = np.arange(problem.n)
         return Csr.of_entries(places, places, 1.0 / M.diagonal(), M.shape)
     return Csr.of_dense(np.linalg.inv(problem.linear.M))
+
+
+@by_content
+def _dense_inverse(M: Floats) -> Csr:
+    places, diagonal = np.arange(len(M)), np.diagonal(M)
+    if np.count_nonzero(M) == np.count_nonzero(diagonal):
+        return Csr(M.shape, np.arange(len(M) + 1), places, 1.0 / diagonal)
+    return Csr.of_dense(np.linalg.inv(M))
 
 
 def coupled(problem: Problem) -> tuple[Ints, Ints]:
@@ -93,25 +110,68 @@ def ties(K: Csr, omega: Floats) -> tuple[Floats, Floats]:
     return counted.astype(float), np.array([math.fsum(line) for line in held])
 
 
+@lru_cache(maxsize=64)
+def _places(n: int, filled: bytes) -> tuple[Ints, Ints, Ints]:
+    """Rows by compressed places and columns (see :class:`Structure`) of what is filled (n, n), and row of each entry.
+
+    Scenes that differ in numbers alone share them.
+    """
+    rows, column = np.nonzero(np.frombuffer(filled, dtype=np.bool_).reshape(n, n))
+    first = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=n))]).astype(np.int64)
+    return first, column, rows
+
+
+@lru_cache(maxsize=64)
+def _order(n: int, filled: bytes) -> tuple[Ints, int]:
+    """:func:`band_order` of what is filled (n, n)."""
+    first, column, _ = _places(n, filled)
+    return band_order(first, column)
+
+
+def _on_dense(problem: Problem) -> tuple[Any, ...]:
+    """What :func:`_on_sparse` gives, of dense matrices: without a search for entries of one place."""
+    n, linear = problem.n, problem.linear
+    M, K, C = linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]
+    filled = (M != 0.0) | (K != 0.0) | (C != 0.0) | (K.T != 0.0)
+    np.fill_diagonal(filled, True)
+    filled[coupled(problem)] = True
+    key = filled.tobytes()
+    first, column, rows = _places(n, key)
+    values = [matrix[rows, column] + 0.0 for matrix in (M, K, C, K.T)]  # + 0.0: of an entry that is not there, +0
+    return first, column, rows, values, _order(n, key)
+
+
+def _on_sparse(problem: Problem) -> tuple[Any, ...]:
+    """Joint pattern of M, K, C and the transpose of K, row of each entry, their values, :func:`band_order` of it."""
+    n, linear = problem.n, problem.linear
+    own, diagonal = slice(0, n), np.arange(n)
+    K, C = linear.csr("Kx").block(own, own), linear.csr("Cx").block(own, own)
+    matrices = [linear.csr("M"), K, C, K.transposed()]
+    first, column, values = on_one_pattern(matrices, (diagonal, diagonal), coupled(problem))
+    return first, column, np.repeat(diagonal, np.diff(first)), values, band_order(first, column)
+
+
 def pack_structure(problem: Problem) -> Structure:
     """The linear part of a problem."""
     n, linear = problem.n, problem.linear
-    own, others = slice(0, n), slice(n, n + problem.n_u)
-    Kx, Cx, M = linear.csr("Kx"), linear.csr("Cx"), linear.csr("M")
-    K, C = Kx.block(own, own), Cx.block(own, own)
-    diagonal = np.arange(n)
-    first, column, (m, k, c, turned) = on_one_pattern([M, K, C, K.transposed()], (diagonal, diagonal), coupled(problem))
-    whole = Csr((n, n), first, column, k)
+    sparse = isinstance(linear, SparseLinear)
+    first, column, rows, (m, k, c, turned), (place, half) = _on_sparse(problem) if sparse else _on_dense(problem)
     Minv = inverse_mass(problem)
-    place, half = band_order(first, column)
     solid = np.ascontiguousarray
-    tie, alone = ties(whole, np.asarray(problem.omega, float))
+    tie, alone = ties(Csr((n, n), first, column, k), np.asarray(problem.omega, float))
+
+    def part(name: str, at: slice, to: slice) -> Floats:
+        if sparse:
+            return linear.csr(name).block(at, to).dense()
+        held: Floats = solid(getattr(linear, name)[at, to] + 0.0)
+        return held
+
+    own, others, both = slice(0, n), slice(n, n + problem.n_u), slice(0, n + problem.n_u)
     return Structure(
         first=first, column=solid(column), M=m, K=k, C=c, Ka=0.5 * (k - turned),
-        own=np.flatnonzero(whole.rows == column), tie=tie, alone=alone,
+        own=np.flatnonzero(rows == column), tie=tie, alone=alone,
         Minv_start=Minv.start, Minv_index=solid(Minv.index), Minv=solid(Minv.value),
-        mobility=Minv.diagonal(), place=place, half=np.array([half]), Ku=Kx.block(own, others).dense(),
-        Cu=Cx.block(own, others).dense(), f=solid(linear.fx[:n]), B=solid(linear.csr("B").dense()),
-        Kd=Kx.block(others, slice(0, n + problem.n_u)).dense(), Cd=Cx.block(others, slice(0, n + problem.n_u)).dense(),
-        fd=solid(linear.fx[n:]),
+        mobility=Minv.diagonal(), place=place, half=np.array([half]), Ku=part("Kx", own, others),
+        Cu=part("Cx", own, others), f=solid(linear.fx[:n]), B=part("B", own, slice(0, problem.n_u)),
+        Kd=part("Kx", others, both), Cd=part("Cx", others, both), fd=solid(linear.fx[n:]),
     )  # fmt: skip

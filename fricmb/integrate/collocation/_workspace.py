@@ -1,0 +1,100 @@
+"""Arrays that runs of one contact work in: taken from a store and put back, so that the next scene finds them made.
+
+Runs with other values would else begin with short rows and empty tables each time.  Each run has arrays of its own
+while it lasts, in whatever thread it is.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.collocation._layout import CHANGE
+from fricmb.integrate.collocation._nodes import RUNGS, TERMS, nodes
+from fricmb.integrate.collocation._prepare import Model, Rows, model, rows, with_rows
+from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.collocation._single import BLOCKS
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.problem import Problem
+from fricmb.integrate.run.problem_cache import kept
+
+#: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
+MANY, LARGE = 4, 32_000_000
+
+#: Rows that a run begins with.
+FEW = 512
+
+_store: dict[tuple[int, int, int], list[tuple[bytes, Run]]] = {}
+_turn = threading.Lock()
+
+
+@contextmanager
+def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
+    """Arrays for a run with s nodes, in a list of one (its rows may be exchanged for more).
+
+    Weights by step size are those of the last run on a structure of the same numbers, else none.
+    """
+    size = problem.n, problem.m, s
+    p = model(problem)
+    content = kept(problem, "model content", lambda: b"".join([held.tobytes() for held in p]))
+    with _turn:
+        free = _store.setdefault(size, [])
+        place = next((i for i, (other, _) in enumerate(free) if other == content), None)
+        taken = free.pop(place) if place is not None else free.pop(0) if len(free) >= MANY else None
+    held = [_made(p, s) if taken is None else taken[1]]
+    if taken is not None and place is None:
+        _begin_anew(held[0], p)
+    yield held
+    if sum([getattr(held[0], name).nbytes for name in ("tb", "tk", *Rows._fields)]) <= LARGE:
+        with _turn:
+            free.append((content, held[0]))
+
+
+def may_grow(held: Rows, memory: float | None) -> bool:
+    """Whether twice as many rows are within so many bytes (None: they are)."""
+    return memory is None or 2 * sum([array.nbytes for array in held]) <= memory
+
+
+def within(run: Run, memory: float | None) -> Run:
+    """The arrays with no more rows than a run that began with few would have come to within so many bytes.
+
+    Where rows are full a run is cut into pieces; where that is must not depend on the runs before.
+    """
+    held = Rows(run.steps, run.kinds, run.phases, run.events)
+    fewer = held
+    while len(fewer.steps) > FEW:
+        half = Rows._make([array[: len(array) // 2] for array in fewer])
+        if may_grow(half, memory):
+            break
+        fewer = half
+    return run if fewer is held else with_rows(run, fewer)
+
+
+def _made(p: Model, s: int) -> Run:
+    n, m = p.blk.shape[2], p.co.shape[1]
+    count = 1 + int(np.clip(4_000_000 // (6 * n * s + (m * s) ** 2), 12, 48))
+    slots = np.full(RUNGS + 2, -1, dtype=np.int64)
+    slots[-1] = 0
+    tables = np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, s)), np.zeros(RUNGS + 1), slots
+    # the last line of wk has a name (CHANGE): few nodes need as many lines
+    lines = (3, max(s, CHANGE) + 1, s + 1)
+    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n, TERMS), lines))
+    state = np.zeros((4, n)), np.zeros((2, m)), np.zeros(5), np.zeros(8, dtype=np.int64)
+    work: list[Any] = [bx, nx, kappa, np.zeros(n, np.int64), wk, *state]
+    own = [array.copy() for array in p]
+    return room(Run._make([*own, *nodes(s), *tables, *work, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
+
+
+def _begin_anew(run: Run, p: Model) -> None:
+    """The constants of another scene of the same size; nothing is left of the run before."""
+    for name, array in zip(Model._fields, p, strict=True):
+        getattr(run, name)[...] = array
+    for array in (run.ladder, run.bx, run.nx, run.kappa, run.terms, run.wk, run.sd, run.sm, run.sx, run.si):
+        array.fill(0)
+    run.slots[:-1] = -1
+    run.slots[-1] = 0
