@@ -258,6 +258,30 @@ print(fm.analysis.pull(law).force[-1], fm.analysis.settling_distance(law))
     "testing.check_element": 'block = fm.Body("block", mass=1.0)\n'
         'fm.testing.check_element(fm.Spring("spring", block, axis="x", stiffness=2.0), parts=[block])\nprint("kept")\n',
     "testing.check_model": "fm.testing.check_model(fm.models.belt_oscillator)\nprint('kept')\n",
+    "integrate.Integrator": """
+print(sorted(fm.integrators))
+print(fm.integrators["radau"](stages=7))
+""",
+    "integrate.OneStepMethod": """
+from dataclasses import dataclass
+
+from fricmb.integrate import OneStepMethod
+
+
+@dataclass(frozen=True, kw_only=True)
+class Even(OneStepMethod):
+    name = "even"
+    order = "s"
+
+    def nodes(self, problem, rtol):
+        return (0.2, 0.4, 0.6, 0.8, 1.0)
+
+
+for method in ("radau", Even()):
+    sol = fm.simulate(fm.models.belt_oscillator(), t_end=50.0, rtol=1e-6, method=method)
+    print(f"{sol.stats.method:6} {sol.stats.n_steps:4} steps, last transition {sol.events[-1].t:.9f}")
+""",
+    "testing.check_integrator": "fm.testing.check_integrator(fm.integrators['radau'](stages=5))\nprint('kept')\n",
     "simulate": _RUN + "print(sol.summary())\nfigure = sol.plot.velocities()\n",
     "sweep": 'scene = fm.models.belt_oscillator()\n'
              'runs = [{"belt.velocity.x": v} for v in (0.1, 0.2, 0.4)]\n'

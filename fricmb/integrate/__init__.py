@@ -10,6 +10,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     submod_attrs={
         "select": ["choose", "integrators"],
         "integrator": ["Integrator", "Tolerance"],
+        "methods.one_step": ["OneStepMethod"],
         "problem": [
             "EVENT_KINDS",
             "OPEN",

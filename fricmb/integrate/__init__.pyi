@@ -1,5 +1,6 @@
 from fricmb.integrate.integrator import Integrator as Integrator
 from fricmb.integrate.integrator import Tolerance as Tolerance
+from fricmb.integrate.methods.one_step import OneStepMethod as OneStepMethod
 from fricmb.integrate.problem import EVENT_KINDS as EVENT_KINDS
 from fricmb.integrate.problem import OPEN as OPEN
 from fricmb.integrate.problem import SLIP as SLIP

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,10 +26,14 @@ class Trip:
     method: str | Integrator
     rtol: float
     bound: float
+    step: float | None = None
 
-    def go(self, scene: Scene, t_end: float, initial: Solution | None = None) -> Solution:
+    def go(
+        self, scene: Scene, t_end: float, initial: Solution | None = None, t_eval: Floats | None = None
+    ) -> Solution:
         """A run, or what goes on from another."""
-        return simulate(scene, t_end=t_end, method=self.method, rtol=self.rtol, initial=initial)
+        options: dict[str, Any] = {"initial": initial, "t_eval": t_eval, "step": self.step}
+        return simulate(scene, t_end=t_end, method=self.method, rtol=self.rtol, **options)
 
 
 def run_findings(scene: Scene, trip: Trip) -> Iterator[str]:

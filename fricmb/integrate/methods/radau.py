@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
-from fricmb.integrate.methods.attempt_step import Clock
-from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step, run_loop, stages_for
-from fricmb.integrate.methods.time_loop import drive
+from fricmb.integrate.integrator import Tolerance, odd_stages
+from fricmb.integrate.methods.one_step import OneStepMethod
+from fricmb.integrate.methods.run_setup import stages_for
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
 
 
 @dataclass(frozen=True, kw_only=True)
-class Radau(Integrator):
+class Radau(OneStepMethod):
     """Radau IIA of ``stages`` stages, order 2 stages - 1, on linear and nonlinear structures.
 
     Parameters
@@ -28,13 +27,16 @@ class Radau(Integrator):
     name: ClassVar[str] = "radau"
     order: ClassVar[str] = "2s - 1"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
-    pauses: ClassVar[bool] = True
 
     stages: int | None = None
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
         return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
+
+    def nodes(self, problem: Problem, rtol: float) -> Sequence[float]:
+        """Right Radau points."""
+        return tuple(radau(stages_for(problem, rtol, self.stages)).c.tolist())
 
     def integrate(
         self,
@@ -54,13 +56,6 @@ class Radau(Integrator):
 
             count = self.stages or constrained.stages_for(tolerance.rtol)
             return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
-        run = Collector(problem, start, t_end)
-        acc = accuracy(run, tolerance)
-        one = one_step(problem, radau(stages_for(problem, tolerance.rtol, self.stages)), run.counts)
-
-        def go_on(clock: Clock) -> int:
-            return drive(
-                run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
-            )
-
-        return run_loop(run, run.begin(), go_on, memory, progress)
+        return super().integrate(
+            problem, start, t_end, tolerance=tolerance, t_eval=t_eval, progress=progress, memory=memory
+        )

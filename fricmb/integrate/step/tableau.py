@@ -1,4 +1,4 @@
-"""Formulas as arrays: Radau IIA of any number of stages, and the one-stage form that every BDF step has.
+"""Formulas as arrays: collocation, Radau IIA above all, and the one-stage form that every BDF step has.
 
 An implicit formula is seen by the stage solver as  V_i = psi_i + h sum_j A_ij V'_j.  A is diagonalised once,
 A = T diag(lam) T^-1, so that a stage system of s n unknowns falls into complex systems of n (Butcher 1976;
@@ -66,7 +66,21 @@ def _diagonalised(A: Floats) -> tuple[Complexes, Complexes, Complexes]:
 @lru_cache(maxsize=16)
 def radau(s: int) -> Tableau:
     """Radau IIA with s stages, order 2s - 1 (Ehle 1969; Axelsson 1969)."""
-    c = _radau_nodes(s)
+    return collocated(tuple(_radau_nodes(s).tolist()))
+
+
+@lru_cache(maxsize=16)
+def collocated(nodes: tuple[float, ...]) -> Tableau:
+    """Collocation at nodes in (0, 1], the last of them 1: order s at least (Guillou and Soulé 1969; Wright 1970).
+
+    Raises
+    ------
+    ValueError
+        If the nodes are none, do not rise, or do not end at 1.
+    """
+    c, s = np.array(nodes, dtype=float), len(nodes)
+    if s < 1 or not np.isfinite(c).all() or c[0] <= 0.0 or c[-1] != 1.0 or (np.diff(c) <= 0.0).any():
+        raise ValueError(f"nodes must rise within (0, 1] and end at 1, got {nodes!r}")
     gauss, weight = legendre.leggauss(s + 2)
     A = np.empty((s, s))
     for j in range(s):
