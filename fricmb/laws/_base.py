@@ -147,6 +147,11 @@ class FrictionLaw(Regimes, Declaration):
         return ()
 
     @property
+    def cone_in_space(self) -> bool:
+        """Whether the law serves three directions that are alike: a cone, the same in all directions of slip."""
+        return self.kind != "smooth" and 2 in self.dimensions and not self.axis_scale()
+
+    @property
     def has_coefficient(self) -> bool:
         """Whether the law states a coefficient."""
         own = type(self).define_coefficient is not FrictionLaw.define_coefficient

@@ -178,8 +178,9 @@ def _columns(law: Any, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLi
     v = np.asarray(v_rel, dtype=float)
     columns = np.atleast_1d(v).reshape(max(1, v.shape[0] if v.ndim else 1), -1)
     d = columns.shape[0]
-    if v.ndim > 2 or d not in law.dimensions:
-        accepted = f"a number, (d,) or (d, n_t) with d = {' or '.join(map(str, law.dimensions))}"
+    known = (*law.dimensions, *((3,) if law.cone_in_space else ()))
+    if v.ndim > 2 or d not in known:
+        accepted = f"a number, (d,) or (d, n_t) with d = {' or '.join(map(str, known))}"
         raise LawError(f"{law._label()}: v_rel must be {accepted}, got shape {v.shape}")
     N = np.broadcast_to(np.asarray(normal_force, dtype=float), columns.shape[1:])
     n_z = law.n_states(d)
@@ -198,7 +199,7 @@ def force(law: Any, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLike 
     if law.kind == "smooth":
         value = _smooth(law, "force", v, N, z)
     else:
-        r = np.hypot(v[0], v[1]) if v.shape[0] == 2 else np.abs(v[0])
+        r = np.abs(v).max(axis=0)
         scale = np.array(law.numeric().axis_scale() or (1.0,) * len(v), dtype=float)[:, None]
         r = _length(*(scale * v)) * (r > 0.0)
         direction = scale * np.divide(scale * v, r, out=np.zeros_like(v), where=r > 0.0)

@@ -83,13 +83,22 @@ class Joint(Part):
                 self._refuse("friction", self.friction, "left out: this joint has no slip")
             if not isinstance(self.friction, FrictionLaw):
                 self._refuse("friction", self.friction, "a friction law, such as fm.laws.Coulomb(mu_s=0.5)")
-            if self.slip_rows not in self.friction.dimensions:
-                words = "one direction" if self.slip_rows == 1 else f"{self.slip_rows} directions"
-                self._refuse("friction", self.friction, f"a law of {words} of slip")
+            self._check_directions(self.friction)
             if self.slip_rows > 1 and self.friction.numeric().axis_scale():
                 self._refuse("friction", self.friction, "a law that is the same in all directions of slip")
             if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:
                 self.friction.check()
+
+    def _check_directions(self, law: FrictionLaw) -> None:
+        """Refuse a law that does not serve as many directions of slip.
+
+        The third direction of laws that state three is spin; three that are alike take a law with a cone.
+        """
+        if self.slip_rows > 2 and not law.cone_in_space:
+            self._refuse("friction", law, f"a law that sticks, with a cone in {self.slip_rows} directions of slip")
+        if self.slip_rows <= 2 and self.slip_rows not in law.dimensions:
+            words = "one direction" if self.slip_rows == 1 else f"{self.slip_rows} directions"
+            self._refuse("friction", law, f"a law of {words} of slip")
 
     def bare(self) -> Self:
         """The same without its law, whose numbers are no part of the joint's formulas."""

@@ -7,9 +7,10 @@ from fricmb.space._ground import ground_point
 from fricmb.space._guides import Cylindrical, Prismatic
 from fricmb.space._kalker import KalkerCoefficients, kalker
 from fricmb.space._on_plane import OnPlane
-from fricmb.space._points import Fixed, Rod, Spherical, Universal
+from fricmb.space._points import Fixed, Rod, Universal
 from fricmb.space._revolute import Revolute
 from fricmb.space._rotor import Rotor
+from fricmb.space._spherical import Spherical
 from fricmb.space._torque import Torque
 from fricmb.space._turn import turned
 from fricmb.space._wheel_rail import WheelRail

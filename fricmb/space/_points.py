@@ -1,4 +1,4 @@
-"""Joints that hold points together or apart: ball joint, universal joint, weld, rod."""
+"""Joints that hold points together or apart: universal joint, weld, rod."""
 
 from __future__ import annotations
 
@@ -15,33 +15,6 @@ from fricmb.space._turn import dot
 
 
 @dataclass(frozen=True, eq=False)
-class Spherical(SpaceJoint):
-    """A ball joint: two points stay together.  Reaction: force (x, y, z) on a.
-
-    Parameters
-    ----------
-    name : str
-    a, b : ends
-        Bodies of ``fm.space`` (their centres of mass), points of them, ``fm.space.ground_point(x, y, z)``, GROUND.
-
-    Examples
-    --------
-    >>> import fricmb as fm
-    >>> bob = fm.space.RigidBody("bob", mass=2.0, inertia=(0.03, 0.05, 0.04), points={"top": (0, 0, 0.3)})
-    >>> hook = fm.space.Spherical("hook", bob.point("top"), fm.space.ground_point(0, 0, 0.3))
-    >>> sol = fm.simulate(fm.Scene("at rest", [bob, hook, fm.Gravity("g", acceleration={"z": -9.81})]), t_end=1.0)
-    >>> sol.reaction("hook")[:, -1].round(9)
-    array([ 0.  ,  0.  , 19.62])
-    """
-
-    only_relative: ClassVar[bool] = True
-
-    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """None."""
-        return x
-
-
-@dataclass(frozen=True, eq=False)
 class Universal(SpaceJoint):
     """A universal joint: two points stay together, and an axis of a stays at right angles to an axis of b.
 
@@ -53,6 +26,11 @@ class Universal(SpaceJoint):
     a, b : ends
     axis_a, axis_b : (float, float, float)
         The pin fixed in a and that fixed in b: in space, as the bodies are declared, at right angles.
+
+    Notes
+    -----
+    Its pins are free of friction.  For dry ones let the cross be a body of its own, with a :class:`Revolute` to either
+    side: each pin then has its own load.
     """
 
     only_relative: ClassVar[bool] = True

@@ -6,6 +6,7 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from fricmb.scene._forms import LinearForm
+from fricmb.space._bearing import end_forces
 from fricmb.space._joint import AxisJoint
 from fricmb.space._turn import cross, dot
 
@@ -90,15 +91,7 @@ class Revolute(AxisJoint):
 
         from fricmb.laws import norm
 
-        u, w, tiny = x[6:9], x[9:12], sympy.Float("1e-300")
-        across, force = (dot(lam[0:3], u), dot(lam[0:3], w)), lam[0:3]
-        # length = 0: no lever, no force from the torque
-        lever = (lam[4], -lam[3])
-        ends = [
-            norm([
-                f / 2 + sign * sympy.Piecewise((m / sympy.Max(self.length, tiny), self.length > 0), (0, True))
-                for f, m in zip(across, lever, strict=True)
-            ])
-            for sign in (1, -1)
-        ]  # fmt: skip
-        return sum(ends) + self.thrust_radius / self.radius * sympy.Abs(dot(force, cross(u, w)))
+        u, w, force = x[6:9], x[9:12], lam[0:3]
+        ends = end_forces((dot(force, u), dot(force, w)), (lam[3], lam[4]), self.length)
+        thrust = self.thrust_radius / self.radius * sympy.Abs(dot(force, cross(u, w)))
+        return sum(norm(end) for end in ends) + thrust

@@ -94,7 +94,7 @@ class WheelRail(OneSided, SpaceJoint):
     along: Any = (1.0, 0.0, 0.0)
     up: Any = (0.0, 0.0, 1.0)
     speed: Any = 0.0
-    side: float | None = None
+    end: str | None = None
 
     def _check_own(self) -> None:
         if self.b is not GROUND:
@@ -109,10 +109,10 @@ class WheelRail(OneSided, SpaceJoint):
         if abs(lean) < 0.5:
             raise SceneError(f"{self._label()}: the axle lies along the rail or stands up; turn its axis across")
         # which end of the axle, and which way its axis points: both say where the flange is
-        side = float(np.sign(self.a.offset[0]))
-        if self.side not in (None, side):
-            self._refuse("side", self.side, f"left out (it is {side:g}, from a)")
-        self._set("side", side)
+        end = "front" if self.a.offset[0] > 0.0 else "back"
+        if self.end not in (None, end):
+            self._refuse("end", self.end, f"left out (it is {end!r}, from a)")
+        self._set("end", end)
         self._set("speed", check_expression(self, "speed", self.speed, motions=False))
 
     def _takes_expression(self, field: str) -> bool:
@@ -156,7 +156,7 @@ class WheelRail(OneSided, SpaceJoint):
 
         length = sympy.sqrt(dot(x[3:6], x[3:6]))
         n = tuple(component / length for component in x[3:6])
-        radius = self.rolling_radius + self.conicity * self.side * x[7] * x[1]
+        radius = self.rolling_radius + self.conicity * (x[7] if self.end == "front" else -x[7]) * x[1]
         c = (0, 0, -radius)
         level = sympy.sqrt(n[0] ** 2 + n[1] ** 2)
         rows = []

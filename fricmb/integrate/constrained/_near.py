@@ -1,13 +1,14 @@
-"""Before the stages of a step: which contacts in two directions are near rest, and what a turn of their force does."""
+"""Before the stages of a step: which contacts in several directions are near rest, and what turns of forces do."""
 
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained._plane import largest_part
 from fricmb.integrate.constrained._slip import lightness, magnitude, plane
 from fricmb.integrate.constrained._stages import Stages, newton_change
 from fricmb.integrate.constrained._state import State
-from fricmb.integrate.constrained._turns import NEAR, across, by_turn, force_place
+from fricmb.integrate.constrained._turns import NEAR, Turns, across, by_turn, force_place
 from fricmb.integrate.problem import SLIP
 
 
@@ -18,20 +19,31 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
     turns.near[0] = 0
     for c in range(y.mode.shape[0]):
         k.form[c] = 0
-        if not plane(mech, c) or y.mode[c] != SLIP or turns.near[0] == turns.which.shape[0]:
+        first, d = row[c], row[c + 1] - row[c]
+        if not plane(mech, c) or y.mode[c] != SLIP or turns.near[0] + d - 1 > turns.which.shape[0]:
             continue
-        force = magnitude(row, c, y.F)
-        change = magnitude(row, c, y.ga) + force * (
-            lightness(mech, k, c, 0, y.lam, mech.address) + lightness(mech, k, c, 1, y.lam, mech.address)
-        )
-        if y.N[c] > 0.0 and force > 0.0 and magnitude(row, c, y.g) <= NEAR * h * change:
-            i = turns.near[0]
-            k.form[c] = 1
-            turns.which[i] = c
-            turns.tangent[i, 0] = y.F[row[c] + 1] / force
-            turns.tangent[i, 1] = -y.F[row[c]] / force
-            turns.base[i] = by_turn(mech, c, y.F, y.g)
-            turns.near[0] = i + 1
+        force, light = magnitude(row, c, y.F), 0.0
+        for a in range(d):
+            light += lightness(mech, k, c, a, y.lam, mech.address)
+        change = magnitude(row, c, y.ga) + force * light
+        if y.N[c] <= 0.0 or force <= 0.0 or magnitude(row, c, y.g) > NEAR * h * change:
+            continue
+        k.form[c] = 1
+        m = largest_part(row, c, y.n) - first
+        for line in range(d):
+            if line != m:
+                turn_row(turns, c, line, m, -y.F[first + line] / force, -y.F[first + m] / force)
+                turns.base[turns.near[0] - 1] = by_turn(mech, c, y.F, y.g)
+
+
+@kernel
+def turn_row(turns: Turns, c: int, line: int, m: int, n_line: float, n_m: float) -> None:
+    """Append the row of contact c in which direction ``line`` stands against direction m."""
+    i = turns.near[0]
+    turns.which[i], turns.line[i] = c, line
+    for a in range(3):
+        turns.tangent[i, a] = n_line if a == m else (-n_m if a == line else 0.0)
+    turns.near[0] = i + 1
 
 
 @kernel
@@ -42,7 +54,7 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
         for i in range(s):
             for a in range(st.R.shape[1]):
                 st.R[i, a] = 0.0
-        st.R[p % s, force_place(mech, turns.which[p // s])] = 1.0
+        st.R[p % s, force_place(mech, turns.which[p // s]) + turns.line[p // s]] = 1.0
         newton_change(mech, st, mech.address)
         for i in range(s):
             for a in range(st.R.shape[1]):

@@ -20,8 +20,8 @@ SETTING_OUT = 3
 
 @kernel
 def plane(mech: Mech, c: int) -> bool:
-    """Whether port c slips in two directions under a set-valued law."""
-    return bool(mech.port.row[c + 1] - mech.port.row[c] == 2 and mech.port.law[c] != LAW_SMOOTH)
+    """Whether port c slips in two or three directions under a set-valued law."""
+    return bool(mech.port.row[c + 1] - mech.port.row[c] >= 2 and mech.port.law[c] != LAW_SMOOTH)
 
 
 @kernel
@@ -30,19 +30,21 @@ def magnitude(row: Ints, c: int, x: Floats) -> float:
     first = row[c]
     if row[c + 1] - first == 1:
         return float(abs(x[first]))
-    return float(np.hypot(x[first], x[first + 1]))
+    size = np.hypot(x[first], x[first + 1])
+    return float(size if row[c + 1] - first == 2 else np.hypot(size, x[first + 2]))
 
 
 @kernel
 def slip_speed(row: Ints, c: int, n: Floats, F: Floats, x: Floats) -> float:
-    """Part of x along the direction of slip: n, in two directions against the force where there is one."""
+    """Part of x along the direction of slip: n, in several directions against the force where there is one."""
     first = row[c]
     if row[c + 1] - first == 1:
         return float(n[first] * x[first])
     size = magnitude(row, c, F)
-    if size > 0.0:
-        return float(-(F[first] * x[first] + F[first + 1] * x[first + 1]) / size)
-    return float(n[first] * x[first] + n[first + 1] * x[first + 1])
+    along = 0.0
+    for a in range(first, row[c + 1]):
+        along += (F[a] if size > 0.0 else n[a]) * x[a]
+    return float(-along / size if size > 0.0 else along)
 
 
 @kernel

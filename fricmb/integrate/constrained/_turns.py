@@ -1,8 +1,9 @@
-"""Slip in two directions near rest: how the direction follows the force differs from stage to stage.
+"""Slip in several directions near rest: how the direction follows the force differs from stage to stage.
 
 The rows of ``_friction`` in the form that finds the direction have the derivative ``r_i / |F_i|`` by a turn of the
-force at stage i, r the slip speed.  Near rest r changes by as much as it is, so that Newton's method with the one
-Jacobian of all stages would not converge.  Its changes are corrected by what the few derivatives differ by (Woodbury).
+force at stage i, r the slip speed; of three directions two such rows.  Near rest r changes by as much as it is, so that
+Newton's method with the one Jacobian of all stages would not converge.  Its changes are corrected by what the few
+derivatives differ by (Woodbury).
 """
 
 from __future__ import annotations
@@ -24,13 +25,16 @@ TOGETHER = 24
 
 
 class Turns(NamedTuple):
-    """Contacts near rest: ``which`` (k,) of them, ``near`` (1,) how many, ``tangent`` (k, 2) across their slip.
+    """Rows of contacts near rest that find a direction: ``which`` (k,) contact and ``line`` (k,) of its directions.
+
+    ``near`` (1,) how many rows, ``tangent`` (k, 3) across the slip.
 
     ``answer`` (k s, s, size): changes by a unit residual in the row of a direction; ``gain`` (k s, k s) the turns
     among them; ``base`` (k,), ``spread`` (k s,): derivatives in the Jacobian, and what a stage's differ by.
     """
 
     which: Ints
+    line: Ints
     near: Ints
     tangent: Floats2
     base: Floats
@@ -44,15 +48,15 @@ class Turns(NamedTuple):
 
 
 def turns_of(problem: Problem, s: int, size: int) -> Turns:
-    """Rooms for the contacts in two directions with set-valued laws."""
+    """Rooms for the contacts in several directions with set-valued laws."""
     contacts = problem.contacts
-    k = int(((np.diff(contacts.row) == 2) & (contacts.law != LAW_SMOOTH)).sum())
+    k = int(np.maximum(np.diff(contacts.row) - 1, 0)[contacts.law != LAW_SMOOTH].sum())
     k = min(k, TOGETHER) if s > 1 else 0
     full = k * s
     return room(Turns(
-        np.zeros(k, np.int64), np.zeros(1, np.int64), np.zeros((k, 2)), np.zeros(k), np.zeros((full, s, size)),
-        np.zeros((full, full)), np.zeros((full, full)), np.zeros(full), np.zeros(full), np.zeros(4, np.int32),
-        np.zeros(full, np.int32),
+        np.zeros(k, np.int64), np.zeros(k, np.int64), np.zeros(1, np.int64), np.zeros((k, 3)), np.zeros(k),
+        np.zeros((full, s, size)), np.zeros((full, full)), np.zeros((full, full)), np.zeros(full), np.zeros(full),
+        np.zeros(4, np.int32), np.zeros(full, np.int32),
     ))  # fmt: skip
 
 
@@ -66,9 +70,11 @@ def force_place(mech: Mech, c: int) -> int:
 @kernel
 def by_turn(mech: Mech, c: int, F: Floats, g: Floats) -> float:
     """Derivative of the velocity across the direction of slip by the force across it: slip speed over force."""
-    a, b = mech.port.row[c], mech.port.row[c] + 1
-    square = F[a] * F[a] + F[b] * F[b]
-    return float(-(F[a] * g[a] + F[b] * g[b]) / square) if square > 0.0 else 0.0
+    square, along = 0.0, 0.0
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        square += F[a] * F[a]
+        along += F[a] * g[a]
+    return float(-along / square) if square > 0.0 else 0.0
 
 
 @kernel
@@ -82,9 +88,12 @@ def spread_of_stages(mech: Mech, turns: Turns, F: Floats2, g: Floats2) -> None:
 
 @kernel
 def across(mech: Mech, turns: Turns, k: int, x: Floats) -> float:
-    """The turn of contact k in a change x (size,) of the unknowns of a stage: force across its slip."""
-    place = force_place(mech, turns.which[k])
-    return float(turns.tangent[k, 0] * x[place] + turns.tangent[k, 1] * x[place + 1])
+    """The turn of row k in a change x (size,) of the unknowns of a stage: force across the slip."""
+    c = turns.which[k]
+    place, turn = force_place(mech, c), 0.0
+    for a in range(mech.port.row[c + 1] - mech.port.row[c]):
+        turn += turns.tangent[k, a] * x[place + a]
+    return float(turn)
 
 
 @kernel
