@@ -172,7 +172,7 @@ def test_compiled_table_equals_the_numeric_one():
         (lambda: laws.Tabulated(speed=[0.0, float("inf")], mu=[1.0, 1.0]), ("speed[1]", "inf")),
         (lambda: laws.Tabulated(speed=[0.0, 1.0], mu=[0.5, 0.4], mu_s=0.3), ("mu_s", "0.3", "0.5")),
         (lambda: laws.Coulomb(mu_s=0.3).coefficient(-1.0), ("r", "-1.0")),
-        (lambda: laws.Coulomb(mu_s=0.3).force(np.zeros((3, 2)), 1.0), ("v_rel", "(3, 2)")),
+        (lambda: laws.Coulomb(mu_s=0.3).force(np.zeros((4, 2)), 1.0), ("v_rel", "(4, 2)")),
         (lambda: laws.LuGre.example().rate([0.1, 0.1], 1.0, [0.0]), ("state", "(2,)", "(1,)")),
     ],
 )
