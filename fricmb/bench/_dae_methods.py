@@ -112,9 +112,40 @@ class IdaDae(DaeMethod):
         return np.asarray(sol.y)[-1], {"n_rhs": int(sol.nfev), "n_jac": int(sol.njev)}
 
 
+@dataclass(frozen=True)
+class Explicit(DaeMethod):
+    """DOP853 of scipy, where the equation is an explicit one."""
+
+    name: str = "scipy DOP853"
+    peer: bool = True
+
+    def takes(self, case: DaeCase) -> bool:
+        """Where its rates are there."""
+        return case.rates is not None
+
+    def solve(self, case: DaeCase, rtol: float) -> tuple[Floats, dict[str, int]]:
+        """Run it with the compiled rates."""
+        from scipy.integrate import solve_ivp
+
+        rates = case.rates
+        if rates is None:
+            raise TypeError(f"{case.name} is no explicit equation")
+
+        def right(t: float, y: Floats) -> Floats:
+            out = np.empty(y.size)
+            rates(t, y, out)
+            return out
+
+        span, atol = (0.0, case.t_end), FLOOR * rtol * case.size
+        sol = solve_ivp(right, span, case.y0, method="DOP853", rtol=max(rtol, 1e-13), atol=atol, t_eval=[case.t_end])
+        if not sol.success:
+            raise PeerError(f"DOP853: {sol.message}")
+        return np.asarray(sol.y[:, -1]), {"n_rhs": int(sol.nfev)}
+
+
 def dae_methods() -> list[DaeMethod]:
     """What is installed."""
-    return [SolveDae(), Mechanism(), *([IdaDae()] if find_spec("sksundae") else [])]
+    return [SolveDae(), Mechanism(), Explicit(), *([IdaDae()] if find_spec("sksundae") else [])]
 
 
 def measure_dae(case: DaeCase, method: DaeMethod, setting: Setting) -> Outcome:

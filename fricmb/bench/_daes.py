@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import fricmb as fm
-from fricmb.bench import _andrews
+from fricmb.bench import _andrews, _heavy_top
 from fricmb.bench._reference import Floats
 from fricmb.integrate.compile.kernel import entry
 
@@ -25,7 +25,8 @@ class DaeCase:
 
     ``quick``: part of the quick suite.  ``algebraic``: components without a derivative.  ``compared``: number of
     components whose end is known (None: all).  ``scene`` builds the mechanism that the equation describes, and ``read``
-    takes the compared components from its solution.
+    takes the compared components from its solution.  ``rates(t, y, out)``: the same as an explicit equation, where it
+    is one.
     """
 
     name: str
@@ -41,6 +42,7 @@ class DaeCase:
     compared: int | None = None
     scene: Callable[[], fm.Scene] | None = None
     read: Callable[[Any], Floats] | None = None
+    rates: Callable[[float, Floats, Floats], None] | None = None
     source: str = "Test Set for IVP Solvers, release 2.4"
 
 
@@ -155,6 +157,7 @@ _ROBERTSON_END = (0.2083340149701255e-7, 0.8333360770334713e-13, 0.9999999791665
 def dae_cases() -> tuple[DaeCase, ...]:
     """The cases; a function, because two starts are computed with compiled residuals."""
     akzo, transistor, mechanism = _akzo_start(), _transistor_start(), _andrews.start()
+    top = _heavy_top.start()
     ends = [np.array(end) for end in (_ROBERTSON_END, _AKZO_END, _TRANSISTOR_END, _RING_END)]
     return (
         DaeCase(
@@ -179,5 +182,11 @@ def dae_cases() -> tuple[DaeCase, ...]:
             yp0=mechanism[1], end=np.array(_andrews.END), compared=14, algebraic=tuple(range(14, 27)), quick=True,
             size=np.array([*np.abs(_andrews.END), *np.abs(mechanism[0][14:21]).clip(1e4), *[100.0] * 6]),
             scene=fm.models.andrews, read=_andrews.angles,
+        ),
+        DaeCase(
+            name="heavy_top", title="heavy top in Euler's angles, and as a body in space", t_end=1.0, y0=top[0],
+            yp0=top[1], residual=_heavy_top.residual, rates=_heavy_top.rates, end=np.array(_heavy_top.END), compared=2,
+            size=np.array([0.5, 8.0, 100.0, 10.0, 20.0, 120.0]), scene=fm.models.heavy_top, read=_heavy_top.angles,
+            source="E. T. Whittaker, Analytical Dynamics, art. 71",
         ),
     )  # fmt: skip

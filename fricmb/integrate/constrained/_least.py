@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.sparse import bmat, csr_matrix, diags, eye
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse import bmat, csr_matrix, eye
 from scipy.sparse.linalg import splu
 
 from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
@@ -18,6 +21,8 @@ from fricmb.integrate.problem import Floats, Ints, Problem
 REGULAR = 1e-10
 #: Corrections that take its effect away again: a factor REGULAR / sigma^2 each, sigma the singular values.
 REFINED = 4
+#: Up to so many unknowns dense factors cost less than the making of sparse ones.
+DENSE = 150
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,10 +71,11 @@ def names_of_rows(m: Mechanism, rows: Ints) -> list[str]:
 
 def unit_rows(G: Any, weight: Floats) -> tuple[Any, Floats]:
     """``G diag(weight)`` with rows of length 1, and their lengths (1 for a row of zeros)."""
-    J = csr_matrix(G.multiply(weight))
-    length = np.sqrt(np.asarray(J.multiply(J).sum(axis=1)).ravel())
+    row = np.repeat(np.arange(G.shape[0]), np.diff(G.indptr))
+    values = G.data * weight[G.indices]
+    length = np.sqrt(np.bincount(row, values**2, minlength=G.shape[0]))
     length = np.where(length > 0.0, length, 1.0)
-    return csr_matrix(diags(1.0 / length) @ J), length
+    return csr_matrix((values / length[row], G.indices, G.indptr), shape=G.shape), length
 
 
 class Least:
@@ -78,14 +84,20 @@ class Least:
     def __init__(self, J: Any) -> None:
         m, n = J.shape
         self.J = J
-        self._factors = splu(bmat([[eye(n), J.T], [J, -REGULAR * eye(m)]], format="csc"))
+        self._solve: Callable[[Floats], Floats]
+        if m + n <= DENSE:
+            rows = J.toarray()
+            factors = lu_factor(np.block([[np.eye(n), rows.T], [rows, -REGULAR * np.eye(m)]]), check_finite=False)
+            self._solve = partial(lu_solve, factors, check_finite=False)
+        else:
+            self._solve = splu(bmat([[eye(n), J.T], [J, -REGULAR * eye(m)]], format="csc")).solve
 
     def change(self, r: Floats) -> Floats:
         """The change x (n,) for a right-hand side (m,)."""
         n = self.J.shape[1]
         x = np.zeros(n)
         for _ in range(REFINED):
-            x += self._factors.solve(np.concatenate([np.zeros(n), r - self.J @ x]))[:n]
+            x += self._solve(np.concatenate([np.zeros(n), r - self.J @ x]))[:n]
         return x
 
     def weakest(self) -> Floats:
@@ -93,6 +105,6 @@ class Least:
         m, n = self.J.shape
         y = np.random.default_rng(1).standard_normal(m)
         for _ in range(20):
-            y = self._factors.solve(np.concatenate([np.zeros(n), y / np.linalg.norm(y)]))[n:]
+            y = self._solve(np.concatenate([np.zeros(n), y / np.linalg.norm(y)]))[n:]
         unit: Floats = y / np.linalg.norm(y)
         return unit

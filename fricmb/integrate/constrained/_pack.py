@@ -235,30 +235,51 @@ class Moving(NamedTuple):
     borne: Floats
 
 
-def moving_of(problem: Problem) -> Moving:
-    """Rooms for evaluating the problem."""
-    m = mechanism_of(problem)
-    packed = mech_of(problem)
-    n_y, n_u = m.n_y, problem.n_u
-    widths = [int(x) for x in packed.joint.n_x]
-    rows = [int(x) for x in np.diff(m.joints.row)]
-    n_x = max([8, *(2 * x + r for x, r in zip(widths, rows, strict=True))])
+class _Lengths(NamedTuple):
+    """Of the rooms for calls: places and their rates, what goes into templates and comes out."""
+
+    grad: int
+    hess: int
+    s_x: int
+    s_out: int
+    n_x: int
+    n_out: int
+
+
+def _lengths(problem: Problem) -> _Lengths:
+    m, packed = mechanism_of(problem), mech_of(problem)
+    widths = np.asarray(packed.joint.n_x, dtype=int)
+    rows = np.diff(m.joints.row)
     directions = int(np.max(np.diff(problem.contacts.row), initial=1))
     slip = directions + 2
-    n_out = max([8, *(2 * r + 3 * x * r + slip * x * x + slip * x + 8 for x, r in zip(widths, rows, strict=True))])
+    n_x = int(np.max(2 * widths + rows, initial=8))
+    n_out = int(np.max(2 * rows + 3 * widths * rows + slip * widths * (widths + 1) + 8, initial=8))
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
     s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
     for templates in (problem.elements.table, problem.contacts.normal_table):
         s_x = max(s_x, int(np.max(np.diff(templates.x_start), initial=0)))
-    s_out = max(8 + s_f * (s_x + 4), 2 + s_x, states * (states + 3) + 4)
-    scratch = Scratch(
-        np.zeros(1 + 2 * n_y + 2 * n_u), np.zeros(n_u), np.zeros(s_x), np.zeros(s_out), np.array([-np.inf, np.inf])
-    )
-    grad, hess = int(packed.place.grad_start[-1]), int(packed.place.hess_start[-1])
     b = int(np.max(np.diff(m.places.dof_start), initial=1))
+    return _Lengths(
+        grad=int(packed.place.grad_start[-1]),
+        hess=int(packed.place.hess_start[-1]),
+        s_x=s_x,
+        s_out=max(8 + s_f * (s_x + 4), 2 + s_x, states * (states + 3) + 4),
+        n_x=n_x,
+        n_out=max(n_out, 2 + 2 * b + 2 * b * b),
+    )
+
+
+def moving_of(problem: Problem) -> Moving:
+    """Rooms for evaluating the problem."""
+    m, n_u = mechanism_of(problem), problem.n_u
+    size = kept(problem, "lengths of rooms", lambda: _lengths(problem))
+    scratch = Scratch(
+        np.zeros(1 + 2 * m.n_y + 2 * n_u), np.zeros(n_u), np.zeros(size.s_x), np.zeros(size.s_out),
+        np.array([-np.inf, np.inf]),
+    )  # fmt: skip
     return room(Moving(
-        scratch, np.zeros(grad + 1), np.zeros(grad + 1), np.zeros(hess + 1), np.zeros(n_y), np.zeros(n_x),
-        np.zeros(max(n_out, 2 + 2 * b + 2 * b * b)), np.zeros(n_y), np.zeros(n_u + 1),
+        scratch, np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
+        np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
         np.zeros(problem.n_c), np.ones(1), np.zeros(1),
     ))  # fmt: skip
