@@ -68,6 +68,15 @@ EXAMPLES = {
     + _PICTURE
     + 'seen = sol.at(np.linspace(0.0, 1.0, 400))\nax.plot(seen.t, np.hypot(*seen.relative_velocity("cloth")))\n'
     + 'ax.set(xlabel="time", ylabel="slip speed")\n',
+    "space.InCylinder": "import matplotlib.pyplot as plt\nimport numpy as np\n"
+    'ball = fm.space.Ball("ball", mass=0.05, radius=0.02, position=(0.13, 0, 0), velocity=(0, 1.17, 0.1),\n'
+    "                     angular_velocity=(0, 5.0, -58.5))\n"
+    'tube = fm.space.InCylinder("tube", ball, axis=(0, 0, 1), radius=0.15, friction=fm.laws.Coulomb(mu_s=2.0))\n'
+    + _DOWN
+    + _run("ball, tube, weight", 'sol["ball.z"].min()', 3.0)
+    + _PICTURE
+    + 'seen = sol.at(np.linspace(0.0, 3.0, 400))\nax.plot(seen.t, seen["ball.z"])\n'
+    + 'ax.set(xlabel="time", ylabel="height")\n',
     "space.kalker": "found = fm.space.kalker(a=6e-3, b=5e-3, shear_modulus=8e10, poisson=0.28)\nprint(found)\n",
     "space.WheelRail": _AXLE
     + "creep = fm.space.ShenHedrickElkins(mu=0.3, f11=8e6, f22=7e6, speed=120.0)\n"

@@ -16,6 +16,8 @@ from fricmb.models import catalogue
 DIMENSIONS = {
     "mass": "mass", "masses": "mass", "support": "mass", "pad_mass": "mass", "density": "mass/length",
     "inertia": "mass length^2", "inertia_across": "mass length^2", "inertia_axial": "mass length^2", "reach": "length",
+    "arm": "length", "half_gauge": "length", "cylinder_radius": "length", "rise": "length/time",
+    "yaw_stiffness": "force length/rad", "f11": "force", "f22": "force",
     "tip_radius": "length", "length": "length", "radius": "length", "crank": "length", "rod": "length",
     "coupler": "length", "rocker": "length", "half": "length", "pin": "length", "bump": "length", "eps": "length",
     "x0": "length", "position": "length", "kick": "length", "angle": "rad", "angles": "rad",
@@ -31,7 +33,7 @@ DIMENSIONS = {
 NUMBERS = [
     "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",
     "damping_ratio", "split", "modal_mass", "case", "n", "n_pad_modes", "n_rotor_modes", "n_contacts",
-    "nodal_diameters", "law", "laws", "pressure", "modes",
+    "nodal_diameters", "law", "laws", "pressure", "modes", "conicity",
 ]  # fmt: skip
 DIMENSIONS |= dict.fromkeys(NUMBERS, "")
 # Where a model means something else by a name.

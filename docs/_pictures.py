@@ -24,6 +24,9 @@ TELLING = {
     "billiard": ["ball.x", "ball.y", "ball.turn_x"],
     "rolling_coin": ["coin.x", "coin.axis_z"],
     "turntable": ["ball.x", "ball.y"],
+    "ball_in_cylinder": ["ball.x", "ball.z"],
+    "dry_ball_joint": ["bob.x", "bob.y", "bob.z"],
+    "wheelset": ["axle.y", "axle.x"],
 }
 
 

@@ -8,12 +8,14 @@ if __name__ != "fricmb.models":
 
 from fricmb.models._catalogue import Model, catalogue
 from fricmb.models.andrews import andrews
+from fricmb.models.ball_in_cylinder import ball_in_cylinder
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
 from fricmb.models.drive_train import drive_train
+from fricmb.models.dry_ball_joint import dry_ball_joint
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
@@ -30,10 +32,12 @@ from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
+from fricmb.models.wheelset import wheelset
 
 __all__ = [
     "Model",
     "andrews",
+    "ball_in_cylinder",
     "belt_oscillator",
     "billiard",
     "block_stack",
@@ -41,6 +45,7 @@ __all__ = [
     "car_axis",
     "catalogue",
     "drive_train",
+    "dry_ball_joint",
     "dry_pendulum",
     "four_bar",
     "friction_oscillator",
@@ -57,4 +62,5 @@ __all__ = [
     "sprag_slip",
     "stick_slip_chain",
     "turntable",
+    "wheelset",
 ]

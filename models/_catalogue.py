@@ -9,12 +9,14 @@ from types import MappingProxyType
 
 import fricmb as fm
 from fricmb.models.andrews import andrews
+from fricmb.models.ball_in_cylinder import ball_in_cylinder
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
 from fricmb.models.drive_train import drive_train
+from fricmb.models.dry_ball_joint import dry_ball_joint
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
@@ -31,6 +33,7 @@ from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
+from fricmb.models.wheelset import wheelset
 from fricmb.values import DIMENSIONLESS, SI, Units
 
 
@@ -87,6 +90,9 @@ _MODELS = (
     Model(build=billiard, t_end=1.0, units=SI),
     Model(build=rolling_coin, t_end=2.0, units=SI),
     Model(build=turntable, t_end=3.0, units=SI),
+    Model(build=ball_in_cylinder, t_end=2.0, units=SI),
+    Model(build=dry_ball_joint, t_end=6.0, units=SI),
+    Model(build=wheelset, t_end=2.0, units=SI),
 )
 
 #: The built-in models by name.

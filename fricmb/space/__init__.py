@@ -5,6 +5,7 @@ from fricmb.space._creep import LinearCreep, Polach, ShenHedrickElkins
 from fricmb.space._directors import RigidBody
 from fricmb.space._ground import ground_point
 from fricmb.space._guides import Cylindrical, Prismatic
+from fricmb.space._in_cylinder import InCylinder
 from fricmb.space._kalker import KalkerCoefficients, kalker
 from fricmb.space._on_plane import OnPlane
 from fricmb.space._points import Fixed, Rod, Universal
@@ -19,6 +20,7 @@ __all__ = [
     "Ball",
     "Cylindrical",
     "Fixed",
+    "InCylinder",
     "KalkerCoefficients",
     "LinearCreep",
     "OnPlane",

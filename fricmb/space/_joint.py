@@ -65,6 +65,17 @@ class SpaceJoint(Joint):
         ends = (self.a.owner, self.b.owner)
         return self.only_relative and all(isinstance(owner, SpaceBody) or owner is GROUND for owner in ends)
 
+    def frame(self) -> Floats:
+        """Directions of the fixed part of the joint, as rows (3, 3)."""
+        return np.eye(3)
+
+    def seen(self, forms: Any) -> Forms:
+        """Components of a vector along the directions of :meth:`frame`."""
+        x, y, z = (
+            sum((form * float(c) for form, c in zip(forms, row, strict=True)), LinearForm()) for row in self.frame()
+        )
+        return x, y, z
+
     def apart(self) -> Forms:
         """The vector from b to a."""
         x, y, z = (self.a.motion(c) - self.b.motion(c) for c in LETTERS)

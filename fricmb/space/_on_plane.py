@@ -145,12 +145,6 @@ class OnPlane(OneSided, SpaceJoint):
         u, w = triad(e)
         return np.array([u, w, e])
 
-    def _turned(self, forms: Any) -> tuple[LinearForm, ...]:
-        """Components of a vector along the plane's directions and its normal."""
-        return tuple(
-            sum((form * float(c) for form, c in zip(forms, row, strict=True)), LinearForm()) for row in self.frame()
-        )
-
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """The point, seen from the plane's own; then axis and spin of a rotor.
 
@@ -158,13 +152,13 @@ class OnPlane(OneSided, SpaceJoint):
         """
         start = (float(c) for c in value_of(self.through))
         place = [self.a.motion(c) - LinearForm((), s) for c, s in zip("xyz", start, strict=True)]
-        x, y, z = self._turned(place)
+        x, y, z = self.seen(place)
         owner = self.a.owner
         if isinstance(owner, Ball):
             radius = float(value_of(owner.radius))
-            return x, y, z - LinearForm((), radius), *(form * radius for form in self._turned(owner.spins()))
+            return x, y, z - LinearForm((), radius), *(form * radius for form in self.seen(owner.spins()))
         if isinstance(owner, Rotor):
-            return x, y, z, *self._turned(owner.axis_forms()), owner.spin_form()
+            return x, y, z, *self.seen(owner.axis_forms()), owner.spin_form()
         return x, y, z
 
     def drives(self) -> tuple[Any, ...]:

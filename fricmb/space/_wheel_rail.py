@@ -136,12 +136,6 @@ class WheelRail(OneSided, SpaceJoint):
         axis = (form * left for form in self.seen(axle.axis_forms()))
         return (*place, *axis, axle.spin_form() * left, LinearForm((), left))
 
-    def seen(self, forms: Any) -> tuple[LinearForm, ...]:
-        """Components of a vector along the directions of the rail."""
-        return tuple(
-            sum((form * float(c) for form, c in zip(forms, row, strict=True)), LinearForm()) for row in self.frame()
-        )
-
     def drives(self) -> tuple[Any, ...]:
         """How far the vehicle has run."""
         return (("rate", self.speed, 0.0),) if self.friction is not None else ()

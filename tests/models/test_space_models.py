@@ -70,3 +70,37 @@ def test_rising_top():
     assert np.ptp(later.energy.total) < 1e-7 * sol.energy.kinetic[0]
     assert np.abs(sol.energy.residual).max() < 1e-7 * sol.energy.kinetic[0]
     assert sol.audit().ok
+
+
+def test_ball_in_cylinder():
+    found, sol = certified("ball_in_cylinder"), standard_run("ball_in_cylinder")
+    assert sol["ball.z"][-1] == pytest.approx(float(found["z"]), abs=1e-9)
+
+
+def test_dry_ball_joint():
+    """It comes to rest out of plumb, where the ball bears what gravity turns, and friction takes all energy."""
+    sol = standard_run("dry_ball_joint", rtol=1e-8)
+    assert sol.events[-1].kind == "stick"
+    arm = sol["bob.rotation"][:, :, -1] @ (0.1, 0.05, -0.3)
+    held = np.cross(arm, (0.0, 0.0, -2.0 * 9.81))
+    np.testing.assert_allclose(0.02 * sol.force("hook")[:, -1], -held, atol=1e-8)
+    assert 1e-4 < np.linalg.norm(held) < 0.6 * 0.02 * 2.0 * 9.81
+    assert sol.energy.kinetic[-1] < 1e-20
+    assert np.abs(sol.energy.residual).max() < 1e-8 * sol.energy.kinetic[0]
+    assert sol.audit().ok
+
+
+def test_wheelset():
+    """At the critical speed one pair neither grows nor decays; well above it the oscillation settles to one size."""
+    found = certified("wheelset")
+    edge = fm.models.wheelset(speed=float(found["critical_speed"]), kick=0.0)
+    values = np.linalg.eigvals(fm.analysis.steady_sliding(edge).matrix())
+    hunting = values[np.argmin(np.abs(values - 1j * float(found["omega_critical"])))]
+    assert abs(hunting.real) < 1e-9
+    assert hunting.imag == pytest.approx(float(found["omega_critical"]), rel=1e-9)
+    tops = []
+    for kick in (0.002, 0.02):
+        sol = fm.simulate(fm.models.wheelset(kick=kick), t_end=3.0, rtol=1e-7)
+        tops.append(sol.at(np.linspace(2.5, 3.0, 2000))["axle.y"].max())
+    assert tops[0] == pytest.approx(tops[1], rel=1e-3)
+    assert tops[0] > 0.02

@@ -46,6 +46,9 @@ def space_sketch_of_run(sol: Solution, times: Floats) -> SpaceSketch:
             touch.force = force / (most or 1.0)
     return making.sketch
 
+#: Lines that show a tube.
+LINES = 16
+
 
 def _directions(part: Any) -> Floats | None:
     """Directions of space (d, 3) that a friction force has; None where it is none at a point."""
@@ -193,7 +196,7 @@ class _Making:
     # ---- joints, contacts, springs
 
     def _joint(self, joint: Any) -> None:
-        from fricmb.space import OnPlane, Rod, WheelRail
+        from fricmb.space import InCylinder, OnPlane, Rod, WheelRail
 
         sketch = self.sketch
         if isinstance(joint, Rod):
@@ -210,6 +213,8 @@ class _Making:
             reach = float(value_of(joint.rolling_radius))
             ends = np.array([run.min() - 2.0 * reach, run.max() + 2.0 * reach])
             sketch.rails.append(np.array([float(c) for c in value_of(joint.through)]) + np.outer(ends, along))
+        elif isinstance(joint, InCylinder):
+            at = self._tube(joint)
         elif not getattr(joint.a, "letters", None):
             return
         else:
@@ -217,6 +222,20 @@ class _Making:
             sketch.pins.append(self._spot(joint.a))
         if joint.friction is not None:
             sketch.touches.append(SpaceTouch(name=joint.name, at=at))
+
+    def _tube(self, joint: Any) -> Floats:
+        """Where a ball touches a tube (3, n); the tube by lines along it, as far as the ball comes."""
+        u, w, e = joint.frame()
+        start = np.array([float(c) for c in value_of(joint.through)])
+        own, radius = float(value_of(joint.a.radius)), float(value_of(joint.radius))
+        place = self._at(joint.a)
+        apart = place - start[:, None]
+        outward = apart - np.outer(e, e @ apart)
+        ends = np.array([(e @ apart).min() - 2.0 * own, (e @ apart).max() + 2.0 * own])
+        for angle in np.linspace(0.0, 2.0 * np.pi, LINES, endpoint=False):
+            foot = start + radius * (np.cos(angle) * u + np.sin(angle) * w)
+            self.sketch.rails.append(foot + np.outer(ends, e))
+        return np.asarray(place + own * outward / np.linalg.norm(outward, axis=0))
 
     def _lowest(self, joint: Any) -> Floats:
         """Where a body touches a plane (3, n)."""
