@@ -18,7 +18,7 @@ from fricmb.integrate.collocation import _collocation
 from fricmb.integrate.run import memory, stop
 from fricmb.integrate.taylor import _taylor
 
-BLAME = (blame, _law_without_value)
+BLAME = (blame, _law_without_value, fm.space.OnPlane.undefined)
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md")]
 PAGE = "\n".join(path.read_text(encoding="utf-8") for path in PAGES)

@@ -38,6 +38,15 @@ def blame(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
     return _law_without_value(mechanics, state.g[:, 0], state.N[:, 0])
 
 
+def undefined(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
+    """Why a joint has no meaning where the run has come to; "" where all have."""
+    q = trajectory.sample(np.array([t])).q[:, 0]
+    if not np.isfinite(q).all():
+        return ""
+    values = dict(zip(mechanics.names.dofs, q.tolist(), strict=True))
+    return next(filter(None, (joint.undefined(values) for joint in mechanics.scene.joints)), "")
+
+
 def _expressions(part: Declaration) -> Iterator[tuple[str, Any]]:
     """The formulas of a part, with the names of their places."""
     for path, value in part.slots().items():

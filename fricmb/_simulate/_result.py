@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from fricmb._simulate._arguments import Span
-from fricmb._simulate._blame import blame
+from fricmb._simulate._blame import blame, undefined
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
@@ -76,7 +76,7 @@ def make_solution(
         t = float(trajectory.t[-1])
         reason, end = failure, t
     if not ended:
-        reason = f"{reason}{blame(mechanics, trajectory, t)}"
+        reason = undefined(mechanics, trajectory, t) or f"{reason}{blame(mechanics, trajectory, t)}"
     partial = None
     while partial is None and end is not None:
         times = None if span.t_eval is None else span.t_eval[span.t_eval <= end]

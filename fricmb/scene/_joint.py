@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar, Self
 
@@ -156,6 +157,10 @@ class Joint(Part):
     def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
         """Normal force of the friction, >= 0."""
         raise NotImplementedError(f"{type(self).__name__} must define define_load(self, x, lam)")
+
+    def undefined(self, values: Mapping[str, float]) -> str:
+        """Why the joint has no meaning at positions of the degrees of freedom, a sentence; "" where it has."""
+        return ""
 
     def observed(self) -> dict[str, LinearForm]:
         """Relative motions of the joint by name (its joint coordinates): ``sol["hinge.angle"]``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
@@ -21,6 +22,8 @@ from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
 from fricmb.values import is_expression, value_of
 
+#: A disc lies flat where the sine of its angle with the plane is no more than this.
+FLAT = 1e-3
 #: What touches the plane, by what is declared.
 SHAPES = ("ball", "edge", "tip", "point")
 
@@ -186,6 +189,19 @@ class OnPlane(OneSided, SpaceJoint):
         if len(x) > len(first):  # a turntable moves under the point, across the way to it
             first, second = [*first, x[1] + c[1]], [*second, -x[0] - c[0]]
         return tuple(first), tuple(second)
+
+    def undefined(self, values: Mapping[str, float]) -> str:
+        """A disc that lies flat."""
+        if self.shape != "edge":
+            return ""
+        name = self.a.owner.name
+        across = np.cross([values[f"{name}.axis_{c}"] for c in "xyz"], self.frame()[2])
+        if np.linalg.norm(across) > FLAT:
+            return ""
+        return (
+            f"{name!r} has come to lie flat on the plane of {self.name!r}: one point of its edge touches, and now all of"
+            " its edge does"
+        )
 
     def _lowest(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """From the point of a rotor to where it touches."""

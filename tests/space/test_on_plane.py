@@ -216,3 +216,29 @@ def test_directions_are_named_by_axes_where_they_are_along_them():
         normal: SPACE.OnPlane("p", ball, normal=normal).labels() for normal in [UP, (1, 0, 0), (0, 1, 0), (0, 1, 1)]
     }
     assert names == {UP: ("x", "y"), (1, 0, 0): ("y", "z"), (0, 1, 0): ("z", "x"), (0, 1, 1): ("x", "2")}
+
+
+@pytest.mark.parametrize(("angle", "mu"), [(0.3, 0.0), (0.8, 5.0)])
+def test_coin_that_falls_flat_ends_with_words(angle, mu):
+    """On ice it falls straight; on a rough floor it tips about its edge."""
+    n, R, m = np.array([np.sin(angle), 0.0, np.cos(angle)]), 0.05, 0.02
+    body = SPACE.Rotor(
+        "coin", mass=m, inertia_across=m * R**2 / 4, inertia_axial=m * R**2 / 2, position=(0, 0, R * n[0]), axis=n
+    )
+    friction = {"friction": coulomb(mu)} if mu else {}
+    floor = SPACE.OnPlane("floor", body, normal=UP, radius=R, push_only=True, **friction)
+    with pytest.raises(fm.IntegrationError, match="'coin' has come to lie flat on the plane of 'floor'") as stop:
+        fm.simulate(fm.Scene("falling", [body, floor, DOWN]), t_end=1.0, rtol=1e-6)
+
+    def rates(t, y):  # about the edge, which slides freely or stays
+        held = m * R**2 if mu else m * R**2 * np.cos(y[0]) ** 2
+        pull = -m * G * R * np.cos(y[0])
+        turn = 0.0 if mu else m * R**2 * np.cos(y[0]) * np.sin(y[0]) * y[1] ** 2
+        return [y[1], (pull + turn) / (m * R**2 / 4 + held)]
+
+    def flat(t, y):
+        return y[0]
+
+    flat.terminal = True
+    exact = solve_ivp(rates, (0, 1), [angle, 0.0], method="DOP853", rtol=1e-11, atol=1e-13, events=flat)
+    assert stop.value.t == pytest.approx(exact.t[-1], abs=1e-4)
