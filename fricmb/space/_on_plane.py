@@ -199,7 +199,7 @@ class OnPlane(OneSided, SpaceJoint):
         if np.linalg.norm(across) > FLAT:
             return ""
         return (
-            f"{name!r} has come to lie flat on the plane of {self.name!r}: one point of its edge touches, and now all of"
+            f"{name!r} has come to lie flat on the plane of {self.name!r}: one point of its edge touched, now all of"
             " its edge does"
         )
 
