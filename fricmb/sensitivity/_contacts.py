@@ -124,6 +124,11 @@ class Rubs:
         size = self._coefficient(Dual(value=np.full(direction.shape[1:], _REST)), N).times(N)
         return [size * -n for n in direction]
 
+    def size_at_rest(self, N: Dual, i: int) -> float:
+        """Friction at r = 0 in slip, by size, at time number i of a normal force."""
+        value = float(N.value) if np.ndim(N.value) == 0 else float(N.value[i])
+        return -float(np.ravel(self.beginning(Dual(value=value), np.ones((1, 1)))[0].value)[0])
+
     def _coefficient(self, r: Dual, N: Dual) -> Dual:
         if self.compiled:
             load = np.broadcast_to(N.value, np.shape(r.value))

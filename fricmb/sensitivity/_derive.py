@@ -29,5 +29,6 @@ def derive(sol: Any, asked: tuple[str, ...]) -> None:
         end=tangent.S[-1],
         moved=tangent.moved,
         transversality=tangent.transversality,
+        unsafe=tangent.unsafe,
     )
     sol.take_derivatives(found)

@@ -14,6 +14,7 @@ from fricmb.scene import Body, Contact, Joint, ModalBody, RigidBody
 from fricmb.sensitivity._breakpoints import Breakpoints, timed_of
 from fricmb.sensitivity._contacts import Rubs
 from fricmb.sensitivity._found import Found, whole
+from fricmb.sensitivity._linear import Linear
 from fricmb.sensitivity._motions import Frame, Moment
 from fricmb.sensitivity._parts import Acting, acting, masses, refuse
 from fricmb.sensitivity._seeds import Seeds
@@ -79,6 +80,7 @@ class Equations:
         for part in scene.parts:
             self._take(part, part.name in held)
         self.breakpoints = self._breakpoints(piece, parameters)
+        self.linear = Linear(self.acting, self.frame, self.columns)
         self.inverse = np.linalg.inv(self.M)
         self._projectors: dict[bytes, tuple[Floats, Floats, Floats]] = {}
 
@@ -124,45 +126,54 @@ class Equations:
         moment = self.moment(samples)
         count = samples.t.size
         found = Found(self.n, self.n_z, self.columns, count)
-        for part in self.acting:
+        for part in (self.linear, *self.linear.rest):
             part.add(moment, found)
         for k, contact in self.contacts.items():
             contact.add(moment, found, mode[k], sign[self.rows(k)])
         a, slopes, F = self._accelerations(found, mode, count)
+        rate_slopes = found.dense(found.rate_slopes, self.n_z).transpose(2, 0, 1)
         return Field(
-            found=found, v=samples.v.T, a=a, a_slopes=slopes, rate=found.rate.T, rate_slopes=found.rate_slopes, F=F
+            found=found, v=samples.v.T, a=a, a_slopes=slopes, rate=found.rate.T, rate_slopes=rate_slopes, F=F
         )
 
     def _accelerations(self, found: Found, mode: Codes, count: int) -> tuple[Floats, Floats, Any]:
         """Accelerations where stuck contacts hold: M a = f + W F, W^T a + drift = 0."""
         hard = [k for k, contact in self.contacts.items() if not contact.smooth]
-        patterns, which = np.unique(mode[hard] == STICK, axis=1, return_inverse=True)
-        a, slopes = np.zeros((count, self.n)), np.zeros((count, self.n, self.columns))
+        patterns, which = _patterns(mode[hard] == STICK)
+        G = np.ascontiguousarray(found.force_slopes().transpose(0, 2, 1))
+        a, slopes = np.zeros((self.n, count)), np.zeros((self.n, count, self.columns))
         F = {
             k: (np.zeros((count, self.contacts[k].d)), np.zeros((count, self.contacts[k].d, self.columns)))
             for k in hard
         }
-        for p in range(patterns.shape[1]):
-            stuck = [k for k, s in zip(hard, patterns[:, p], strict=True) if s]
-            at = np.flatnonzero(which.ravel() == p)
-            self._held(found, stuck, at, a, slopes, F)
-        return a, slopes, F
+        for p, pattern in enumerate(patterns.T):
+            stuck = [k for k, s in zip(hard, pattern, strict=True) if s]
+            at = np.flatnonzero(which == p)
+            a[:, at], slopes[:, at] = self._held(found, G, stuck, slice(None) if at.size == count else at, F)
+        return a.T, slopes.transpose(1, 0, 2), F
 
-    def _held(self, found: Found, stuck: list[int], at: Ints, a: Floats, slopes: Floats, F: Any) -> None:
+    def _held(self, found: Found, G: Floats, stuck: list[int], at: Any, F: Any) -> tuple[Floats, Floats]:
+        """Accelerations (n, n_t) and their slopes at times at which the same contacts stick."""
         free, B, D = self.projector(found, stuck)
-        duals = [drift for k in stuck for drift in found.drift[k]]
-        drift, drift_slopes = whole(duals, found.force.shape[1], self.columns)
-        f, G = found.force[:, at].T, found.slopes[at]
-        a[at] = f @ free.T - drift[at] @ B.T
+        f, G = found.force[:, at], G[:, at]
+        a = free @ f
+        drift, drift_slopes = whole([d for k in stuck for d in found.drift[k]], found.force.shape[1], self.columns)
+        if stuck:
+            drift, drift_slopes = drift[at].T, drift_slopes[at].transpose(1, 0, 2)
+            a -= B @ drift
         for i, j, slope in self.seeded_masses:
-            G[:, i, j] -= slope * a[at, i]
-        slopes[at] = free @ G - B @ drift_slopes[at]
+            G[i, :, j] -= slope * a[i]
+        slopes = np.tensordot(free, G, 1)
+        if stuck:
+            slopes -= np.tensordot(B, drift_slopes, 1)
         first = 0
         for k in stuck:
             own = slice(first, first + self.contacts[k].d)
-            F[k][0][at] = -f @ B[:, own] - drift[at] @ D[own].T
-            F[k][1][at] = -B[:, own].T @ G - D[own] @ drift_slopes[at]
+            F[k][0][at] = -(B[:, own].T @ f + D[own] @ drift).T
+            by = -np.tensordot(B[:, own].T, G, 1) - np.tensordot(D[own], drift_slopes, 1)
+            F[k][1][at] = by.transpose(1, 0, 2)
             first = own.stop
+        return a, slopes
 
     def free(self, found: Found, mode: Codes) -> Floats:
         """Inverse mass (n, n) of what is free to move while contacts stick as ``mode`` (n_c,) says."""
@@ -186,6 +197,17 @@ class Equations:
             B = MW @ D
             held = self._projectors[key] = (self.inverse - B @ MW.T, B, D)
         return held
+
+
+def _patterns(sticks: Any) -> tuple[Any, Ints]:
+    """Different columns (n, n_patterns) of flags (n, n_t), and which of them each one is."""
+    which = np.zeros(sticks.shape[1], dtype=np.int64)
+    for row in sticks:
+        which = 2 * which + row
+        if which.max(initial=0) > 2**40:
+            which = np.unique(which, return_inverse=True)[1]
+    _, first, which = np.unique(which, return_index=True, return_inverse=True)
+    return sticks[:, first], which
 
 
 def _driven(mechanics: Any, names: Any) -> Any:

@@ -10,16 +10,20 @@ from fricmb.integrate.problem import Floats
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._motions import Row
 
+#: Slopes by row and column, each a number or (n_t,).
+Entries = dict[tuple[int, int], Any]
+
 
 class Found:
     """Forces and slip with their slopes, put together over the parts.
 
     Attributes
     ----------
-    force : (n, n_t); slopes : (n_t, n, columns)
-        On the degrees of freedom, without friction of what sticks.
-    rate : (n_z, n_t); rate_slopes : (n_t, n_z, columns)
-        Of the states of laws.
+    force : (n, n_t)
+        On the degrees of freedom, without friction of what sticks; ``slopes`` by (degree of freedom, column), those
+        that are the same at all times as ``constant`` (n, columns) beside them.
+    rate : (n_z, n_t)
+        Of the states of laws; ``rate_slopes`` by (state, column).
     g, drift, N : dict
         Of contacts by number: slip velocity and its drift (one Dual a direction), normal force before the cut at 0.
     limit : dict
@@ -29,10 +33,12 @@ class Found:
     """
 
     def __init__(self, n: int, n_z: int, columns: int, count: int) -> None:
+        self.columns = columns
         self.force: Floats = np.zeros((n, count))
-        self.slopes: Floats = np.zeros((count, n, columns))
+        self.slopes: Entries = {}
+        self.constant: Floats | None = None
         self.rate: Floats = np.zeros((n_z, count))
-        self.rate_slopes: Floats = np.zeros((count, n_z, columns))
+        self.rate_slopes: Entries = {}
         self.g: dict[int, list[Dual]] = {}
         self.drift: dict[int, list[Dual]] = {}
         self.N: dict[int, Dual] = {}
@@ -44,13 +50,32 @@ class Found:
         for i, c in row:
             self.force[i] += c * force.value
             for j, slope in force.slopes.items():
-                self.slopes[:, i, j] += c * slope
+                self.add_slope(i, j, c * slope)
+
+    def add_slope(self, i: int, j: int, slope: Any) -> None:
+        """Slope of the force on a degree of freedom."""
+        held = self.slopes.get((i, j))
+        self.slopes[i, j] = slope if held is None else held + slope
 
     def put_rate(self, row: int, rate: Dual) -> None:
         """The rate of a state."""
         self.rate[row] = rate.value
         for j, slope in rate.slopes.items():
-            self.rate_slopes[:, row, j] = slope
+            self.rate_slopes[row, j] = slope
+
+    def force_slopes(self) -> Floats:
+        """Slopes of the forces (n, columns, n_t)."""
+        found = self.dense(self.slopes, len(self.force))
+        if self.constant is not None:
+            found += self.constant[:, :, None]
+        return found
+
+    def dense(self, entries: Entries, rows: int) -> Floats:
+        """Slopes as an array (rows, columns, n_t)."""
+        found = np.zeros((rows, self.columns, self.force.shape[1]))
+        for place, slope in entries.items():
+            found[place] = slope
+        return found
 
 
 def whole(duals: list[Dual], count: int, columns: int) -> tuple[Floats, Floats]:
@@ -61,6 +86,14 @@ def whole(duals: list[Dual], count: int, columns: int) -> tuple[Floats, Floats]:
         for j, slope in dual.slopes.items():
             slopes[:, i, j] = slope
     return values, slopes
+
+
+def total(slopes: Floats, S: Floats, n_y: int) -> Floats:
+    """Total derivatives from partial ones: parameters have the last columns of S, initial values those before."""
+    found = slopes[..., :n_y] @ S
+    given = slopes[..., n_y:-1]
+    found[..., found.shape[-1] - given.shape[-1] :] += given
+    return np.asarray(found, dtype=float)
 
 
 def masked(dual: Dual, where: Any) -> Dual:

@@ -16,6 +16,7 @@ Stated = tuple[Sequence[Any], Sequence[Any]]
 
 _stated: dict[Hashable, Stated] = {}
 _compiled: dict[Hashable, tuple[Callable[..., Any], list[tuple[int, int]]]] = {}
+_linear: dict[Hashable, bool] = {}
 _switching: dict[Hashable, list[tuple[Callable[..., Any], tuple[int, ...]]]] = {}
 
 
@@ -45,6 +46,29 @@ class Function:
             partials[i].append((slope, arguments[j]))
         return [composed(value, own) for value, own in zip(values[:count], partials, strict=True)]
 
+    def is_linear(self, time: int, zeros: tuple[int, ...]) -> bool:
+        """Whether outputs are linear in the arguments before number ``time`` and do not depend on time.
+
+        ``zeros``: numbers of arguments that are 0.
+        """
+        key = (self._key, time, zeros)
+        if key not in _linear:
+            arguments, outputs = self._statement()
+            plain = [e.subs({arguments[j]: 0 for j in zeros}) for e in outputs]
+            moved = set(arguments[: time + 1])
+            slopes = [e.diff(a) for e in plain for a in arguments[:time]]
+            timeless = not any(arguments[time] in e.free_symbols for e in plain)
+            _linear[key] = timeless and not any(moved & e.free_symbols for e in slopes)
+        return _linear[key]
+
+    def _statement(self) -> Stated:
+        if self._key not in _stated:
+            arguments, outputs = self._make()
+            import sympy
+
+            _stated[self._key] = arguments, [sympy.sympify(e) for e in outputs]
+        return _stated[self._key]
+
     def switching(self, time: int) -> list[tuple[Callable[..., Any], tuple[int, ...]]]:
         """What it switches on that varies with argument number ``time``: slopes by arguments, and which these are.
 
@@ -52,18 +76,14 @@ class Function:
         """
         key = (self._key, time)
         if key not in _switching:
-            if self._key not in _stated:
-                _stated[self._key] = self._make()
-            _switching[key] = _conditions(*_stated[self._key], time)
+            _switching[key] = _conditions(*self._statement(), time)
         return _switching[key]
 
     def _function(self, active: tuple[int, ...]) -> tuple[Callable[..., Any], list[tuple[int, int]]]:
         key = (self._key, active)
         found = _compiled.get(key)
         if found is None:
-            if self._key not in _stated:
-                _stated[self._key] = self._make()
-            found = _compiled[key] = _with_slopes(*_stated[self._key], active)
+            found = _compiled[key] = _with_slopes(*self._statement(), active)
         return found
 
 

@@ -7,30 +7,33 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.integrate.problem import Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._landings import left_out
 from fricmb.sensitivity._phases import BESIDE, Phases
 
-#: Stages of the steps, and of the formula that tells how fine they are.
-STAGES, COARSE = 5, 3
+#: Stages of the steps, and of the two formulas whose difference tells how fine they have to be.
+STAGES, COARSE = 7, (2, 3)
 #: Rounds of dividing steps, into so many parts at most; numbers that are held at once.
 _ROUNDS, _PARTS, _HELD = 16, 8, 4_000_000
-#: A step is divided on while its error falls by this factor each time.
-_FALLS = 0.5
-#: Slip begins or ends where its speed is below this share of that in the middle of a step; of the time that it lasts,
-#: the first step after its begin and what is left out before its end.
-_TINY, _FIRST, _LAST = 1e-4, 1e-5, 1e-6
+#: A step is divided on while its error falls by this factor each time; one that is this much too long or less is
+#: divided without being looked at again.
+_FALLS, _NEARLY = 0.5, 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """Steps in time order: begins, lengths, stretches they lie in, and maps (n_t, n_y, n_y + n_p)."""
+    """Steps in time order: begins, lengths, stretches they lie in, and maps (n_t, n_y, n_y + n_p).
+
+    ``left_out`` (n_k,): time before the end of a stretch in which slip in two directions ends that is not used, else 0.
+    """
 
     t: Floats
     h: Floats
     phase: Ints
     maps: Floats
+    left_out: Floats
 
 
 class Stepper:
@@ -49,101 +52,101 @@ class Stepper:
 
     def maps(self, formula: Formula, t: Floats, h: Floats, phase: Ints) -> Floats:
         """Maps of steps from t (n_t,) on, each within one stretch."""
-        e, s = self.equations, formula.c.size
-        room = max(1, _HELD // (s * e.n_y * (e.columns + s * e.n_y)))
-        parts = [slice(i, i + room) for i in range(0, t.size, room)]
-        found = [self._some(formula, t[own], h[own], phase[own]) for own in parts]
+        e = self.equations
+        found = []
+        for own in self._parts(formula.c.size, t.size):
+            slopes, rates = self._slopes(formula.c, t[own], h[own], phase[own])
+            found.append(step_maps(formula, h[own], slopes, rates, e.n, e.n_y))
         return np.concatenate(found) if found else np.zeros((0, e.n_y, e.columns - 1))
 
-    def _some(self, formula: Formula, t: Floats, h: Floats, phase: Ints) -> Floats:
-        e, s = self.equations, formula.c.size
+    def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> Floats:
+        """How far the maps of two coarse formulas are apart (n_t,)."""
+        low, high = (radau(s) for s in COARSE)
+        e, c = self.equations, np.concatenate([low.c[:-1], high.c])
+        found = []
+        for own in self._parts(c.size, t.size):
+            slopes, rates = self._slopes(c, t[own], h[own], phase[own])
+            at = [*range(low.c.size - 1), c.size - 1]
+            less = step_maps(low, h[own], slopes[:, at], rates[:, at], e.n, e.n_y)
+            maps = step_maps(high, h[own], slopes[:, low.c.size - 1 :], rates[:, low.c.size - 1 :], e.n, e.n_y)
+            found.append(_difference(less - maps, maps, scale, e.n_y))
+        return np.concatenate(found)
+
+    def _parts(self, s: int, count: int) -> list[slice]:
+        """Steps that are done at once."""
+        e = self.equations
+        room = max(1, _HELD // (s * e.n_y * (e.columns + s * e.n_y)))
+        return [slice(i, i + room) for i in range(0, count, room)]
+
+    def _slopes(self, c: Floats, t: Floats, h: Floats, phase: Ints) -> tuple[Floats, Floats]:
+        """Slopes of accelerations and of rates of laws' states at nodes c (s,) of steps: (n_t, s, rows, columns)."""
+        e, s = self.equations, c.size
         # where a function of time jumps, the end of a stretch has not seen it yet
         ends = self.phases.t[phase + 1]
         ends = ends - BESIDE * np.maximum(1.0, np.abs(ends))
-        times = np.minimum(t[:, None] + h[:, None] * formula.c, np.maximum(ends, t)[:, None]).ravel()
+        times = np.minimum(t[:, None] + h[:, None] * c, np.maximum(ends, t)[:, None]).ravel()
         at = np.repeat(phase, s)
         field = e.field(self.sample(times), self.phases.mode[:, at], self.phases.sign[:, at])
         slopes = field.a_slopes[..., :-1].reshape(t.size, s, e.n, e.columns - 1)
-        rates = field.rate_slopes[..., :-1].reshape(t.size, s, e.n_z, e.columns - 1)
-        return step_maps(formula, h, slopes, rates, e.n, e.n_y)
+        return slopes, field.rate_slopes[..., :-1].reshape(t.size, s, e.n_z, e.columns - 1)
 
 
 def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
-    """Steps over all stretches, divided until an estimate of their error is within the tolerance.
+    """Steps over all stretches, so fine that the error of each is within the tolerance.
 
-    The error of the formula of 3 stages tells the size of h over the time scale; that of 5 stages follows from it.
+    How far the coarse formulas are apart tells the size of h over the time scale, from which the error of the fine one
+    follows.
     """
-    fine, coarse = radau(STAGES), radau(COARSE)
+    fine, coarse = radau(STAGES), radau(COARSE[0])
     limit = coarse.error * (0.1 * max(rtol, 1e-13) / fine.error) ** ((coarse.order + 1) / (fine.order + 1))
-    t, h, phase = graded(stepper)
-    kept: list[tuple[Floats, Floats, Ints, Floats]] = []
+    rest = left_out(stepper.equations, stepper.phases, stepper.sample)
+    t, h, phase = graded(stepper.phases.t, rest)
+    kept: list[tuple[Floats, Floats, Ints]] = []
     before = np.full(t.size, np.inf)
-    for last in [False] * _ROUNDS + [True]:
+    for number in range(_ROUNDS):
         if not t.size:
             break
-        maps = stepper.maps(fine, t, h, phase)
-        off = _difference(stepper.maps(coarse, t, h, phase) - maps, maps, scale, stepper.equations.n_y)
+        off = stepper.misses(t, h, phase, scale)
         # what does not fall when steps are divided is round-off of the dense output, which no mesh removes
-        bad = (off > limit) & (off < _FALLS * before) & (not last)
-        kept.append((t[~bad], h[~bad], phase[~bad], maps[~bad]))
-        parts = np.clip(np.ceil((off[bad] / limit) ** (1.0 / (coarse.order + 1)) * 1.1), 2, _PARTS).astype(np.int64)
-        first = np.repeat(np.cumsum(parts) - parts, parts)
-        inside = np.arange(parts.sum()) - first
-        before = np.repeat(np.where(np.isfinite(before[bad]) | (off[bad] < 1.0), off[bad], np.inf), parts)
-        h, phase = np.repeat(h[bad] / parts, parts), np.repeat(phase[bad], parts)
-        t = np.repeat(t[bad], parts) + inside * h
-    t, h, phase, maps = (np.concatenate([part[i] for part in kept]) for i in range(4))
+        bad = (off > limit) & (off < _FALLS * before) & (number < _ROUNDS - 1)
+        kept.append((t[~bad], h[~bad], phase[~bad]))
+        ratio = (off[bad] / limit) ** (1.0 / (coarse.order + 1))
+        parts = np.clip(np.ceil(1.1 * ratio), 2, _PARTS).astype(np.int64)
+        before = np.repeat(np.where((number > 0) | (off[bad] < 1.0), off[bad], np.inf), parts)
+        sure = np.repeat(ratio < _NEARLY, parts)
+        t, h, phase = _divided(t[bad], h[bad], phase[bad], parts)
+        kept.append((t[sure], h[sure], phase[sure]))
+        t, h, phase, before = t[~sure], h[~sure], phase[~sure], before[~sure]
+    t, h, phase = (np.concatenate([part[i] for part in kept]) for i in range(3))
     order = np.argsort(t, kind="stable")
-    return Mesh(t=t[order], h=h[order], phase=phase[order], maps=maps[order])
+    t, h, phase = t[order], h[order], phase[order]
+    return Mesh(t=t, h=h, phase=phase, maps=stepper.maps(fine, t, h, phase), left_out=rest)
 
 
-def graded(stepper: Stepper) -> tuple[Floats, Floats, Ints]:
+def _divided(t: Floats, h: Floats, phase: Ints, parts: Ints) -> tuple[Floats, Floats, Ints]:
+    """Steps in equal parts."""
+    first = np.repeat(np.cumsum(parts) - parts, parts)
+    inside = np.arange(parts.sum()) - first
+    h = np.repeat(h / parts, parts)
+    return np.repeat(t, parts) + inside * h, h, np.repeat(phase, parts)
+
+
+def graded(edges: Floats, rest: Floats) -> tuple[Floats, Floats, Ints]:
     """Begins, lengths and stretches of the first steps.
 
-    Where slip in two directions begins or ends its direction turns ever faster towards r = 0: steps there grow, or
-    fall, by halves; the last before a landing is left out, what sticks being projected (:mod:`._transitions`).
+    Where slip in two directions ends its direction turns ever faster towards r = 0: steps fall by halves, to what is
+    left out; what sticks is projected (:mod:`._transitions`).
     """
-    edges = stepper.phases.t
-    begins, ends = _halvings(stepper)
     t, h, phase = [], [], []
     for k in range(edges.size - 1):
         knots = edges[k : k + 2]
-        if begins[k]:
-            knots = np.concatenate([knots[:1], knots[0] + np.diff(knots) * 0.5 ** np.arange(begins[k], -1, -1)])
-        if ends[k]:
-            rest = knots[-2:]
-            knots = np.concatenate([knots[:-2], rest[1] - np.diff(rest) * 0.5 ** np.arange(ends[k] + 1)])
+        if rest[k]:
+            count = int(np.ceil(np.log2(max((knots[1] - knots[0]) / rest[k], 2.0))))
+            knots = knots[1] - (knots[1] - knots[0]) * np.append(0.5 ** np.arange(count + 1), 0.0)
         t.append(knots[:-1])
         h.append(np.diff(knots))
         phase.append(np.full(knots.size - 1, k))
     return np.concatenate(t), np.concatenate(h), np.concatenate(phase).astype(np.int64)
-
-
-def _halvings(stepper: Stepper) -> tuple[Ints, Ints]:
-    """Halvings at the begin and at the end of each stretch where slip in two directions begins or ends."""
-    phases, e = stepper.phases, stepper.equations
-    h = np.diff(phases.t)
-    begins, ends = np.zeros(h.size, dtype=np.int64), np.zeros(h.size, dtype=np.int64)
-    wide = [k for k, contact in e.contacts.items() if contact.d > 1 and not contact.smooth]
-    if not wide:
-        return begins, ends
-    g = stepper.sample(np.concatenate([phases.t[:-1] + c * h for c in (0.0, 0.5, 1.0)])).g
-    for k in wide:
-        r = np.linalg.norm(g[e.rows(k)], axis=0).reshape(3, -1)
-        slips = phases.mode[k] == SLIP
-        lasts = _lasting(phases.t, phases.mode[k])
-        count = [np.ceil(np.log2(np.maximum(h / (share * lasts), 2.0))).astype(np.int64) for share in (_FIRST, _LAST)]
-        begins = np.where(slips & (r[0] <= _TINY * r[1]), np.maximum(begins, count[0]), begins)
-        ends = np.where(slips & (r[2] <= _TINY * r[1]), np.maximum(ends, count[1]), ends)
-    return begins, ends
-
-
-def _lasting(t: Floats, mode: Any) -> Floats:
-    """Of each stretch the time that the mode in it lasts."""
-    first = np.flatnonzero(np.concatenate([[True], mode[1:] != mode[:-1]]))
-    lengths = np.diff(np.append(t[first], t[-1]))
-    found: Floats = np.repeat(lengths, np.diff(np.append(first, mode.size)))
-    return found
 
 
 def _difference(off: Floats, maps: Floats, scale: Floats, n_y: int) -> Floats:

@@ -18,10 +18,15 @@ from fricmb.values import value_of
 
 
 class Acting(Protocol):
-    """A part that acts on degrees of freedom."""
+    """A part that acts on degrees of freedom; ``seeded``: a parameter is one of its numbers."""
+
+    seeded: bool
 
     def add(self, moment: Moment, found: Found) -> None:
         """Put its share into what is found."""
+
+    def is_linear(self, moment: Moment) -> bool:
+        """Whether forces are linear in the degrees of freedom, with coefficients that time does not change."""
 
 
 class Acts:
@@ -32,6 +37,7 @@ class Acts:
         self.function = element_function(element, len(self.forms))
         self.numbers = seeds.numbers(element, f"{element.name}.")
         self.label = element._label()
+        self.seeded = any(number.slopes for number in self.numbers)
 
     def add(self, moment: Moment, found: Found) -> None:
         """Its forces."""
@@ -41,12 +47,28 @@ class Acts:
             found.push(motion.row, force)
 
 
+    def is_linear(self, moment: Moment) -> bool:
+        """Whether what it states is, and its ends are driven by nothing."""
+        motions = [moment.form(form) for form in self.forms]
+        by = {j for m in motions for j in (*m.position.slopes, *m.rate.slopes)}
+        if max(by, default=0) >= 2 * moment.frame.n:
+            return False
+        time = 2 * len(self.forms)
+        zeros = [time + 1 + i for i, x in enumerate(self.numbers) if x.value == 0.0 and not x.slopes]
+        return self.function.is_linear(time, tuple(zeros))
+
+
 class Pushes:
     """A force that is given."""
 
     def __init__(self, part: Force, seeds: Seeds) -> None:
         self.form = part.local_coordinates()[0]
         self.value = Given(part.value, f"{part.name}.value", seeds)
+        self.seeded = self.value.number is not None and bool(self.value.number.slopes)
+
+    def is_linear(self, moment: Moment) -> bool:
+        """Whether it is constant."""
+        return self.value.number is not None
 
     def add(self, moment: Moment, found: Found) -> None:
         """The force on its body."""
@@ -56,6 +78,8 @@ class Pushes:
 class Vibrates:
     """Stiffness and damping of a modal body, or of matrices, on rows of q and v."""
 
+    seeded = False
+
     def __init__(self, rows: list[int], K: Any, C: Any) -> None:
         self.rows, self.matrices = np.array(rows, dtype=np.int64), (_dense(K), _dense(C))
 
@@ -64,7 +88,12 @@ class Vibrates:
         for matrix, values, first in ((self.matrices[0], moment.q, 0), (self.matrices[1], moment.v, moment.frame.n)):
             if matrix is not None:
                 found.force[self.rows] -= matrix @ values[self.rows]
-                found.slopes[:, self.rows[:, None], first + self.rows] -= matrix
+                for a, b in zip(*np.nonzero(matrix), strict=True):
+                    found.add_slope(int(self.rows[a]), first + int(self.rows[b]), -matrix[a, b])
+
+    def is_linear(self, moment: Moment) -> bool:
+        """It is."""
+        return True
 
 
 def _dense(matrix: Any) -> Floats | None:
@@ -85,6 +114,11 @@ class Falls:
                 if i is not None:
                     mass = seeds.dual(body.mass, f"{body.name}.mass")
                     self.pull.append((i, mass.times(seeds.dual(value, f"{gravity.name}.acceleration.{letter}"))))
+        self.seeded = any(force.slopes for _, force in self.pull)
+
+    def is_linear(self, moment: Moment) -> bool:
+        """It is constant."""
+        return True
 
     def add(self, moment: Moment, found: Found) -> None:
         """Weight of the bodies."""

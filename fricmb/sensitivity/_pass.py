@@ -10,10 +10,13 @@ from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.sensitivity._collocation import radau
 from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._happenings import happenings
+from fricmb.sensitivity._landings import extrapolated, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
 from fricmb.sensitivity._seeds import STATE
-from fricmb.sensitivity._transitions import TOUCHES, Transitions, happenings, held, one_sided
+from fricmb.sensitivity._starts import held, one_sided
+from fricmb.sensitivity._transitions import Transitions
 
 #: More states than this are not carried: maps of steps are dense.
 MOST = 120
@@ -49,9 +52,9 @@ class Tangent:
         self.mesh = mesh_of(self.stepper, _scale(piece.rows()), self.rtol)
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving())
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
-        start = sample(self.phases.t[:1])
-        begin = (e, start, self.phases.mode[:, 0], self.phases.sign[:, 0], self._begin())
-        one_sided_by, S = one_sided(*begin), held(*begin)
+        mode, S = self.phases.mode[:, 0], self._begin()
+        first = e.field(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1]).found
+        one_sided_by, S = one_sided(e, first, mode, S), held(e, first, 0, mode, S)
         self._march(S, transitions, len(sol.events))
         starts = [
             f"contact {name!r} starts at rest and slips from there on: derivatives with respect to"
@@ -83,39 +86,40 @@ class Tangent:
         maps, given = self.mesh.maps[..., :n_y], self.mesh.maps[..., n_y:]
         self.moved, self.transversality = np.zeros((n_events, len(self.columns))), np.full(n_events, np.inf)
         self.before: dict[float, Floats] = {}
-        found, last, unsafe = np.empty((self.mesh.t.size + 1, n_y, len(self.columns))), 0, []
+        found, last = np.empty((self.mesh.t.size + 1, n_y, len(self.columns))), 0
         for k, phase in enumerate(self.mesh.phase.tolist()):
             if phase != last and phase in at:
                 i = at[phase]
                 one = transitions.happened[i]
                 self.before[one.t] = S
-                S, dt, rates = self._over(transitions, i, S, found, k)
-                self.moved[one.events], self.transversality[one.events] = dt, rates
-                unsafe += [int(j) for j, rate in zip(one.events, rates, strict=True) if rate < TOUCHES]
+                S, dt = self._over(transitions, i, S, found, k)
+                self.moved[one.events] = dt
+                self.transversality[one.events] = transitions.transversality(i)
+                transitions.say_unsafe(i)
             last = phase
             found[k] = S
             S = maps[k] @ S
             S[:, n_s:] += given[k]
         found[-1] = S
-        self.S, self.unsafe = found, tuple(unsafe)
+        self.S, self.unsafe = found, tuple(sorted(transitions.unsafe))
 
-    def _over(
-        self, transitions: Transitions, i: int, S: Floats, found: Floats, k: int
-    ) -> tuple[Floats, Floats, list[float]]:
-        """Derivatives after a transition, of its time, and transversalities.
+    def _over(self, transitions: Transitions, i: int, S: Floats, held: Floats, k: int) -> tuple[Floats, Floats]:
+        """Derivatives after a transition and of its time.
 
-        Slip in two directions is followed to a time tau before it ends; what is projected there is off by a multiple of
-        tau, which a second projection at 2 tau tells.
+        Slip in two directions is followed to a time tau before it ends; what is projected there is off by a polynomial
+        in tau without a constant, which projections at twice and four times that time tell.
         """
-        t, end = transitions.happened[i].t, float(self.mesh.t[k - 1] + self.mesh.h[k - 1])
-        S_plus, dt, rates = transitions.jump(i, S, end)
-        tau = t - end
-        if tau <= 1e-14 * max(abs(t), 1e-300):
-            return S_plus, dt, rates
-        j = int(np.argmin(np.abs(self.mesh.t[:k] - (t - 2.0 * tau))))
-        far, far_dt, _ = transitions.jump(i, found[j], float(self.mesh.t[j]))
-        share = tau / (t - float(self.mesh.t[j]) - tau)
-        return S_plus + share * (S_plus - far), dt + share * (dt - far_dt), rates
+        rest = float(self.mesh.left_out[self.mesh.phase[k - 1]])
+        if rest == 0.0 or transitions.landing(i) is None:
+            return transitions.jump(i, S)
+        t = transitions.happened[i].t
+        places = places_before(t, rest, self.mesh.t[:k])
+        tau, S_before = t - self.mesh.t[places], held[places]
+        dts, noise = transitions.landing_times(i, S_before, self.stepper.sample(self.mesh.t[places]).g)
+        dt, off = settled(tau, dts, noise)
+        S_plus = [transitions.jump(i, *one)[0] for one in zip(S_before[:3], dts[:3], strict=True)]
+        transitions.say_unsure(i, dt, off)
+        return extrapolated(tau[:3], np.array(S_plus)), dt
 
     def at(self, t: Floats, *, left: Any = None) -> Floats:
         """Derivatives (n_t, n_y, columns) of the state at times; ``left``: where the values before a transition are."""

@@ -33,6 +33,8 @@ class Derivatives:
         The same at the end of the run.
     moved : (n_events, n_columns)
         Derivatives of the times of events; ``transversality`` (n_events,).
+    unsafe : tuple of int
+        Numbers of the events after which derivatives are not sound.
     """
 
     asked: tuple[str, ...]
@@ -42,12 +44,15 @@ class Derivatives:
     end: Floats
     moved: Floats
     transversality: Floats
+    unsafe: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         count = len(self.columns)
         fits = self.S.ndim == 3 and self.S.shape[1:] == self.end.shape and self.end.shape[1] == count
         if not fits or self.moved.shape != (self.transversality.size, count) or not 0 <= self.n_states <= count:
             raise FricmbError(f"derivatives of shapes {self.S.shape}, {self.end.shape}, {self.moved.shape} do not fit")
+        if not all(type(i) is int and 0 <= i < self.transversality.size for i in self.unsafe):
+            raise FricmbError(f"derivatives: unsafe events {self.unsafe} of {self.transversality.size}")
 
     def column(self, name: str) -> int:
         """Number of a column; UnknownNameError lists those near."""

@@ -7,7 +7,7 @@ from functools import cached_property
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.solution._derivatives import Derivatives
-from fricmb.solution._events import Events
+from fricmb.solution._events import Event, Events
 from fricmb.solution._recorded import Recorded
 
 
@@ -50,6 +50,15 @@ class Differentiated(Recorded):
         Needs ``simulate(sensitivities="state")``; at the start of a run in stick, what sticks is held together.
         """
         return self.derivatives.monodromy
+
+    @property
+    def unsafe_events(self) -> tuple[Event, ...]:
+        """Transitions after which derivatives are not sound; ``sol.stats.notes`` says why.
+
+        Those that only touch their condition, releases that stuck contacts leave open, and several that change at one
+        time each on its own.  Needs ``simulate(sensitivities=...)``.
+        """
+        return tuple(self.events[i] for i in self.derivatives.unsafe)
 
     @property
     def derivatives(self) -> Derivatives:

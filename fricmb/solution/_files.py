@@ -170,7 +170,7 @@ def _words(sol: Solution) -> dict[str, Any]:
 
 
 def _named(derivatives: Derivatives) -> dict[str, Any]:
-    return {name: getattr(derivatives, name) for name in ("asked", "columns", "n_states")}
+    return {name: getattr(derivatives, name) for name in ("asked", "columns", "n_states", "unsafe")}
 
 
 def _digest(value: Any) -> str:
@@ -302,7 +302,8 @@ def _derivatives(held: dict[str, Any], about: dict[str, Any], n_t: int) -> Deriv
     if arrays["S"].shape[:1] != (n_t,) or arrays["transversality"].shape != held["event_t"].shape:
         raise FricmbError("the derivatives in it do not fit its times")
     asked, columns = (tuple(map(str, words[name])) for name in ("asked", "columns"))
-    return Derivatives(asked=asked, columns=columns, n_states=int(words["n_states"]), **arrays)
+    unsafe = tuple(words.get("unsafe", ()))
+    return Derivatives(asked=asked, columns=columns, n_states=int(words["n_states"]), unsafe=unsafe, **arrays)
 
 
 def _stats(held: dict[str, Any]) -> Stats:

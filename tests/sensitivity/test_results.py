@@ -81,6 +81,26 @@ def test_all_initial_values(sol):
     assert both.sensitivity("mass.x", NAMES[0]) == pytest.approx(sol.sensitivity("mass.x", NAMES[0]), abs=1e-12)
 
 
+def test_events_that_are_not_sound_are_a_list(sol, tmp_path):
+    """Two blocks of one belt let go at the same time, each by its own limit: what follows is one-sided."""
+    assert sol.unsafe_events == ()
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    blocks = [fm.Body(name, mass=1.0, velocity={"x": 0.1}) for name in ("one", "two")]
+    law = fm.laws.Coulomb(mu_s=1.5, mu_k=1.0)
+    parts = [fm.Spring(f"k_{body.name}", body, axis="x", stiffness=1.0) for body in blocks]
+    parts += [fm.Contact(f"rub_{body.name}", body, belt, law=law, normal_force=1.0) for body in blocks]
+    joined = fm.Spring("between", *blocks, axis="x", stiffness=0.5)
+    scene = fm.Scene("twins", [belt, *blocks, *parts, joined])
+    both = fm.simulate(scene, t_end=20.0, rtol=1e-8, sensitivities=("rub_one.law.mu_s",))
+    first = both.unsafe_events[:2]
+    assert {event.contact for event in first} == {"rub_one", "rub_two"}
+    assert first[0].t == first[1].t == both.events[0].t
+    assert any("one-sided" in note for note in both.stats.notes)
+    both.save(tmp_path / "twins")
+    held = fm.Solution.load(tmp_path / "twins").unsafe_events
+    assert [event.t for event in held] == [event.t for event in both.unsafe_events]
+
+
 def test_errors(sol):
     with pytest.raises(fm.SceneError, match=r"rub\.law\.mu_s"):
         fm.simulate(scene(), t_end=1.0, sensitivities=("rub.law.mu_q",))

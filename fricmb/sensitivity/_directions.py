@@ -1,0 +1,51 @@
+"""Directions of slip at rest, where slip in two directions begins or has just ended."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.problem import Codes, Floats
+from fricmb.integrate.trajectory import Samples
+from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._found import whole
+
+#: Most steps of Newton's method, which takes five or six.
+_MOST = 50
+
+
+def directions_at_rest(e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int]) -> Floats:
+    """Signs in which those of one contact at each time are the direction in which its slip begins, or has just ended.
+
+    (mu_k N D + rho I) n = a with |n| = 1: a is the relative acceleration without its friction, rho the growth of r,
+    below 0 in a landing, where directions settle.
+    """
+    found = sign.copy()
+    for i, k in enumerate(contacts):
+        found[e.rows(k), i] = 0.0
+    field = e.field(samples, mode, found)
+    rates = np.zeros((samples.t.size, e.columns))
+    rates[:, : e.n_y], rates[:, -1] = field.y_dot, 1.0
+    for k in set(contacts):
+        slopes = whole(field.found.g[k], samples.t.size, e.columns)[1]
+        N = field.found.N[k]
+        for i in (i for i, own in enumerate(contacts) if own == k):
+            W = slopes[i][:, e.n : 2 * e.n]
+            D = W @ e.free(field.found, mode[:, i]) @ W.T
+            found[e.rows(k), i] = _direction(e.contacts[k].size_at_rest(N, i) * D, slopes[i] @ rates[i])
+    return found
+
+
+def _direction(D: Floats, a: Floats) -> Floats:
+    """The unit vector n with (D + rho I) n = a, by Newton's method on 1/|n| = 1, which comes from below."""
+    values, vectors = np.linalg.eigh(D)
+    parts = np.where(np.abs(vectors.T @ a) > 0.0, vectors.T @ a, 1e-300)
+    rho = float(np.max(np.abs(parts) - values))
+    n = parts / (values + rho)
+    for _ in range(_MOST):
+        length = float(np.linalg.norm(n))
+        step = (length - 1.0) * length**2 / float(np.sum(n**2 / (values + rho)))
+        if not step > 1e-16 * (abs(rho) + values[-1]):
+            break
+        rho += step
+        n = parts / (values + rho)
+    return np.asarray(vectors @ (n / np.linalg.norm(n)))

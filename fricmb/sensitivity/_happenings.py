@@ -1,0 +1,51 @@
+"""What happens at one time of a run: its events there, and breakpoints that parameters move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.problem import Floats, Ints
+from fricmb.sensitivity._phases import Phases
+
+
+@dataclass(frozen=True, kw_only=True)
+class Happening:
+    """What happens at one time: numbers of its events, contacts, kinds, and the stretch that begins there."""
+
+    t: float
+    events: Ints
+    contacts: list[int]
+    kinds: list[str]
+    phase: int
+
+    def kind_of(self, event: int) -> str:
+        """Kind of one of its events."""
+        return self.kinds[int(np.flatnonzero(self.events == event)[0])]
+
+
+def happenings(events: Any, names: Any, phases: Phases, moving: Floats) -> list[Happening]:
+    """Events of one piece that stand at the same time, together, and breakpoints that parameters move (n_b,)."""
+    held = list(events)
+    t = np.array([event.t for event in held])
+    found = []
+    inside = np.isin(t, phases.t[1:-1])
+    for time in np.unique(t[inside]):
+        own = np.flatnonzero(t == time)
+        one = Happening(
+            t=float(time),
+            events=own,
+            contacts=[names.contact(held[i].contact) for i in own],
+            kinds=[held[i].kind for i in own],
+            phase=int(np.searchsorted(phases.t, time)),
+        )
+        found.append(one)
+    seen = {one.phase for one in found}
+    for time in moving.tolist():
+        phase = int(np.argmin(np.abs(phases.t - time)))
+        if phase not in seen:
+            own = np.zeros(0, dtype=np.int64)
+            found.append(Happening(t=float(phases.t[phase]), events=own, contacts=[], kinds=[], phase=phase))
+    return sorted(found, key=lambda one: one.phase)

@@ -1,0 +1,69 @@
+"""Ends of slip in two directions: derivatives followed to a short time before, and extrapolated to the landing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._phases import Phases
+
+#: Slip ends where its speed is below this share of that in the middle of a step; of the time that it lasts,
+#: what is left out before its end, and the farthest from there that is looked at for the time of the landing.
+_TINY, _LAST, _FAR = 1e-4, 1e-8, 1e-3
+
+
+def left_out(e: Equations, phases: Phases, sample: Any) -> Floats:
+    """Time (n_k,) that is left out before the end of a stretch in which slip in two directions ends, else 0."""
+    h = np.diff(phases.t)
+    found = np.zeros(h.size)
+    wide = [k for k, contact in e.contacts.items() if contact.d > 1 and not contact.smooth]
+    if not wide:
+        return found
+    g = sample(np.concatenate([phases.t[:-1] + 0.5 * h, phases.t[1:]])).g
+    for k in wide:
+        r = np.linalg.norm(g[e.rows(k)], axis=0).reshape(2, -1)
+        ends = (phases.mode[k] == SLIP) & (r[1] <= _TINY * r[0])
+        found = np.where(ends, np.maximum(found, _LAST * _lasting(phases.t, phases.mode[k])), found)
+    return found
+
+
+def places_before(t: float, rest: float, mesh: Floats) -> Ints:
+    """Steps of a mesh (those before a landing at t), about rest, 2 rest, 4 rest, ... before it, nearest first."""
+    far = rest * 2.0 ** np.arange(1 + int(np.log2(_FAR / _LAST)))
+    near = np.clip(np.searchsorted(mesh, t - far), 1, mesh.size - 1)
+    near = near - (mesh[near] - (t - far) > (t - far) - mesh[near - 1])
+    return np.asarray(np.unique(near)[::-1])
+
+
+def extrapolated(tau: Floats, values: Floats) -> Floats:
+    """What values at times tau > 0 tend to at 0, by the polynomial through all of them."""
+    weights = [float(np.prod([b / (b - a) for b in tau if b != a])) for a in tau]
+    return np.asarray(np.tensordot(weights, values, 1))
+
+
+def settled(tau: Floats, values: Floats, noise: Floats) -> tuple[Floats, Floats]:
+    """Limits at tau = 0 of values (n_t, n), and how sure they are (n,); ``noise``: of the values.
+
+    Far from a landing powers of tau that no polynomial has are in the way, near it errors of the dense output, which
+    count the more the smaller r is: extrapolations from three neighbours each are taken where they differ least.
+    """
+    if tau.size < 5:
+        best = extrapolated(tau[:3], values[:3])
+        return best, np.maximum(np.abs(best - extrapolated(tau[:2], values[:2])), noise[0])
+    found = np.array([extrapolated(tau[m : m + 3], values[m : m + 3]) for m in range(tau.size - 2)])
+    apart = np.abs(np.diff(found, axis=0))
+    off = np.maximum(np.maximum(apart[:-1], apart[1:]), noise[1 : len(apart)])
+    best = np.argmin(off, axis=0)
+    columns = np.arange(values.shape[1])
+    return found[best + 1, columns], off[best, columns]
+
+
+def _lasting(t: Floats, mode: Any) -> Floats:
+    """Of each stretch the time that the mode in it lasts."""
+    first = np.flatnonzero(np.concatenate([[True], mode[1:] != mode[:-1]]))
+    lengths = np.diff(np.append(t[first], t[-1]))
+    found: Floats = np.repeat(lengths, np.diff(np.append(first, mode.size)))
+    return found
