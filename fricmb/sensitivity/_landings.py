@@ -39,9 +39,10 @@ def places_before(t: float, rest: float, mesh: Floats) -> Ints:
 
 
 def extrapolated(tau: Floats, values: Floats) -> Floats:
-    """What values at times tau > 0 tend to at 0, by the polynomial through all of them."""
-    weights = [float(np.prod([b / (b - a) for b in tau if b != a])) for a in tau]
-    return np.asarray(np.tensordot(weights, values, 1))
+    """What values (k, ..., n_t, n) at times tau (k, n_t) > 0 tend to at 0, by the polynomials through all k of them."""
+    apart = tau[None] - tau[:, None]
+    weights = np.prod(np.where(apart == 0.0, 1.0, tau[None] / np.where(apart == 0.0, 1.0, apart)), axis=1)
+    return np.asarray(np.einsum("kt,k...tn->...tn", weights, values))
 
 
 def settled(tau: Floats, values: Floats, noise: Floats) -> tuple[Floats, Floats]:
@@ -51,9 +52,10 @@ def settled(tau: Floats, values: Floats, noise: Floats) -> tuple[Floats, Floats]
     count the more the smaller r is: extrapolations from three neighbours each are taken where they differ least.
     """
     if tau.size < 5:
-        best = extrapolated(tau[:3], values[:3])
-        return best, np.maximum(np.abs(best - extrapolated(tau[:2], values[:2])), noise[0])
-    found = np.array([extrapolated(tau[m : m + 3], values[m : m + 3]) for m in range(tau.size - 2)])
+        best, less = (extrapolated(tau[:k, None], values[:k, None])[0] for k in (3, 2))
+        return best, np.maximum(np.abs(best - less), noise[0])
+    count = tau.size - 2
+    found = extrapolated(*(np.array([x[k : k + count] for k in range(3)]) for x in (tau, values)))
     apart = np.abs(np.diff(found, axis=0))
     off = np.maximum(np.maximum(apart[:-1], apart[1:]), noise[1 : len(apart)])
     best = np.argmin(off, axis=0)

@@ -137,15 +137,15 @@ def graded(edges: Floats, rest: Floats) -> tuple[Floats, Floats, Ints]:
     Where slip in two directions ends its direction turns ever faster towards r = 0: steps fall by halves, to what is
     left out; what sticks is projected (:mod:`._transitions`).
     """
-    t, h, phase = [], [], []
-    for k in range(edges.size - 1):
-        knots = edges[k : k + 2]
-        if rest[k]:
-            count = int(np.ceil(np.log2(max((knots[1] - knots[0]) / rest[k], 2.0))))
-            knots = knots[1] - (knots[1] - knots[0]) * np.append(0.5 ** np.arange(count + 1), 0.0)
+    plain = np.flatnonzero(rest == 0.0)
+    t, h, phase = [edges[plain]], [np.diff(edges)[plain]], [plain]
+    for k in np.flatnonzero(rest > 0.0):
+        length = edges[k + 1] - edges[k]
+        count = int(np.ceil(np.log2(max(length / rest[k], 2.0))))
+        knots = edges[k + 1] - length * np.append(0.5 ** np.arange(count + 1), 0.0)
         t.append(knots[:-1])
         h.append(np.diff(knots))
-        phase.append(np.full(knots.size - 1, k))
+        phase.append(np.full(count + 1, k))
     return np.concatenate(t), np.concatenate(h), np.concatenate(phase).astype(np.int64)
 
 

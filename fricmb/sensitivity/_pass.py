@@ -119,7 +119,7 @@ class Tangent:
         dt, off = settled(tau, dts, noise)
         S_plus = [transitions.jump(i, *one)[0] for one in zip(S_before[:3], dts[:3], strict=True)]
         transitions.say_unsure(i, dt, off)
-        return extrapolated(tau[:3], np.array(S_plus)), dt
+        return extrapolated(np.tile(tau[:3, None], S.shape[0]), np.array(S_plus)), dt
 
     def at(self, t: Floats, *, left: Any = None) -> Floats:
         """Derivatives (n_t, n_y, columns) of the state at times; ``left``: where the values before a transition are."""
