@@ -17,7 +17,7 @@ FLOORS = (
     {"scene", "space"},
     {"plan"},
     {"equations"},
-    {"system"},
+    {"stated", "system"},
     {"simulate", "sweep"},
     {"analysis", "audit", "fit", "sensitivity"},
     {"plot"},

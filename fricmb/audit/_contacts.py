@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._functions import Given, normal_function
+from fricmb import stated
+from fricmb.audit._functions import Given, function
 from fricmb.audit._motions import Moment, Row
 from fricmb.audit._parts import Found
 from fricmb.equations import numbers
@@ -48,7 +49,7 @@ class Presses:
         law: Any = self.contact.normal_force
         assert self.approach is not None
         e, rate, row = moment.form(self.approach)
-        N = np.maximum(normal_function(law)(e, rate, *numbers(law))[0], 0.0)
+        N = np.maximum(function(stated.normal(law))(e, rate, *numbers(law))[0], 0.0)
         found.push(row, N - float(value_of(law.preload)))
         return N
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.audit._functions import Given, place_function
+from fricmb import stated
+from fricmb.audit._functions import Given, function
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Driven, LinearForm, Scene
 from fricmb.values import value_of
@@ -122,7 +123,7 @@ class Moment:
 
     def _point(self, point: Any, letter: str) -> tuple[Any, Any, Row]:
         dofs = [self.frame.index[name] for name in point.body.dof_names]
-        values = place_function(point.body)(*self.q[dofs], *point.offset)
+        values = function(stated.place(point.body))(*self.q[dofs], *point.offset)
         k, n = point.letters.index(letter), len(dofs)
         count = len(values) // (1 + n)
         slopes = values[count + k * n : count + (k + 1) * n]

@@ -7,7 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from fricmb.audit._functions import Given, element_function, joint_function
+from fricmb import stated
+from fricmb.audit._functions import Given, function
 from fricmb.audit._motions import Moment, Row
 from fricmb.equations import numbers
 from fricmb.integrate.problem import Floats
@@ -55,7 +56,7 @@ class Acts:
 
     def __init__(self, element: Any) -> None:
         self.forms = element.local_coordinates()
-        self.function = element_function(element, len(self.forms))
+        self.function = function(stated.element(element, len(self.forms)))
         self.numbers = numbers(element)
 
     def add(self, moment: Moment, found: Found) -> None:
@@ -112,7 +113,8 @@ class Joins:
         self.forms = joint.local_coordinates()
         self.drives = [Drive(*drive) for drive in joint.drives()]
         self.count = len(self.forms) + len(self.drives)
-        self.function, self.n_phi, self.n_slip = joint_function(joint, self.count)
+        self.function = function(stated.joint(joint, self.count))
+        self.n_slip = 0 if joint.friction is None else joint.slip_rows
         self.numbers = numbers(joint.bare())
         self.one_sided = joint.one_sided
 
@@ -122,18 +124,18 @@ class Joins:
         motions += [(*drive.at(moment.t), []) for drive in self.drives]
         lam = moment.lam[self.name]
         values = self.function(*[m[0] for m in motions], *lam, *self.numbers)
-        shape, n = moment.t.shape, self.count
+        shape, n, n_phi = moment.t.shape, self.count, len(lam)
         whole = [np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values]
         rates = np.array([np.broadcast_to(m[1], shape) for m in motions])
-        found.phi[self.name] = np.array(whole[: self.n_phi])
-        gradient = np.array(whole[self.n_phi : self.n_phi * (1 + n)]).reshape(self.n_phi, n, -1)
+        found.phi[self.name] = np.array(whole[: n_phi])
+        gradient = np.array(whole[n_phi : n_phi * (1 + n)]).reshape(n_phi, n, -1)
         found.phi_dot[self.name] = (gradient * rates).sum(axis=1)
         rows = [_combined(motions, slopes) for slopes in gradient]
         found.phi_rows[self.name] = rows
         for row, push in zip(rows, lam, strict=True):
             found.push(row, push)
         if self.n_slip and self.contact is not None:
-            *factors, load = whole[self.n_phi * (1 + n) :]
+            *factors, load = whole[n_phi * (1 + n) :]
             slips = np.array(factors).reshape(self.n_slip, n, -1)
             found.g[self.contact], found.N[self.contact] = (slips * rates).sum(axis=1), load
             found.rows[self.contact] = [_combined(motions, slip) for slip in slips]

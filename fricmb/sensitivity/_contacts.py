@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from fricmb import stated
 from fricmb.integrate.problem import OPEN, SLIP, Codes, Floats
 from fricmb.scene import Contact
 from fricmb.sensitivity._dual import Dual, composed
 from fricmb.sensitivity._found import Found, masked
-from fricmb.sensitivity._functions import coefficient_function, normal_function, smooth_function
+from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._motions import Given, Moment
 from fricmb.sensitivity._parts import refuse
 from fricmb.sensitivity._seeds import Seeds
@@ -43,7 +44,7 @@ class Rubs:
             self.varies = contact.normal_kind != "constant"
             return
         self.varies = True
-        self.press = normal_function(given)
+        self.press = Function(stated.normal(given))
         prefix = f"{contact.name}.normal_force."
         self.press_numbers = seeds.numbers(given, prefix)
         self.preload = seeds.dual(given.preload, f"{prefix}preload")
@@ -59,10 +60,10 @@ class Rubs:
         if not self.smooth and law.axis_scale():
             refuse(self.contact, f"the anisotropic law {type(law).__name__}")
         if self.smooth:
-            self.function = smooth_function(law, self.d)
+            self.function = Function(stated.smooth(law, self.d))
             return
         if not self.compiled:
-            self.function = coefficient_function(law)
+            self.function = Function(stated.coefficient(law))
         path = law.static_path
         self.mu_s = None if path is None else seeds.dual(law.slots()[path], f"{self.name}.law.{path}")
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.equations._values import structure
-from fricmb.laws._numeric import _MODULES, _lengths
+from fricmb.laws._numeric import _lengths
 from fricmb.sensitivity._dual import Dual, composed
+from fricmb.stated import MODULES, Statement
 
 #: Arguments and outputs in SymPy.
 Stated = tuple[Sequence[Any], Sequence[Any]]
@@ -25,14 +25,11 @@ class Function:
 
     Parameters
     ----------
-    key : hashable
-        What selects the formulas.
-    make : callable
-        Arguments and outputs in SymPy.
+    statement : Statement
     """
 
-    def __init__(self, key: Hashable, make: Callable[[], Stated]) -> None:
-        self._key, self._make = key, make
+    def __init__(self, statement: Statement) -> None:
+        self._key, self._make = statement.key, statement.make
 
     def __call__(self, arguments: Sequence[Dual]) -> list[Dual]:
         """Outputs with slopes; those arguments count that have any."""
@@ -102,7 +99,7 @@ def _with_slopes(
             if slope != 0:
                 slopes.append(slope)
                 places.append((i, j))
-    made = sympy.lambdify(list(arguments), [_lengths(e) for e in [*plain, *slopes]], _MODULES, cse=True)
+    made = sympy.lambdify(list(arguments), [_lengths(e) for e in [*plain, *slopes]], MODULES, cse=True)
     return made, places
 
 
@@ -120,71 +117,5 @@ def _conditions(
         if arguments[time] in condition.free_symbols:
             own = tuple(j for j, argument in enumerate(arguments) if argument in condition.free_symbols)
             values = [condition, *(sympy.diff(condition, arguments[j]) for j in own)]
-            found.append((sympy.lambdify(list(arguments), values, _MODULES), own))
+            found.append((sympy.lambdify(list(arguments), values, MODULES), own))
     return found
-
-
-def element_function(element: Any, n: int) -> Function:
-    """Forces of an element on its n local coordinates: of x, their rates, t and the element's numbers."""
-
-    def make() -> Stated:
-        from fricmb.equations._authors import element_math
-
-        math = element_math(element, n)
-        return [*math.x, *math.v, math.t, *math.parameters], math.total_force()
-
-    return Function(("element", structure(element), n), make)
-
-
-def normal_function(law: Any) -> Function:
-    """A normal-force law before the cut at 0, of elongation, its rate and the law's numbers."""
-
-    def make() -> Stated:
-        from fricmb.equations._normal import normal_expression
-
-        e, rate, N, parameters = normal_expression(law)
-        return [e, rate, *parameters], [N]
-
-    return Function(("normal", structure(law)), make)
-
-
-def coefficient_function(law: Any) -> Function:
-    """A friction coefficient, of slip speed, normal force and the law's numbers."""
-
-    def make() -> Stated:
-        from fricmb.laws._numeric import coefficient_expression
-        from fricmb.values import symbolic
-
-        stand = symbolic(law)
-        r, N, mu = coefficient_expression(law, stand)
-        return [r, N, *stand.flat], [mu]
-
-    return Function(("coefficient", structure(law)), make)
-
-
-def smooth_function(law: Any, d: int) -> Function:
-    """Force, then rate of the states, of a law that is a force: of v, N, z and the law's numbers."""
-
-    def make() -> Stated:
-        from fricmb.laws._numeric import force_expression
-        from fricmb.values import symbolic
-
-        stand = symbolic(law)
-        v, N, z, force, rate = force_expression(law, stand, d)
-        return [*v, N, *z, *stand.flat], [*force, *rate]
-
-    return Function(("smooth", structure(law), d), make)
-
-
-def expression_function(value: Any, arguments: tuple[Any, ...], order: int) -> Function:
-    """An expression of a declaration, or its derivative of some order by the first argument (time)."""
-
-    def make() -> Stated:
-        import sympy
-
-        plain = sympy.sympify(value).rewrite(sympy.Heaviside, sympy.Piecewise)
-        for _ in range(order):
-            plain = sympy.diff(plain, arguments[0]).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
-        return list(arguments), [plain]
-
-    return Function(("expression", value, arguments, order), make)

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from fricmb import stated
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Driven, LinearForm, Scene
 from fricmb.sensitivity._dual import Dual, composed
-from fricmb.sensitivity._functions import expression_function
+from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._seeds import Seeds
 from fricmb.values import is_expression, value_of
 
@@ -45,20 +46,14 @@ class Given:
             number = seeds.dual(value, name)
             self.number: Dual | None = Dual(value=0.0) if order else number
             return
-        from fricmb.values._symbols import TIME, CoordinateSymbol, ParameterSymbol, SpeedSymbol
-
-        self.number = None
-        free = sorted(value.free_symbols, key=str)
-        moved = [s for s in free if isinstance(s, CoordinateSymbol)]
-        rates = [s for s in free if isinstance(s, SpeedSymbol)]
-        held = [s for s in free if isinstance(s, ParameterSymbol)]
-        self.coordinates, self.speeds = [s.motion for s in moved], [s.motion for s in rates]
+        read, self.number = stated.reads(value), None
+        self.coordinates, self.speeds = list(read.coordinates), list(read.speeds)
         self.held = [
             Dual(value=float(s.value), slopes={seeds.columns[s.name]: 1.0} if s.name in seeds.columns else {})
-            for s in held
+            for s in read.parameters
         ]
-        self.function = expression_function(value, (TIME, *moved, *rates, *held), order)
-        self.arguments = [Dual(value=0.0), *[None] * (len(moved) + len(rates)), *self.held]
+        self.function = Function(stated.expression(value, read.symbols, order))
+        self.arguments = [Dual(value=0.0), *[None] * (len(self.coordinates) + len(self.speeds)), *self.held]
 
     def at(self, moment: Moment) -> Dual:
         """Value with its slopes in a moment."""

@@ -6,12 +6,13 @@ from typing import Any, NoReturn, Protocol
 
 import numpy as np
 
+from fricmb import stated
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Body, Element, Force, Gravity, MatrixElement, ModalBody, modal_matrices
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._found import Found
-from fricmb.sensitivity._functions import element_function
+from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._motions import Given, Moment
 from fricmb.sensitivity._seeds import Seeds
 from fricmb.values import value_of
@@ -34,7 +35,7 @@ class Acts:
 
     def __init__(self, element: Any, seeds: Seeds) -> None:
         self.forms = element.local_coordinates()
-        self.function = element_function(element, len(self.forms))
+        self.function = Function(stated.element(element, len(self.forms)))
         self.numbers = seeds.numbers(element, f"{element.name}.")
         self.label = element._label()
         self.seeded = any(number.slopes for number in self.numbers)
