@@ -6,18 +6,24 @@ import numpy as np
 
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.integrate.trajectory import Samples
-from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._found import whole
+from fricmb.sensitivity._equations import Equations, Field
+from fricmb.sensitivity._found import at, whole
+from fricmb.sensitivity._parts import refuse
 
 #: Most steps of Newton's method, which takes five or six.
 _MOST = 50
+#: Accelerations below this share of what friction makes are none.
+_NOTHING = 1e-12
 
 
-def directions_at_rest(e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int]) -> Floats:
-    """Signs in which those of one contact at each time are the direction in which its slip begins, or has just ended.
+def field_at_rest(
+    e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int], beside: Floats
+) -> Field:
+    """The field with that direction of one contact at each time in which its slip begins, or has just ended.
 
     (mu_k N D + rho I) n = a with |n| = 1: a is the relative acceleration without its friction, rho the growth of r,
-    below 0 in a landing, where directions settle.
+    below 0 in a landing, where directions settle.  Where a is 0 slip ends in the direction that it has had: ``beside``
+    (m, n_t) are relative velocities near by.  A load that this friction itself changes is refused.
     """
     found = sign.copy()
     for i, k in enumerate(contacts):
@@ -30,14 +36,23 @@ def directions_at_rest(e: Equations, samples: Samples, mode: Codes, sign: Floats
         N = field.found.N[k]
         for i in (i for i, own in enumerate(contacts) if own == k):
             W = slopes[i][:, e.n : 2 * e.n]
-            D = W @ e.free(field.found, mode[:, i]) @ W.T
-            found[e.rows(k), i] = _direction(e.contacts[k].size_at_rest(N, i) * D, slopes[i] @ rates[i])
-    return found
+            D = W @ e.free(field.found, mode[:, i], i) @ W.T
+            found[e.rows(k), i] = _direction(
+                e.contacts[k].size_at_rest(N, i) * D, slopes[i] @ rates[i], beside[e.rows(k), i]
+            )
+    slipping = e.field(samples, mode, found)
+    for i, k in enumerate(contacts):
+        before, after = (at(one.found.N[k].value, i) for one in (field, slipping))
+        if abs(after - before) > 1e-9 * abs(before):
+            refuse(e.contacts[k].part, "the begin or end of slip in two directions under a load that friction changes")
+    return slipping
 
 
-def _direction(D: Floats, a: Floats) -> Floats:
+def _direction(D: Floats, a: Floats, beside: Floats) -> Floats:
     """The unit vector n with (D + rho I) n = a, by Newton's method on 1/|n| = 1, which comes from below."""
     values, vectors = np.linalg.eigh(D)
+    if np.linalg.norm(a) < _NOTHING * values[-1]:
+        return np.asarray(beside / np.linalg.norm(beside))
     parts = np.where(np.abs(vectors.T @ a) > 0.0, vectors.T @ a, 1e-300)
     rho = float(np.max(np.abs(parts) - values))
     n = parts / (values + rho)

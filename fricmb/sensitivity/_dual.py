@@ -43,3 +43,11 @@ def merged(parts: Iterable[Slopes]) -> Slopes:
 def composed(value: Any, partials: Iterable[tuple[Any, Dual]]) -> Dual:
     """A function's value, and its slopes from its partial derivatives with respect to values it is made of."""
     return Dual(value=value, slopes=merged({j: c * s for j, s in dual.slopes.items()} for c, dual in partials))
+
+
+def summed(parts: Iterable[Dual]) -> Dual:
+    """The sum of values."""
+    found = Dual(value=0.0)
+    for part in parts:
+        found = found + part
+    return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,10 +11,11 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.trajectory import Samples
-from fricmb.scene import Body, Contact, Joint, ModalBody, RigidBody
+from fricmb.scene import Body, Contact, ModalBody
 from fricmb.sensitivity._breakpoints import Breakpoints, timed_of
 from fricmb.sensitivity._contacts import Rubs
 from fricmb.sensitivity._found import Found, whole
+from fricmb.sensitivity._friction import Friction
 from fricmb.sensitivity._linear import Linear
 from fricmb.sensitivity._motions import Frame, Moment
 from fricmb.sensitivity._parts import Acting, acting, masses, refuse
@@ -56,12 +58,6 @@ class Equations:
     def __init__(self, piece: Any, names: Any, parameters: tuple[str, ...]) -> None:
         mechanics = piece.mechanics
         scene = mechanics.placed
-        if scene.is_mechanism:
-            turning = [part for part in scene.parts if isinstance(part, RigidBody | Joint)]
-            refuse((turning or list(scene.parts))[0], "a mechanism")
-        for body in scene.bodies:
-            if not isinstance(body, Body | ModalBody):
-                refuse(body, f"a {type(body).__name__}")
         index = dict(names.dof_index)
         self.names, self.scene = names, scene
         self.n, self.n_z = len(index), int(names.z_start[-1])
@@ -69,20 +65,40 @@ class Equations:
         self.columns = self.n_y + len(parameters) + 1
         seeds = Seeds({name: self.n_y + i for i, name in enumerate(parameters)})
         self.seeds = seeds
+        self._prepare(piece)
+        for body in scene.bodies:
+            self._check_body(body)
         self.frame = Frame(
             scene=scene, index=index, seeds=seeds, driven=_driven(mechanics, names), n=self.n,
             time_column=self.columns - 1, start=piece.t_start,
         )  # fmt: skip
         held = set(mechanics.plan.parts)
-        self.M, self.seeded_masses = masses(scene, held, index, seeds)
-        self.contacts: dict[int, Rubs] = {}
+        self.M, self.seeded_masses, self.weights = masses(scene, held, index, seeds)
+        self.contacts: dict[int, Friction] = {}
+        self.touching: dict[int, Rubs] = {}
         self.acting: list[Acting] = []
-        for part in scene.parts:
+        for part in self._parts(scene):
             self._take(part, part.name in held)
         self.breakpoints = self._breakpoints(piece, parameters)
         self.linear = Linear(self.acting, self.frame, self.columns)
-        self.inverse = np.linalg.inv(self.M)
+        self.inverse = np.linalg.inv(self.weights)
         self._projectors: dict[bytes, tuple[Floats, Floats, Floats]] = {}
+
+    def _prepare(self, piece: Any) -> None:
+        """Before parts are taken."""
+
+    def _parts(self, scene: Any) -> Sequence[Any]:
+        """What acts."""
+        return tuple(scene.parts)
+
+    def _check_body(self, body: Any) -> None:
+        """Refuse bodies that are not covered."""
+        if not isinstance(body, Body | ModalBody):
+            refuse(body, f"a {type(body).__name__}")
+
+    def settled(self, found: Found, S: Floats) -> Floats:
+        """Derivatives of a start that joints hold; there are none here."""
+        return S
 
     def _take(self, part: Any, held: bool) -> None:
         touched = self.seeds.touch(part)
@@ -95,7 +111,7 @@ class Equations:
                     f"sensitivities: {part._label()} was left out of the run, because it acts on nothing or is nothing;"
                     f" there is no derivative with respect to {touched[0]!r}"
                 )
-            self.contacts[k] = Rubs(part, k, int(self.names.z_start[k]), self.seeds)
+            self.contacts[k] = self.touching[k] = Rubs(part, k, int(self.names.z_start[k]), self.seeds)
             return
         found = acting(self.scene, part, self.frame.index, self.seeds)
         if found is not None:
@@ -128,7 +144,7 @@ class Equations:
         found = Found(self.n, self.n_z, self.columns, count)
         for part in (self.linear, *self.linear.rest):
             part.add(moment, found)
-        for k, contact in self.contacts.items():
+        for k, contact in self.touching.items():
             contact.add(moment, found, mode[k], sign[self.rows(k)])
         a, slopes, F = self._accelerations(found, mode, count)
         rate_slopes = found.dense(found.rate_slopes, self.n_z).transpose(2, 0, 1)
@@ -175,13 +191,16 @@ class Equations:
             first = own.stop
         return a, slopes
 
-    def free(self, found: Found, mode: Codes) -> Floats:
+    def free(self, found: Found, mode: Codes, i: int) -> Floats:
         """Inverse mass (n, n) of what is free to move while contacts stick as ``mode`` (n_c,) says."""
         stuck = [k for k, contact in self.contacts.items() if not contact.smooth and mode[k] == STICK]
-        return self.projector(found, stuck)[0]
+        return self.projector(found, stuck, i)[0]
 
-    def projector(self, found: Found, stuck: list[int]) -> tuple[Floats, Floats, Floats]:
-        """Inverse mass of what is free to move, B = M^-1 W D^-1, and D^-1, with D = W^T M^-1 W of what sticks."""
+    def projector(self, found: Found, stuck: list[int], i: int = 0) -> tuple[Floats, Floats, Floats]:
+        """Inverse mass of what is free to move, B = M^-1 W D^-1, and D^-1, with D = W^T M^-1 W of what sticks.
+
+        ``i``: number of the time, of no account where rows are constant.
+        """
         key = np.array(stuck, dtype=np.int64).tobytes()
         held = self._projectors.get(key)
         if held is None:

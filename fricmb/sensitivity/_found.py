@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,16 @@ from fricmb.sensitivity._motions import Row
 
 #: Slopes by row and column, each a number or (n_t,).
 Entries = dict[tuple[int, int], Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Held:
+    """A constraint of a joint: what stays 0, its rate, its second rate without accelerations, and its row."""
+
+    value: Dual
+    rate: Dual
+    drift: Dual
+    row: Row
 
 
 class Found:
@@ -30,6 +41,8 @@ class Found:
         Of contacts that may stick: the largest force at rest.
     rows : dict
         Of contacts by number: rows of their directions.
+    held : list of Held
+        Constraints of joints.
     """
 
     def __init__(self, n: int, n_z: int, columns: int, count: int) -> None:
@@ -44,13 +57,15 @@ class Found:
         self.N: dict[int, Dual] = {}
         self.limit: dict[int, Dual] = {}
         self.rows: dict[int, list[Row]] = {}
+        self.held: list[Held] = []
 
     def push(self, row: Row, force: Dual) -> None:
         """A force on a motion, to the degrees of freedom behind it."""
         for i, c in row:
-            self.force[i] += c * force.value
-            for j, slope in force.slopes.items():
-                self.add_slope(i, j, c * slope)
+            own = force.times(c) if isinstance(c, Dual) else force * c
+            self.force[i] += own.value
+            for j, slope in own.slopes.items():
+                self.add_slope(i, j, slope)
 
     def add_slope(self, i: int, j: int, slope: Any) -> None:
         """Slope of the force on a degree of freedom."""
@@ -101,3 +116,8 @@ def masked(dual: Dual, where: Any) -> Dual:
     return Dual(
         value=np.where(where, dual.value, 0.0), slopes={j: np.where(where, s, 0.0) for j, s in dual.slopes.items()}
     )
+
+
+def at(value: Any, i: int) -> float:
+    """Of a number or (n_t,) the value at time i."""
+    return float(value) if np.ndim(value) == 0 else float(value[i])

@@ -11,15 +11,15 @@ from fricmb import stated
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Driven, LinearForm, Scene
-from fricmb.sensitivity._dual import Dual, composed
+from fricmb.sensitivity._dual import Dual, composed, summed
 from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._seeds import Seeds
 from fricmb.values import is_expression, value_of
 
 #: How far beside a breakpoint a function of time is evaluated, relative to 1 or the time.
 _BESIDE = 1e-13
-#: Coefficients of a motion's rate on the rates of the degrees of freedom.
-Row = list[tuple[int, float]]
+#: Coefficients of a motion's rate on the rates of the degrees of freedom; of points of bodies that turn with slopes.
+Row = list[tuple[int, Any]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,14 +154,33 @@ class Moment:
             position = Dual(value=self.q[i], slopes={i: 1.0})
             rate = Dual(value=self.v[i], slopes={frame.n + i: 1.0})
             return Motion(position=position, rate=rate, drift=still, row=[(i, 1.0)])
+        owner, _, letter = name.rpartition(".")
+        point = frame.scene.rigid_points.get(owner) if frame.scene.is_mechanism else None
+        if point is not None:
+            return self._point(point, letter)
         terms = frame.scene.motion(name).terms if frame.scene.has_motion(name) else ()
         if terms and terms != ((name, 1.0),):
             return self.form(LinearForm(terms))
         if name in frame.scene.dof_names:  # what the plan left out rests
-            owner, _, letter = name.rpartition(".")
             start = frame.scene[owner].start_values("position").get(letter, 0.0)  # type: ignore[attr-defined]
             return Motion(position=Dual(value=float(value_of(start))), rate=still, drift=still, row=[])
         return self._prescribed(name)
+
+    def _point(self, point: Any, letter: str) -> Motion:
+        """A point of a body that turns."""
+        n, dofs = self.frame.n, [self.frame.index[name] for name in point.body.dof_names]
+        q = [Dual(value=self.q[i], slopes={i: 1.0}) for i in dofs]
+        v = [Dual(value=self.v[i], slopes={n + i: 1.0}) for i in dofs]
+        held = point.own if point.own is not None else point.body.points[point.point]
+        offset = [self.frame.seeds.dual(x, f"{point.end_name}.{k}") for k, x in enumerate(held)]
+        values = Function(stated.place_motion(point.body))([*q, *v, *offset])
+        count, k = len(dofs), point.letters.index(letter)
+        letters = len(point.letters)
+        slopes = values[letters + k * count : letters + (k + 1) * count]
+        plain = [c if c.slopes or np.ndim(c.value) else float(c.value) for c in slopes]
+        row: Row = list(zip(dofs, plain, strict=True))
+        rate = summed(x.times(c) for x, c in zip(v, slopes, strict=True))
+        return Motion(position=values[k], rate=rate, drift=values[letters * (1 + count) + k], row=row)
 
     def _prescribed(self, name: str) -> Motion:
         frame = self.frame

@@ -9,13 +9,16 @@ import numpy as np
 from fricmb import stated
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
-from fricmb.scene import Body, Element, Force, Gravity, MatrixElement, ModalBody, modal_matrices
+from fricmb.scene import Body, Force, Gravity, MatrixElement, ModalBody, RigidBody, SpaceBody, modal_matrices
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._found import Found
 from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._motions import Given, Moment
 from fricmb.sensitivity._seeds import Seeds
 from fricmb.values import value_of
+
+#: Part by which a number is changed to find the slope of what is linear in it; a power of 2.
+_LITTLE = 2.0**-7
 
 
 class Acting(Protocol):
@@ -51,6 +54,8 @@ class Acts:
     def is_linear(self, moment: Moment) -> bool:
         """Whether what it states is, and its ends are driven by nothing."""
         motions = [moment.form(form) for form in self.forms]
+        if any(isinstance(c, Dual) for m in motions for _, c in m.row):
+            return False
         by = {j for m in motions for j in (*m.position.slopes, *m.rate.slopes)}
         if max(by, default=0) >= 2 * moment.frame.n:
             return False
@@ -69,7 +74,8 @@ class Pushes:
 
     def is_linear(self, moment: Moment) -> bool:
         """Whether it is constant."""
-        return self.value.number is not None
+        turns = any(isinstance(c, Dual) for _, c in moment.form(self.form).row)
+        return self.value.number is not None and not turns
 
     def add(self, moment: Moment, found: Found) -> None:
         """The force on its body."""
@@ -110,7 +116,7 @@ class Falls:
     def __init__(self, scene: Any, gravity: Gravity, index: dict[str, int], seeds: Seeds) -> None:
         self.pull: list[tuple[int, Dual]] = []
         for body in scene.bodies:
-            for letter, value in gravity.acceleration.items() if isinstance(body, Body) else ():
+            for letter, value in gravity.acceleration.items() if isinstance(body, Body | RigidBody | SpaceBody) else ():
                 i = index.get(f"{body.name}.{letter}")
                 if i is not None:
                     mass = seeds.dual(body.mass, f"{body.name}.mass")
@@ -129,23 +135,58 @@ class Falls:
 
 def masses(
     scene: Any, parts: set[str], index: dict[str, int], seeds: Seeds
-) -> tuple[Floats, list[tuple[int, int, float]]]:
-    """The mass matrix (n, n), and (row, column, slope) of masses that depend on a parameter."""
+) -> tuple[Floats, list[tuple[int, int, float]], Floats]:
+    """The mass matrix (n, n), (row, column, slope) of masses that depend on a parameter, and what changes count by.
+
+    That is the mass matrix too, but above 0 where a coordinate of a body in space has no mass.
+    """
     M, seeded = np.zeros((len(index), len(index))), []
+    weights = np.zeros(len(index))
     for part in scene.parts:
-        if isinstance(part, Body):
-            mass = seeds.dual(part.mass, f"{part.name}.mass")
-            for i in (index[name] for name in part.dof_names if name in index):
-                M[i, i] += mass.value
-                seeded += [(i, j, slope) for j, slope in mass.slopes.items()]
-        elif isinstance(part, ModalBody):
-            for name, value in zip(part.dof_names, modal_matrices(part)[0].tolist(), strict=True):
+        if isinstance(part, Body | RigidBody):
+            for name, mass in _masses(part, seeds):
+                if name in index:
+                    i = index[name]
+                    M[i, i] += mass.value
+                    seeded += [(i, j, slope) for j, slope in mass.slopes.items()]
+        elif isinstance(part, ModalBody | SpaceBody):
+            values = part.masses() if isinstance(part, SpaceBody) else modal_matrices(part)[0].tolist()
+            for name, value in zip(part.dof_names, values, strict=True):
                 if name in index:
                     M[index[name], index[name]] += value
+            seeded += _seeded_masses(scene, part, index, seeds) if isinstance(part, SpaceBody) else []
+            least = part.least_masses() if isinstance(part, SpaceBody) else values
+            weights[[index[name] for name in part.dof_names if name in index]] = [
+                value for name, value in zip(part.dof_names, least, strict=True) if name in index
+            ]
         elif isinstance(part, MatrixElement) and part.M is not None and part.name in parts:
             at = np.array([index[name] for name in part.dofs])
             M[np.ix_(at, at)] += _dense(value_of(part.M))
-    return M, seeded
+    lacking = np.maximum(weights - np.diag(M), 0.0)
+    return M, seeded, M + np.diag(lacking)
+
+
+def _seeded_masses(
+    scene: Any, body: SpaceBody, index: dict[str, int], seeds: Seeds
+) -> list[tuple[int, int, float]]:
+    """Slopes of the masses of a body in space, which are linear in its mass and inertias."""
+    found = []
+    for name in dict.fromkeys(seeds.touch(body)):
+        value = float(value_of(scene.parameters[name]))
+        other = scene.with_parameters({name: value * (1.0 + _LITTLE)})[body.name]
+        for dof, m, n in zip(body.dof_names, body.masses(), other.masses(), strict=True):
+            if dof in index and m != n:
+                found.append((index[dof], seeds.columns[name], (n - m) / (_LITTLE * value)))
+    return found
+
+
+def _masses(part: Body | RigidBody, seeds: Seeds) -> list[tuple[str, Dual]]:
+    """What each degree of freedom of a body has to move."""
+    mass = seeds.dual(part.mass, f"{part.name}.mass")
+    if isinstance(part, Body):
+        return [(name, mass) for name in part.dof_names]
+    inertia = seeds.dual(part.inertia, f"{part.name}.inertia")
+    return list(zip(part.dof_names, (mass, mass, inertia), strict=True))
 
 
 def acting(scene: Any, part: Any, index: dict[str, int], seeds: Seeds) -> Acting | None:
@@ -164,7 +205,7 @@ def acting(scene: Any, part: Any, index: dict[str, int], seeds: Seeds) -> Acting
         _refuse_matrices(part, seeds)
         K, C = (None if m is None else value_of(m) for m in (part.K, part.C))
         return None if K is None and C is None else Vibrates([index[name] for name in part.dofs], K, C)
-    return Acts(part, seeds) if isinstance(part, Element) else None
+    return Acts(part, seeds) if hasattr(part, "local_coordinates") else None
 
 
 def _refuse_matrices(part: Any, seeds: Seeds) -> None:

@@ -8,7 +8,9 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
+from fricmb.scene import RigidBody
 from fricmb.sensitivity._collocation import radau
+from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._happenings import happenings
 from fricmb.sensitivity._landings import extrapolated, places_before, settled
@@ -20,6 +22,10 @@ from fricmb.sensitivity._transitions import Transitions
 
 #: More states than this are not carried: maps of steps are dense.
 MOST = 120
+
+
+#: Of bodies that turn names of initial values as they are declared.
+_TURNS = {"position.angle": "angle", "velocity.angle": "angular_velocity"}
 
 
 class Tangent:
@@ -39,7 +45,8 @@ class Tangent:
     def __init__(self, sol: Any, names: tuple[str, ...]) -> None:
         (piece,) = sol.run.pieces
         self.parameters = tuple(name for name in names if name != STATE)
-        self.equations = Equations(piece, sol.names, self.parameters)
+        kind = Constrained if piece.mechanics.placed.is_mechanism else Equations
+        self.equations: Equations = kind(piece, sol.names, self.parameters)
         _check(sol, self.equations)
         e = self.equations
         self.states = state_names(sol.names) if STATE in names else ()
@@ -54,6 +61,7 @@ class Tangent:
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
         first = e.field(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1]).found
+        S = e.settled(first, S)
         one_sided_by, S = one_sided(e, first, mode, S), held(e, first, 0, mode, S)
         self._march(S, transitions, len(sol.events))
         starts = [
@@ -70,11 +78,12 @@ class Tangent:
         S[:, : len(self.states)] = np.eye(e.n_y)[:, : len(self.states)]
         for row, name in enumerate(state_names(e.names)[: 2 * e.n]):
             body, _, path = name.partition(".")
+            path = _TURNS.get(path, path) if isinstance(e.scene[body], RigidBody) else path
             held = e.scene[body].slots().get(path)
             if held is None:
                 slopes = {e.seeds.columns[name]: 1.0} if name in e.seeds.columns else {}
             else:
-                slopes = e.seeds.dual(held, name).slopes
+                slopes = e.seeds.dual(held, f"{body}.{path}").slopes
             for j, slope in slopes.items():
                 S[row, len(self.states) + j - e.n_y] = slope
         return S

@@ -15,7 +15,7 @@ def held(e: Equations, found: Found, i: int, mode: Codes, S: Floats) -> Floats:
     if not stuck:
         return S
     _, slopes = whole([g for k in stuck for g in found.g[k]], found.force.shape[1], e.columns)
-    _, B, _ = e.projector(found, stuck)
+    _, B, _ = e.projector(found, stuck, i)
     stopped = S.copy()
     stopped[e.n : 2 * e.n] -= B @ total(slopes[i], S, e.n_y)
     return stopped

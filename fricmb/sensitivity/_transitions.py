@@ -16,7 +16,7 @@ from fricmb.integrate.problem import Codes, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._breakpoints import Breakpoints
-from fricmb.sensitivity._directions import directions_at_rest
+from fricmb.sensitivity._directions import field_at_rest
 from fricmb.sensitivity._equations import Equations, Field
 from fricmb.sensitivity._found import total, whole
 from fricmb.sensitivity._happenings import Happening
@@ -47,6 +47,7 @@ class Transitions:
         self.equations, self.phases, self.happened, self.breakpoints = equations, phases, happened, breakpoints
         self.rtol = rtol
         self.zero = max(_ZERO, _TOLERANCES * rtol)
+        self.sample = sample
         self.notes: list[str] = []
         self.unsafe: set[int] = set()
         if not happened:
@@ -75,8 +76,10 @@ class Transitions:
             return
         phase = [self.happened[i].phase - ends for i, _, ends in found]
         samples, mode = take(self.samples, [i for i, _, _ in found]), self.phases.mode[:, phase]
-        sign = directions_at_rest(self.equations, samples, mode, self.phases.sign[:, phase], [k for _, k, _ in found])
-        own = self.equations.field(samples, mode, sign)
+        sign, contacts = self.phases.sign[:, phase], [k for _, k, _ in found]
+        middles = [0.5 * float(self.phases.t[k] + self.phases.t[k + 1]) for k in phase]
+        beside = self.sample(np.array(middles)).g
+        own = field_at_rest(self.equations, samples, mode, sign, contacts, beside)
         for j, (i, _, ends) in enumerate(found):
             _put(self.before if ends else self.after, i, own, j)
 

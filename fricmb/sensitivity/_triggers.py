@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from fricmb.integrate.problem import STICK, Floats
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations, Field
+from fricmb.sensitivity._found import at
 from fricmb.sensitivity._happenings import Happening
 from fricmb.sensitivity._phases import Phases
 
@@ -65,7 +65,7 @@ class Triggers:
         slopes = np.array([self._row(dual, i)[1] for dual in self.before.found.g[k]])
         W = slopes[:, e.n : 2 * e.n]
         n = -(slopes @ along) / np.linalg.norm(slopes @ along)
-        D = W @ e.free(self.before.found, self.phases.mode[:, self.happened[i].phase - 1]) @ W.T
+        D = W @ e.free(self.before.found, self.phases.mode[:, self.happened[i].phase - 1], i) @ W.T
         c = e.contacts[k].size_at_rest(self.before.found.N[k], i)
         held_by = np.linalg.solve(D, slopes @ along + c * D @ n) / c
         length = np.linalg.norm(g, axis=0)
@@ -79,7 +79,7 @@ class Triggers:
         """Whether forces in stick before a happening are not determined."""
         e, mode = self.equations, self.phases.mode[:, self.happened[i].phase - 1]
         stuck = [k for k, contact in e.contacts.items() if not contact.smooth and mode[k] == STICK]
-        D = e.projector(self.before.found, stuck)[2]
+        D = e.projector(self.before.found, stuck, i)[2]
         return bool(np.linalg.matrix_rank(D, tol=1e-10 * np.abs(D).max(initial=0.0)) < len(D))
 
     def _along(self, i: int) -> Floats:
@@ -139,8 +139,3 @@ class Triggers:
             event=event, contact=k, residual=abs(N) / max(largest, 1e-300), slopes=slopes, rate=rate or 1e-300,
             transversality=abs(rate) / parts,
         )  # fmt: skip
-
-
-def at(value: Any, i: int) -> float:
-    """Of a number or (n_t,) the value at time i."""
-    return float(value) if np.ndim(value) == 0 else float(value[i])

@@ -8,8 +8,10 @@ from fricmb.stated._statements import (
     element,
     expression,
     joint,
+    joint_motion,
     normal,
     place,
+    place_motion,
     reads,
     smooth,
 )
@@ -22,8 +24,10 @@ __all__ = [
     "element",
     "expression",
     "joint",
+    "joint_motion",
     "normal",
     "place",
+    "place_motion",
     "reads",
     "smooth",
 ]

@@ -87,6 +87,55 @@ def place(body: Any) -> Statement:
     return Statement(key=("place", type(body)), make=make)
 
 
+def joint_motion(part: Any, n: int) -> Statement:
+    """What a joint states of its motion, of x, x', multipliers and the joint's numbers.
+
+    Outputs: constraints, their gradient by rows, their second rates without accelerations; with friction factors of
+    each slip, what its rate is without accelerations, and the load.
+    """
+
+    def make() -> tuple[Sequence[Any], Sequence[Any]]:
+        import sympy
+
+        from fricmb.equations._joint import joint_math
+
+        math = joint_math(part, n)
+        gradient = [[sympy.diff(phi, a) for a in math.x] for phi in math.phi]
+        outputs = [*math.phi, *(s for row in gradient for s in row)]
+        outputs += [_turned(row, math.x, math.v) for row in gradient]
+        if math.slip is not None:
+            outputs += [*(s for row in math.slip for s in row), *(_turned(row, math.x, math.v) for row in math.slip)]
+            outputs.append(math.load)
+        return [*math.x, *math.v, *math.lam, *math.parameters], outputs
+
+    return Statement(key=("joint motion", structure(part.bare()), n, part.friction is None), make=make)
+
+
+def _turned(row: Sequence[Any], x: Sequence[Any], v: Sequence[Any]) -> Any:
+    """The rate of ``row . v`` for constant v."""
+    return sum(c.diff(a) * w * u for c, w in zip(row, v, strict=True) for a, u in zip(x, v, strict=True))
+
+
+def place_motion(body: Any) -> Statement:
+    """A point of a type of body, of the body's coordinates, their rates and the point's offset.
+
+    Outputs: position, gradient by rows, acceleration without those of the coordinates.
+    """
+
+    def make() -> tuple[Sequence[Any], Sequence[Any]]:
+        import sympy
+
+        n = len(body.dof_names)
+        q, v = (sympy.symbols(f"{letter}:{n}", real=True) for letter in "qv")
+        offset = sympy.symbols("a b", real=True)
+        position = body.define_point(q, offset)
+        rows = [[sympy.diff(x, a) for a in q] for x in position]
+        outputs = [*position, *(s for row in rows for s in row), *(_turned(row, q, v) for row in rows)]
+        return [*q, *v, *offset], outputs
+
+    return Statement(key=("place motion", type(body)), make=make)
+
+
 def coefficient(law: Any) -> Statement:
     """A friction coefficient, of slip speed, normal force and the law's numbers."""
 

@@ -1,0 +1,117 @@
+"""Friction laws at many times with their slopes: forces in slip, limits in stick, rates of states."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fricmb import stated
+from fricmb.integrate.problem import SLIP, Codes, Floats
+from fricmb.sensitivity._dual import Dual, composed
+from fricmb.sensitivity._found import Found, masked
+from fricmb.sensitivity._functions import Function
+from fricmb.sensitivity._motions import Moment
+from fricmb.sensitivity._parts import refuse
+from fricmb.sensitivity._seeds import Seeds
+
+#: Slip speed that stands for rest, where a formula is singular there.
+_REST = 1e-100
+
+
+class Friction:
+    """The law of a contact or joint.
+
+    Parameters
+    ----------
+    part : Contact or Joint
+    number : int
+        Its place among the contacts of the run.
+    states : int
+        First row of its law's states.
+    prefix : str
+        Of the names of the law's numbers.
+    """
+
+    def __init__(self, part: Any, law: Any, number: int, d: int, states: int, prefix: str, seeds: Seeds) -> None:
+        self.part, self.number, self.states, self.name, self.d = part, number, states, part.name, d
+        self.law = law
+        self.smooth = law.kind == "smooth"
+        self.numbers = seeds.numbers(law, prefix)
+        own = law.compiled_force(self.d) if self.smooth else law.compiled_coefficient()
+        self.compiled = own is not None
+        if self.compiled and (self.smooth or (any(x.slopes for x in self.numbers) and law.static_path is None)):
+            refuse(part, f"the law {type(law).__name__}, which brings compiled code")
+        if not self.smooth and law.axis_scale():
+            refuse(part, f"the anisotropic law {type(law).__name__}")
+        if self.smooth:
+            self.function = Function(stated.smooth(law, self.d))
+            return
+        if not self.compiled:
+            self.function = Function(stated.coefficient(law))
+        path = law.static_path
+        self.mu_s = None if path is None else seeds.dual(law.slots()[path], f"{prefix}{path}")
+
+    def rub(self, moment: Moment, found: Found, N: Dual, mode: Codes, sign: Floats) -> None:
+        """Forces of slip and rates of states, g and rows being found; ``mode``, ``sign`` (d, n_t): of the phases."""
+        k, g = self.number, found.g[self.number]
+        if self.smooth:
+            self._smooth(moment, found, g, N)
+            return
+        found.limit[k] = self._limit(N)
+        for row, F in zip(found.rows[k], self._slipping(g, N, sign), strict=True):
+            found.push(row, masked(F, mode == SLIP))
+
+    def _smooth(self, moment: Moment, found: Found, g: list[Dual], N: Dual) -> None:
+        first = 2 * moment.frame.n + self.states
+        count = self.law.n_states(self.d)
+        z = [Dual(value=moment.z[self.states + i], slopes={first + i: 1.0}) for i in range(count)]
+        values = self.function([*g, N, *z, *self.numbers])
+        for row, F in zip(found.rows[self.number], values[: self.d], strict=True):
+            found.push(row, F)
+        for i, rate in enumerate(values[self.d :]):
+            found.put_rate(self.states + i, rate)
+
+    def _slipping(self, g: list[Dual], N: Dual, sign: Floats) -> list[Dual]:
+        """Friction in slip: against the sign that a phase has in one direction, against its direction in two."""
+        if self.d == 1:
+            (sign,) = sign
+            r = Dual(value=np.maximum(sign * g[0].value, _REST), slopes={j: sign * s for j, s in g[0].slopes.items()})
+            return [self._coefficient(r, N).times(N) * -sign]
+        if not np.isnan(sign).any():
+            return self.beginning(N, sign)
+        length = np.maximum(np.sqrt(sum(np.square(x.value) for x in g)), _REST)
+        n = [x.value / length for x in g]
+        r = composed(length, zip(n, g, strict=True))
+        size = self._coefficient(r, N).times(N)
+        found = []
+        for i, x in enumerate(g):
+            turned = composed(n[i], [(1.0 / length, x), (-n[i] / length, r)])
+            found.append(size.times(turned) * -1.0)
+        return found
+
+    def beginning(self, N: Dual, direction: Floats) -> list[Dual]:
+        """Friction at r = 0 in slip along a given direction (d, n_t)."""
+        size = self._coefficient(Dual(value=np.full(direction.shape[1:], _REST)), N).times(N)
+        return [size * -n for n in direction]
+
+    def size_at_rest(self, N: Dual, i: int) -> float:
+        """Friction at r = 0 in slip, by size, at time number i of a normal force."""
+        value = float(N.value) if np.ndim(N.value) == 0 else float(N.value[i])
+        return -float(np.ravel(self.beginning(Dual(value=value), np.ones((1, 1)))[0].value)[0])
+
+    def _coefficient(self, r: Dual, N: Dual) -> Dual:
+        if self.compiled:
+            load = np.broadcast_to(N.value, np.shape(r.value))
+            return composed(self.law.coefficient(r.value, load), [(self.law.derivative(r.value, load), r)])
+        return self.function([r, N, *self.numbers])[0]
+
+    def _limit(self, N: Dual) -> Dual:
+        mu = self.mu_s
+        if mu is None and self.compiled:
+            mu = Dual(value=self.law.slip_limit())
+        if mu is None:
+            at_rest = self.function([Dual(value=_REST), N, *self.numbers])[0]
+            mu = replace(at_rest, value=np.where(np.isfinite(at_rest.value), at_rest.value, self.law.slip_limit()))
+        return mu.times(N)

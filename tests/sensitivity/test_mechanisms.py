@@ -1,0 +1,100 @@
+"""Derivatives of mechanisms and of bodies in space: an own program, closed forms, differences of runs."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import fricmb as fm
+from fricmb import models
+
+from .differences import worst
+
+PENDULUM = {"mass": 1.3, "inertia": 0.2, "length": 0.7, "radius": 0.05, "mu": 0.6, "gravity": 9.81}
+
+
+def swing(mass, inertia, length, radius, mu, gravity, swings):
+    """Times at which a pendulum on a dry pin turns round; its pin's load found at every instant by iteration."""
+
+    def rate(t, y, sign):
+        angle, w = y
+        a = 0.0
+        for _ in range(60):
+            load = mass * np.hypot(length * w**2 + gravity * np.cos(angle), length * a + gravity * np.sin(angle))
+            torque = -mass * gravity * length * np.sin(angle) - mu * radius * load * sign
+            a = torque / (inertia + mass * length**2)
+        return [w, a]
+
+    t, y, found = 0.0, [1.2, 0.0], []
+    for k in range(swings):
+        def turns(t, y, sign):
+            return y[1]
+
+        turns.terminal, turns.direction = True, 1.0 if k % 2 == 0 else -1.0
+        run = solve_ivp(
+            rate, (t, t + 3.0), y, method="DOP853", rtol=1e-12, atol=1e-13, args=(-1.0 if k % 2 == 0 else 1.0,),
+            events=turns,
+        )  # fmt: skip
+        t, y = float(run.t_events[0][-1]), run.y_events[0][-1]
+        found.append(t)
+    return np.array(found)
+
+
+@pytest.mark.parametrize(
+    ("name", "own"), [("pin.friction.mu_s", "mu"), ("pin.radius", "radius"), ("arm.inertia", "inertia")]
+)
+def test_dry_pendulum(name, own):
+    """Reactions jump where it turns round, and with them the friction."""
+    step = 1e-4 * PENDULUM[own]
+    times = [swing(**{**PENDULUM, own: PENDULUM[own] + k * step}, swings=2) for k in (-2, -1, 1, 2)]
+    expected = (times[0] - 8.0 * times[1] + 8.0 * times[2] - times[3]) / (12.0 * step)
+    sol = fm.simulate(models.dry_pendulum(**PENDULUM, angle=1.2), t_end=2.5, rtol=1e-9, sensitivities=(name,))
+    assert [event.kind for event in sol.events] == ["reversal", "reversal"]
+    found = np.array([event.sensitivity(name) for event in sol.events])
+    assert found == pytest.approx(expected, rel=1e-6)
+    assert sol.unsafe_events == ()
+
+
+@pytest.mark.parametrize(
+    ("make", "names", "t_end"),
+    [
+        (models.four_bar, ("coupler.inertia", "motor.value"), 0.3),
+        (models.slider_crank, ("slider.mass", "crank.angular_velocity"), 0.08),
+        (models.painleve_rod, ("tip.friction.mu_s", "rod.angular_velocity"), 1.0),
+        (models.heavy_top, ("top.mass", "gravity.acceleration.z"), 0.3),
+    ],
+)
+def test_against_differences(make, names, t_end):
+    """Loops of links; a rod whose point slips, turns round, sticks and slips; a top in space."""
+    found = worst(make(), names, rtol=1e-8, t_end=t_end)
+    assert set(found) == set(names)
+    assert max(found.values()) < 1e3
+
+
+def test_ball_that_slides_until_it_rolls():
+    """What rolls keeps 5/7 of its speed; it slides for a time that goes like 1/mu."""
+    names = ("cloth.friction.mu_s", "ball.velocity.x")
+    sol = fm.simulate(models.billiard(), t_end=2.0, rtol=1e-9, sensitivities=names)
+    (event,) = sol.events
+    mu = sol.scene.parameters["cloth.friction.mu_s"]
+    assert event.sensitivity("cloth.friction.mu_s") == pytest.approx(-event.t / mu, rel=1e-8)
+    assert sol.sensitivity("ball.x.velocity", "ball.velocity.x")[-1] == pytest.approx(5.0 / 7.0, rel=1e-9)
+    assert sol.sensitivity("ball.x.velocity", "cloth.friction.mu_s")[-1] == pytest.approx(0.0, abs=1e-8)
+
+
+def test_block_that_slides_to_rest():
+    """Without other forces slip ends in the direction that it has had: t = m |v|/(mu N)."""
+    block = fm.Body("block", mass=1.3, axes="xy", velocity={"x": 0.4, "y": 0.3})
+    rub = fm.Contact("rub", block, law=fm.laws.Coulomb(mu_s=0.5), normal_force=1.0, axes="xy")
+    names = ("block.mass", "block.velocity.x", "rub.law.mu_s")
+    sol = fm.simulate(fm.Scene("puck", [block, rub]), t_end=2.0, rtol=1e-9, sensitivities=names)
+    assert [sol.events[0].sensitivity(name) for name in names] == pytest.approx([1.0, 2.08, -2.6], rel=1e-9)
+    end = [sol.sensitivity("block.x", name)[-1] for name in names]
+    assert end == pytest.approx([0.2, 1.066, -0.52], rel=1e-9)
+
+
+def test_start_that_does_not_fit():
+    """Joints move a start that does not fit; by what changes positions there, that is not differentiated."""
+    scene = models.dry_pendulum().with_parameters({"arm.angle": -0.3})
+    with pytest.raises(fm.SceneError, match="moved to satisfy the joints"):
+        fm.simulate(scene, t_end=0.1, sensitivities=("arm.angle",))
+    fm.simulate(scene, t_end=0.1, sensitivities=("arm.mass",))
