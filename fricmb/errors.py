@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 
@@ -26,7 +26,35 @@ class UnknownNameError(SceneError, KeyError):
         return str(self.args[0]) if self.args else ""
 
 
-class IntegrationError(FricmbError):
+class _Stopped(BaseException):
+    """A run that has not reached its end: ``partial`` is put together when it is first asked for, by ``later``."""
+
+    def __init__(
+        self, message: str, *, t: float, reason: str, partial: Any = None, later: Callable[[], Any] | None = None
+    ) -> None:
+        super().__init__(message)
+        self.t = t
+        self.reason = reason
+        self._partial = partial
+        self._later = later
+
+    @property
+    def partial(self) -> Any:
+        """The run up to there."""
+        if self._later is not None:
+            self._partial = self._later()
+            self._later = None
+        return self._partial
+
+    def passed_on(self, kind: type[_Stopped]) -> _Stopped:
+        """The same of another kind."""
+        return kind(str(self), t=self.t, reason=self.reason, later=lambda: self.partial)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (type(self), str(self), self.t, self.reason, self.partial)
+
+
+class IntegrationError(_Stopped, FricmbError):
     """A run that could not go on.
 
     Attributes
@@ -36,20 +64,11 @@ class IntegrationError(FricmbError):
     reason : str
         The condition that failed.
     partial : Solution or None
-        The run up to the failure.
+        The run up to the failure; put together when it is first asked for.
     """
 
-    def __init__(self, message: str, *, t: float, reason: str, partial: Any = None) -> None:
-        super().__init__(message)
-        self.t = t
-        self.reason = reason
-        self.partial = partial
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _integration_error, (str(self), self.t, self.reason, self.partial)
-
-
-class Interrupted(KeyboardInterrupt):
+class Interrupted(_Stopped, KeyboardInterrupt):
     """A run that Ctrl-C has ended.
 
     Attributes
@@ -59,25 +78,12 @@ class Interrupted(KeyboardInterrupt):
     reason : str
         "interrupted".
     partial : Solution or None
-        The run up to there.
+        The run up to there; put together when it is first asked for.
     """
 
-    def __init__(self, message: str, *, t: float, reason: str = "interrupted", partial: Any = None) -> None:
-        super().__init__(message)
-        self.t = t
-        self.reason = reason
-        self.partial = partial
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _interrupted, (str(self), self.t, self.reason, self.partial)
-
-
-def _interrupted(message: str, t: float, reason: str, partial: Any) -> Interrupted:
-    return Interrupted(message, t=t, reason=reason, partial=partial)
-
-
-def _integration_error(message: str, t: float, reason: str, partial: Any) -> IntegrationError:
-    return IntegrationError(message, t=t, reason=reason, partial=partial)
+def _again(kind: type[_Stopped], message: str, t: float, reason: str, partial: Any) -> _Stopped:
+    return kind(message, t=t, reason=reason, partial=partial)
 
 
 def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameError:

@@ -27,10 +27,11 @@ def run_watched(watch: Watch, run: Callable[[], Solution]) -> Solution:
             raise
         if not isinstance(watch.cause, KeyboardInterrupt):
             raise watch.cause from error
-        raise Interrupted(str(error), t=error.t, partial=error.partial) from None
+        raise error.passed_on(Interrupted) from None
     if watch.cause is not None:  # it came while the last step was made
         if not isinstance(watch.cause, KeyboardInterrupt):
             raise watch.cause
         t = float(solution.t[-1])
-        raise Interrupted(f"interrupted at the end of the run, t = {t:.10g}", t=t, partial=solution)
+        said = f"interrupted at the end of the run, t = {t:.10g}"
+        raise Interrupted(said, t=t, reason="interrupted", partial=solution)
     return solution

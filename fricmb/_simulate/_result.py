@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -39,52 +41,55 @@ def make_solution(
     counters = trajectory.counters
     method, why = trajectory.instead or (method, why)
     counts = {name: getattr(counters, name) for name in ("n_steps", "n_rejected", "n_rhs", "n_jac", "n_lu")}
-    notes = tuple(dict.fromkeys((*mechanics.plan.cautions, *counters.notes)))
-
-    islands = island_stats(trajectory, mechanics.members)
-
-    def solution(t_end: float | None, times: Floats | None) -> Solution:
-        run = Run((Piece(trajectory, mechanics.origin, mechanics, t_end),))
-        try:
-            made = Stats(method=method, n_steps=counters.n_steps)
-            sol = Solution(names=mechanics.names, run=run, stats=made, times=times)
-        except IntegrationError as error:
-            raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
-        check_friction(mechanics, trajectory, sol.record.samples, rtol or 0.0)
-        said = (*notes, *ledger_note(sol, rtol), *miss_notes(sol, trajectory, rtol))
-        wall_s = time.perf_counter() - begin
-        sol.stats = Stats(
-            method=method,
-            why=why,
-            compile_s=compile_s,
-            wall_s=wall_s,
-            islands=islands,
-            notes=said,
-            rtol=rtol,
-            atol=atol,
-            **counts,
-        )
-        return sol
-
+    stats = Stats(
+        method=method, why=why, compile_s=compile_s, wall_s=time.perf_counter() - begin, rtol=rtol, atol=atol,
+        islands=island_stats(trajectory, mechanics.members),
+        notes=tuple(dict.fromkeys((*mechanics.plan.cautions, *counters.notes))), **counts,
+    )  # fmt: skip
     failure = trajectory.failure or not_there(trajectory, span, rtol is None)
     if failure is None:
         try:
-            return solution(None, span.t_eval)
+            sol = _solution(mechanics, trajectory, stats, None, span.t_eval)
+            sol.stats = replace(sol.stats, wall_s=time.perf_counter() - begin)
+            return sol
         except _Unsound as unsound:
             t, reason, end = unsound.t, unsound.reason, unsound.end
     else:
-        t = float(trajectory.t[-1])
+        t = trajectory.ends[1]
         reason, end = failure, t
     if not ended:
         reason = undefined(mechanics, trajectory, t) or f"{reason}{blame(mechanics, trajectory, t)}"
-    partial = None
-    while partial is None and end is not None:
+    # of a long run that takes much longer than ending it: Ctrl-C does not wait for it
+    later = partial(_sound_part, mechanics, trajectory, stats, span, end)
+    raise IntegrationError(f"{method} stopped at t = {t:.10g}: {reason}", t=t, reason=reason, later=later)
+
+
+def _solution(
+    mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, t_end: float | None, times: Floats | None
+) -> Solution:
+    """The solution up to ``t_end`` (None: all of it), or _Unsound."""
+    run = Run((Piece(trajectory, mechanics.origin, mechanics, t_end),))
+    try:
+        sol = Solution(names=mechanics.names, run=run, stats=stats, times=times)
+    except IntegrationError as error:
+        raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
+    check_friction(mechanics, trajectory, sol.record.samples, stats.rtol or 0.0)
+    notes = (*stats.notes, *ledger_note(sol, stats.rtol), *miss_notes(sol, trajectory, stats.rtol))
+    sol.stats = replace(stats, notes=notes)
+    return sol
+
+
+def _sound_part(
+    mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, span: Span, end: float | None
+) -> Solution | None:
+    """The run up to ``end``, or as far as it is sound; None where it never is."""
+    while end is not None:
         times = None if span.t_eval is None else span.t_eval[span.t_eval <= end]
         try:
-            partial = solution(end, times if times is None or times.size else None)
+            return _solution(mechanics, trajectory, stats, end, times if times is None or times.size else None)
         except _Unsound as unsound:
             end = unsound.end if unsound.end is not None and unsound.end < end else None
-    raise IntegrationError(f"{method} stopped at t = {t:.10g}: {reason}", t=t, reason=reason, partial=partial)
+    return None
 
 
 def not_there(trajectory: Trajectory, span: Span, fixed: bool) -> str | None:

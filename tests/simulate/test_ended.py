@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import signal
 import subprocess
 import sys
@@ -120,6 +121,29 @@ def test_a_time_limit_ends_a_run(method):
     assert np.isfinite(partial.q).all()
 
 
+@pytest.mark.parametrize("kind", [fm.IntegrationError, fm.Interrupted])
+def test_what_was_computed_is_put_together_when_it_is_asked_for(kind):
+    made = []
+    error = kind("why", t=1.0, reason="why", later=lambda: made.append(1) or "part")
+    assert made == []
+    other = error.passed_on(fm.Interrupted)
+    assert made == []
+    assert (other.partial, error.partial, other.partial) == ("part", "part", "part")
+    assert made == [1]
+    again = pickle.loads(pickle.dumps(other))
+    assert (type(again), again.t, again.reason, again.partial) == (fm.Interrupted, 1.0, "why", "part")
+
+
+@pytest.mark.parametrize("method", ["auto", "bdf", "taylor", "timestepping"])
+def test_chunks_of_rows_are_put_together_once_and_pickle(method):
+    sol = fm.simulate(endless(), t_end=3000.0, method=method)
+    again = pickle.loads(pickle.dumps(sol))
+    np.testing.assert_array_equal(again.q, sol.q)
+    t = np.linspace(0.0, 3000.0, 7)
+    np.testing.assert_array_equal(again(t), sol(t))
+    assert (again.run.pieces[0].trajectory.ends, sol.run.pieces[0].trajectory.ends) == ((0.0, 3000.0),) * 2
+
+
 #: A process of its own: what else a test process does with signals is not this test's.
 INTERRUPTED = """
 import pickle, signal, sys, time
@@ -129,14 +153,16 @@ from tests.simulate.test_ended import driven, endless
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be told to ignore it
 method, options, scene = sys.argv[1], eval(sys.argv[2]), {"driven": driven, "endless": endless}[sys.argv[3]]()
 name = "rod.angle" if sys.argv[3] == "driven" else "block.x"
+times = None if sys.argv[4] == "rows" else np.arange(0.0, 1e6, 100.0)
 # what is compiled or read from the cache is, before the signal comes
 fm.simulate(scene, t_end=1.0, method=method, t_eval=np.arange(0.0, 1.0, 0.1), **options)
 print("ready", flush=True)
 try:
-    fm.simulate(scene, t_end=1e8, method=method, t_eval=np.arange(0.0, 1e6, 100.0), **options)
+    fm.simulate(scene, t_end=1e8, method=method, t_eval=times, **options)
 except KeyboardInterrupt as error:
     spent = time.process_time()
     again = pickle.loads(pickle.dumps(error))
+    np.testing.assert_array_equal(again.partial.q, error.partial.q)
     assert type(error) is fm.Interrupted
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert again.t == error.t
@@ -165,23 +191,30 @@ def spent(process):
     return time.clock_gettime((~process.pid << 3) | 2)
 
 
-RUNS = [*((method, "endless") for method in METHODS), *((method, "driven") for method in ("auto", "bdf", "radau"))]
+#: Method, scene, what is asked for, and seconds of the processor after which Ctrl-C comes: where all rows are kept,
+#: putting a long run together takes longer than a second, and waits until somebody asks for it.
+RUNS = [
+    *((method, "endless", "times", 1.0) for method in METHODS),
+    *((method, "driven", "times", 1.0) for method in ("auto", "bdf", "radau")),
+    *((method, "endless", "rows", 3.0) for method in ("auto", "radau", "taylor", "timestepping")),
+    ("auto", "driven", "rows", 3.0),
+]
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-@pytest.mark.parametrize(("method", "scene"), RUNS)
-def test_ctrl_c_ends_a_run_within_a_second_and_keeps_it(method, scene):
-    command = [sys.executable, "-c", INTERRUPTED, method, repr(step_of(method)), scene]
+@pytest.mark.parametrize(("method", "scene", "asked", "seconds"), RUNS)
+def test_ctrl_c_ends_a_run_within_a_second_and_keeps_it(method, scene, asked, seconds):
+    command = [sys.executable, "-c", INTERRUPTED, method, repr(step_of(method)), scene, asked]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout.readline() == "ready\n", process.stderr.read()
             before = spent(process)
-            while spent(process) < before + 1.0:
+            while spent(process) < before + seconds:
                 time.sleep(0.01)
             at_signal = spent(process)
             process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=60.0)  # the run would take days
+            out, err = process.communicate(timeout=120.0)  # the run would take days
         finally:
             process.kill()
     assert process.returncode == 0, err

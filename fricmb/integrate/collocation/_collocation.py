@@ -36,7 +36,7 @@ from fricmb.integrate.collocation._single import (
 )  # fmt: skip
 from fricmb.integrate.collocation._structure import NoBlocks
 from fricmb.integrate.collocation._trajectory import SingleRun
-from fricmb.integrate.collocation._workspace import borrowed, may_grow, within
+from fricmb.integrate.collocation._workspace import borrowed, goes_back, lengthened, may_grow, within
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
@@ -188,17 +188,20 @@ def _run_in(
         code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.sx[0] + pause)
         if code == FULL and ended() is None:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
-            if not may_grow(rows, memory):
+            longer = lengthened(rows) if may_grow(rows, memory) else None
+            if longer is None:
                 break
-            run = held[0] = with_rows(run, Rows(*[np.concatenate([x, np.zeros_like(x)]) for x in rows]))
+            run = held[0] = with_rows(run, longer)
         elif code == PAUSE and progress is not None and ended() is None:
             progress(float(run.sx[0]))
         else:
             break
     mode, n_rows, phases, n_events, steps, rejected, iterations, builds = (int(i) for i in run.si)
-    events = run.events[:n_events].copy()
+    rows = Rows(run.steps[:n_rows], run.kinds[:n_rows], run.phases[:phases], run.events[:n_events])
+    if goes_back(run):
+        rows = Rows._make(x.copy() for x in rows)
     transitions = Transitions(
-        t=events[:, 0].copy(), contact=np.zeros(n_events, dtype=np.int64), kind=events[:, 1].astype(np.int64)
+        t=rows.events[:, 0].copy(), contact=np.zeros(n_events, dtype=np.int64), kind=rows.events[:, 1].astype(np.int64)
     )
     counters = Counters(n_steps=steps, n_rejected=rejected, n_rhs=iterations, n_jac=iterations, n_lu=builds)
     end = Start(
@@ -206,5 +209,4 @@ def _run_in(
         mode=np.array([mode], np.int8), direction=run.sm[1].copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or _FAILURES.get(code)
-    rows = Rows(run.steps[:n_rows].copy(), run.kinds[:n_rows].copy(), run.phases[:phases].copy(), events)
     return SingleRun(problem, s, rows, transitions, counters, end, failure)

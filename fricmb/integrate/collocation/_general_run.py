@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -21,8 +21,8 @@ from fricmb.integrate.methods.time_loop import drive
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import scratch
 from fricmb.integrate.model.problem_structs import packed_of
-from fricmb.integrate.output.row_trajectory import RowTrajectory
-from fricmb.integrate.problem import LAW_CONSTANT, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
+from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
+from fricmb.integrate.problem import LAW_CONSTANT, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate.step.contact_unknowns import port_state
 from fricmb.integrate.step.coulomb_newton import plain_ports
 from fricmb.integrate.step.exact_structure import Exact
@@ -83,13 +83,16 @@ def exact_step(problem: Problem, exact: Exact, counts: Ints) -> OneStep:
 
 
 class ExactRun(RowTrajectory):
-    """A run kept as the rows of its steps, with the node values of their inputs."""
+    """A run kept as the rows of its steps, with the node values of their inputs.
+
+    ``exact``: number of nodes, and up to which w h modes are exact.
+    """
 
     def __init__(
-        self, problem: Problem, values: Floats, kind: Codes, mode: Codes, transitions: Transitions,
-        counters: Counters, end: Start, failure: str | None, exact: tuple[int, float | None],
+        self, problem: Problem, chunks: list[Chunk], transitions: Transitions, counters: Counters, end: Start,
+        failure: str | None, *, exact: tuple[int, float | None],
     ) -> None:  # fmt: skip
-        super().__init__(problem, values, kind, mode, transitions, counters, end, failure)
+        super().__init__(problem, chunks, transitions, counters, end, failure)
         self._nodes, self._exact_up_to = exact
 
     def _fill(self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2) -> None:
@@ -122,15 +125,5 @@ def run_general(
             run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
         )
 
-    rows = run_loop(run, run.begin(), go_on, memory, progress)
-    return ExactRun(
-        problem,
-        rows._values,
-        rows._kind,
-        rows._mode,
-        rows.transitions,
-        rows.counters,
-        rows.end,
-        rows.failure,
-        (s, exact_up_to),
-    )
+    run.made = partial(ExactRun, exact=(s, exact_up_to))
+    return run_loop(run, run.begin(), go_on, memory, progress)

@@ -22,12 +22,16 @@ from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.stop import ended
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
 MANY, LARGE = 4, 32_000_000
 
 #: Rows that a run begins with.
 FEW = 512
+
+#: Bytes that are copied without asking whether the run is to end.
+COPIED = 1 << 26
 
 _store: dict[tuple[int, int, int], list[tuple[bytes, Run]]] = {}
 _turn = threading.Lock()
@@ -50,9 +54,26 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
     if taken is not None and place is None:
         _begin_anew(held[0], p)
     yield held
-    if sum([getattr(held[0], name).nbytes for name in ("tb", "tk", *Rows._fields)]) <= LARGE:
+    if goes_back(held[0]):
         with _turn:
             free.append((content, held[0]))
+
+
+def goes_back(run: Run) -> bool:
+    """Whether the arrays are put back after the run; else what it has filled may stay where it is."""
+    return bool(sum([getattr(run, name).nbytes for name in ("tb", "tk", *Rows._fields)]) <= LARGE)
+
+
+def lengthened(held: Rows) -> Rows | None:
+    """The rows with as many empty ones behind, which take memory as they are filled; None where the run is to end."""
+    longer = Rows._make(np.zeros((2 * len(array), *array.shape[1:]), array.dtype) for array in held)
+    for old, new in zip(held, longer, strict=True):
+        lines = max(1, COPIED // (old.nbytes // len(old)))
+        for i in range(0, len(old), lines):
+            if ended() is not None:
+                return None
+            new[: len(old)][i : i + lines] = old[i : i + lines]
+    return longer
 
 
 def may_grow(held: Rows, memory: float | None) -> bool:

@@ -40,15 +40,15 @@ class StepTrajectory(Trajectory):
         self._span, self._values, self._force, self._mode, self._after = span, values, force, mode, after
         self._nodes, self._opened = nodes, opened
         # every step's end, the start of the run, and right-hand values after transitions
-        steps = np.arange(len(span))
-        last = len(span) - 1
-        index = [np.array([0])] if len(span) else []
-        side = [np.array([0])] if len(span) else []
-        for k in steps:
-            index.append(np.array([k, k + 1] if after[k] and k < last else [k]))
-            side.append(np.array([1, 0] if after[k] and k < last else [1]))
-        self._row_step = np.concatenate(index) if index else np.zeros(0, int)
-        self._row_side = np.concatenate(side) if side else np.zeros(0, int)
+        twice = after != 0
+        twice[-1:] = False
+        count = 1 + twice
+        self._row_step, self._row_side = np.repeat(np.arange(len(span)), count), np.ones(count.sum(), int)
+        behind = (np.cumsum(count) - 1)[twice]
+        self._row_step[behind] += 1
+        self._row_side[behind] = 0
+        if len(span):
+            self._row_step, self._row_side = np.append(0, self._row_step), np.append(0, self._row_side)
 
     @property
     def t(self) -> Floats:

@@ -16,8 +16,8 @@ from fricmb.integrate.model.accelerations import state
 from fricmb.integrate.model.forces import scratch
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.recorder import rows, widths
-from fricmb.integrate.output.row_trajectory import RowTrajectory
-from fricmb.integrate.problem import Ints, Problem, Start
+from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
+from fricmb.integrate.problem import Floats2, Ints, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.band_matrix import places_of
 from fricmb.integrate.step.contact_unknowns import port_state
@@ -60,7 +60,12 @@ def one_step(problem: Problem, tableau: Tableau, counts: np.ndarray) -> OneStep:
 
 
 class Collector:
-    """State and rooms of one run; takes the rows out of the kernels' room chunk by chunk."""
+    """State and rooms of one run; takes the rows out of the kernels' room chunk by chunk.
+
+    ``made``: what is made of them in the end.
+    """
+
+    made: Callable[..., RowTrajectory] = staticmethod(RowTrajectory)
 
     def __init__(self, problem: Problem, start: Start, t_end: float, *further: str, places: Ints | None = None) -> None:
         self.problem = problem
@@ -82,7 +87,9 @@ class Collector:
         )
         self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
-        self._chunks: list[tuple[np.ndarray, ...]] = []
+        self.broken = False
+        self._chunks: list[Chunk] = []
+        self._events: list[Floats2] = []
 
     def begin(self) -> int:
         """Modes, forces and accelerations at the start; the first row.  Returns DONE or a code of failure."""
@@ -102,34 +109,30 @@ class Collector:
         self.rows = rows(self.problem, self.chunk, columns)
 
     def collect(self) -> None:
-        """Empty the room for rows."""
+        """Empty the room for rows; from the first one that is not finite on they are left out."""
         k, e = self.rows.used
-        self._chunks.append(
-            (
-                self.rows.values[:k].copy(),
-                self.rows.kind[:k].copy(),
-                self.rows.mode[:k].copy(),
-                self.rows.event[:e].copy(),
+        found = np.isfinite(self.rows.values[:k]).all(axis=1)
+        if not self.broken:
+            self.broken = not found.all()
+            k = int(np.argmin(found)) if self.broken else k
+            self._chunks.append(
+                (self.rows.values[:k].copy(), self.rows.kind[:k].copy(), self.rows.mode[:k].copy())
             )
-        )
+        self._events.append(self.rows.event[:e].copy())
         self.rows.used[:] = 0
 
     def trajectory(self, failure: str | None) -> RowTrajectory:
         """The run so far."""
         if self.rows.used[0] or not self._chunks:
             self.collect()
-        values, kind, mode, event = (np.concatenate(x) for x in zip(*self._chunks, strict=True))
-        finite = np.isfinite(values).all(axis=1)
-        keep = len(finite)
-        if not finite.all():
-            keep = int(np.argmin(finite))
+        if self.broken:
             failure = failure or FAILURES[FAIL_INFINITE]
         steps, rejected, rhs, jac, lu = (int(x) for x in self.counts[:5])
         counters = Counters(n_steps=steps, n_rejected=rejected, n_rhs=rhs, n_jac=jac, n_lu=lu)
-        y = self.y
+        y, event = self.y, np.concatenate(self._events)
         end = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
         transitions = Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
-        return RowTrajectory(self.problem, values[:keep], kind[:keep], mode[:keep], transitions, counters, end, failure)
+        return self.made(self.problem, self._chunks, transitions, counters, end, failure)
 
 
 def stages_for(problem: Problem, rtol: float, wanted: int | None) -> int:

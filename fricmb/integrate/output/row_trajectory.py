@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,31 +18,60 @@ from fricmb.integrate.output.recorder import AFTER, INSIDE
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
+#: Rows as they were collected: values (n_r, width) as in Rows, kind (n_r,), mode (n_r, n_c).
+Chunk = tuple[Floats, Codes, Codes2]
+
 
 class RowTrajectory(Trajectory):
-    """A run kept as rows; ``values`` (n_r, width) as in Rows, ``kind``, ``mode`` (n_r, n_c)."""
+    """A run kept as rows, in chunks until they are first asked for: to put them together takes as long as a copy."""
 
     def __init__(
-        self,
-        problem: Problem,
-        values: Floats,
-        kind: Codes,
-        mode: Codes,
-        transitions: Transitions,
-        counters: Counters,
-        end: Start,
+        self, problem: Problem, chunks: list[Chunk], transitions: Transitions, counters: Counters, end: Start,
         failure: str | None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.problem = problem
         self.transitions = transitions
         self.counters = counters
         self.end = end
         self.failure = failure
-        self._values = values
-        self._mode = mode
-        self._kind = kind
-        self._times = np.ascontiguousarray(values[:, 0])
-        self._steps = np.flatnonzero(kind != INSIDE)
+        values, kind, mode = zip(*chunks, strict=True)
+        self._parts: dict[str, Sequence[Any]] = {"values": values, "kind": kind, "mode": mode}
+
+    @cached_property
+    def _values(self) -> Floats:
+        return np.concatenate(self._parts.pop("values"))
+
+    @cached_property
+    def _kind(self) -> Codes:
+        return np.concatenate(self._parts.pop("kind"))
+
+    @cached_property
+    def _mode(self) -> Codes2:
+        return np.concatenate(self._parts.pop("mode"))
+
+    @cached_property
+    def _times(self) -> Floats:
+        return np.ascontiguousarray(self._values[:, 0])
+
+    @cached_property
+    def _steps(self) -> Ints:
+        """Rows of accepted steps."""
+        return np.flatnonzero(self._kind != INSIDE)
+
+    def __getstate__(self) -> dict[str, Any]:
+        rows = {name: getattr(self, name) for name in ("_values", "_kind", "_mode", "_times", "_steps")}
+        return {name: value for name, value in {**super().__getstate__(), **rows}.items() if name != "_parts"}
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Ends of the run."""
+        parts = vars(self).get("_parts", {})
+        if not {"values", "kind"} <= parts.keys():
+            return super().ends
+        last = np.flatnonzero(parts["kind"][-1] != INSIDE)
+        if not last.size:
+            return super().ends
+        return float(parts["values"][0][0, 0]), float(parts["values"][-1][last[-1], 0])
 
     @property
     def t(self) -> Floats:

@@ -45,7 +45,7 @@ from fricmb.integrate.taylor._net import Net
 from fricmb.integrate.taylor._prepare import fastest, net_of, no_samples, refusal, with_arrays
 from fricmb.integrate.taylor._settle import settle_start
 from fricmb.integrate.taylor._trajectory import Checkpoints, TaylorRun
-from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
+from fricmb.integrate.trajectory import Counters, Trajectory
 
 FAILURES = {
     CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (timestepping takes them)",
@@ -177,15 +177,15 @@ def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], 
 def _longer(table: Floats, wanted: int) -> Floats:
     if wanted < len(table):
         return table
-    return np.concatenate([table, np.zeros((max(len(table), wanted), table.shape[1]))])
+    longer = np.zeros((len(table) + max(len(table), wanted), table.shape[1]))  # takes memory as it is filled
+    longer[: len(table)] = table
+    return longer
 
 
 def _trajectory(
     problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
 ) -> TaylorRun:
-    events = net.events[: net.i[N_EVENTS]]
-    events = events[events[:, 0] <= net.x[TIME]]  # a run that stops within a step ends where that began
-    transitions = Transitions(t=events[:, 0].copy(), contact=events[:, 1].astype(int), kind=events[:, 2].astype(int))
+    events = net.events[: net.i[N_EVENTS]].copy()
     steps = int(net.i[N_STEPS])
     counters = Counters(
         n_steps=steps, n_rejected=int(net.i[N_SHORTER]), n_rhs=steps * degree, n_jac=int(net.i[N_SEARCHES])
@@ -197,4 +197,4 @@ def _trajectory(
     failure = None if code == DONE else ended() or FAILURES[code].format(limit=int(net.i[LIMIT]))
     taken = int(net.i[N_SAMPLES])
     held = None if t_eval is None else net
-    return TaylorRun(problem, degree, net.steps[:steps].copy(), transitions, counters, end, failure, marks, held, taken)
+    return TaylorRun(problem, degree, net.steps[:steps].copy(), events, counters, end, failure, marks, held, taken)

@@ -48,18 +48,24 @@ class TaylorRun(Trajectory):
     """See the module; values at the times asked for in advance are held, others are run again from a checkpoint."""
 
     def __init__(
-        self, problem: Problem, degree: int, steps: Floats, transitions: Transitions, counters: Counters, end: Start,
+        self, problem: Problem, degree: int, steps: Floats, events: Floats, counters: Counters, end: Start,
         failure: str | None, marks: Checkpoints, held: Net | None, taken: int,
     ) -> None:  # fmt: skip
         self.problem = problem
-        self.transitions = transitions
         self.counters = counters
         self.end = end
         self.failure = failure
         self._degree = degree
         self._steps = steps
+        self._events = events
         self._marks = marks.held
         self._kept = None if held is None else _samples(problem, held, slice(0, taken))
+
+    @cached_property
+    def transitions(self) -> Transitions:  # type: ignore[override]
+        """The transitions; a run that stops within a step ends where that began."""
+        t, contact, kind = self._events[self._events[:, 0] <= self.end.t].T
+        return Transitions(t=t.copy(), contact=contact.astype(int), kind=kind.astype(int))
 
     @cached_property
     def _row_times(self) -> tuple[Floats, Codes]:
@@ -79,6 +85,11 @@ class TaylorRun(Trajectory):
         thin = max(1, -(-len(starts) * width // ROWS))
         chosen = np.append(starts[:-1:thin], starts[-1])
         return chosen, np.zeros(len(chosen), np.int8)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Ends of the run."""
+        return float(self._steps[0, 0]) if len(self._steps) else self.end.t, self.end.t
 
     @property
     def t(self) -> Floats:

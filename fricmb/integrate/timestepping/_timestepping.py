@@ -41,7 +41,7 @@ from fricmb.integrate.timestepping._layout import (
 from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
-from fricmb.integrate.trajectory import Counters, Samples, Transitions
+from fricmb.integrate.trajectory import Counters, Transitions
 
 FAILURES = {
     NOT_FINITE: "the state grew beyond what numbers hold",
@@ -186,14 +186,9 @@ def _emptied(run: Run) -> dict[str, Any]:
 
 
 def _trajectory(problem: Problem, run: Run, chunks: list[dict[str, Any]], failure: str | None) -> SteppedRun:
-    whole = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in (*_ROWS, "event")}
-    event = whole["event"][np.argsort(whole["event"][:, 0], kind="stable")]
+    event = np.concatenate([chunk.pop("event") for chunk in chunks])
+    event = event[np.argsort(event[:, 0], kind="stable")]
     transitions = Transitions(t=event[:, 0].copy(), contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
-    rows = Samples(
-        t=whole["row_t"], q=whole["row_q"].T, v=whole["row_v"].T, z=np.empty((0, len(whole["row_t"]))),
-        F=whole["row_F"].T, g=whole["row_g"].T, N=whole["row_N"].T, mode=whole["row_mode"].T,
-        friction_loss=whole["row_loss"].T, damping_loss=whole["row_x"][:, 0].copy(), input=whole["row_x"][:, 1].copy(),
-    )  # fmt: skip
     i = run.i
     notes: tuple[str, ...] = ()
     if i[N_UNSETTLED]:
@@ -211,4 +206,4 @@ def _trajectory(problem: Problem, run: Run, chunks: list[dict[str, Any]], failur
         t=float(run.x[TIME]), q=run.q[HERE].copy(), v=run.v[HERE].copy(), z=np.zeros(0), mode=run.mode[HERE].copy(),
         direction=direction, **{name: getattr(run, name)[HERE].copy() for name in _HELD},
     )  # fmt: skip
-    return SteppedRun(problem, rows, transitions, counters, end, failure)
+    return SteppedRun(problem, chunks, transitions, counters, end, failure)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import SLIP, Codes, Floats, Start
-from fricmb.integrate.trajectory import SampledTrajectory, Samples
+from fricmb.integrate.problem import SLIP, Codes, Floats, Problem, Start
+from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +27,49 @@ class SteppedStart(Start):
     known: Codes
 
 
-class SteppedRun(SampledTrajectory):
-    """Rows are the ends of steps."""
+class SteppedRun(Trajectory):
+    """Rows are the ends of steps; in ``chunks``, by their names in Run, until they are first asked for."""
+
+    def __init__(
+        self, problem: Problem, chunks: list[dict[str, Any]], transitions: Transitions, counters: Counters,
+        end: Start, failure: str | None,
+    ) -> None:  # fmt: skip
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+        self._chunks = chunks
+
+    @cached_property
+    def _samples(self) -> Samples:
+        chunks, self._chunks = self._chunks, []
+        row = {name: np.concatenate([chunk.pop(name) for chunk in chunks]) for name in list(chunks[0])}
+        return Samples(
+            t=row["row_t"], q=row["row_q"].T, v=row["row_v"].T, z=np.empty((0, len(row["row_t"]))), F=row["row_F"].T,
+            g=row["row_g"].T, N=row["row_N"].T, mode=row["row_mode"].T, friction_loss=row["row_loss"].T,
+            damping_loss=row["row_x"][:, 0].copy(), input=row["row_x"][:, 1].copy(),
+        )  # fmt: skip
+
+    def __getstate__(self) -> dict[str, Any]:
+        samples = self._samples
+        state = {name: value for name, value in super().__getstate__().items() if name != "_chunks"}
+        return {**state, "_samples": samples}
+
+    @property
+    def t(self) -> Floats:
+        """Times of the ends of steps."""
+        return self._samples.t
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Ends of the run."""
+        chunks = vars(self).get("_chunks")
+        return (float(chunks[0]["row_t"][0]), float(chunks[-1]["row_t"][-1])) if chunks else super().ends
+
+    def rows(self) -> Samples:
+        """Values at the ends of steps."""
+        return self._samples
 
     def sample(self, t: Floats) -> Samples:
         """Values at any times within the run."""
