@@ -110,6 +110,10 @@ class JoinedRun(Trajectory):
         """Values at times within the run, in any order; the right-hand value at a transition."""
         return self._assemble(t, [run.sample(t) for _, run in self.runs])
 
+    def motion(self, t: Floats) -> Samples:
+        """As :meth:`sample`, without energies."""
+        return self._assemble(t, [run.motion(t) for _, run in self.runs])
+
     def _assemble(self, t: Floats, parts: Sequence[Samples]) -> Samples:
         n, n_c, m, _ = self._shape
         n_t = t.size

@@ -98,6 +98,10 @@ class Trajectory(ABC):
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order; the right-hand value at a transition."""
 
+    def motion(self, t: Floats) -> Samples:
+        """As :meth:`sample`; energies may be left 0 where they cost as much as the motion."""
+        return self.sample(t)
+
     def attach(self, problem: Problem) -> None:
         """Take the problem again after unpickling.
 

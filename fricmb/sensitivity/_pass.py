@@ -51,12 +51,12 @@ class Tangent:
         e = self.equations
         self.states = state_names(sol.names) if STATE in names else ()
         self.columns = (*self.states, *self.parameters)
-        sample = piece.trajectory.sample
+        sample = piece.trajectory.motion
         breakpoints = e.breakpoints
         self.phases = phases_of(piece, np.asarray(sol.events.t), sol.names.row, breakpoints.t)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
-        self.mesh = mesh_of(self.stepper, _scale(piece.rows()), self.rtol)
+        self.mesh = mesh_of(self.stepper, _scale(sample(self.phases.t)), self.rtol)
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving())
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
@@ -155,10 +155,10 @@ def state_names(names: Any) -> tuple[str, ...]:
     return (*found, *laws)
 
 
-def _scale(rows: Any) -> Floats:
+def _scale(samples: Any) -> Floats:
     """Sizes of states (n_y,): what rests has that of the largest."""
     found = []
-    for values in (rows.q, rows.v, rows.z):
+    for values in (samples.q, samples.v, samples.z):
         size = np.abs(values).max(axis=1, initial=0.0)
         found.append(np.where(size > 0.0, size, size.max(initial=0.0) or 1.0))
     return np.concatenate(found)

@@ -44,12 +44,12 @@ def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats) -> Pha
     trajectory = piece.trajectory
     if isinstance(trajectory, KeptTrajectory):
         raise SceneError("sensitivities: a run without dense output has none; simulate with dense=True")
-    t = np.unique(np.concatenate([piece.rows().t, events]))
+    t = np.unique(np.concatenate([trajectory.t, events]))
     t = t[(t >= piece.t_start) & (t <= piece.t_end)]
     far = [b for b in breakpoints if np.abs(t - b).min() > SAME * max(1.0, abs(b))]
     t = np.union1d(t, far)
     middle = 0.5 * (t[:-1] + t[1:])
-    seen = trajectory.sample(middle)
+    seen = trajectory.motion(middle)
     sign = np.where(seen.g < 0.0, -1.0, 1.0)
     wide = np.repeat(np.diff(row) > 1, np.diff(row))
     sign[wide] = np.nan

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -41,6 +42,9 @@ def powers(problem: Problem, start: Floats, rate: Floats, t: Floats, q: Floats, 
 POINTS = ((0.05, 3), (0.2, 4), (0.5, 5), (2.0, 8), (4.0, 11), (8.0, 16), (16.0, 22))
 
 
+_gauss = cache(np.polynomial.legendre.leggauss)
+
+
 def integrals(
     states: States, power: Callable[..., Floats], row: Ints, begin: Floats, end: Floats, fastest: float
 ) -> Floats:
@@ -54,7 +58,7 @@ def integrals(
         shorter = longest
         if not len(chosen):
             continue
-        x, w = np.polynomial.legendre.leggauss(points)
+        x, w = _gauss(points)
         pieces = np.maximum(1, np.ceil(length[chosen] * fastest / longest)).astype(np.int64)
         which = np.repeat(np.arange(len(chosen)), pieces)
         number = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)

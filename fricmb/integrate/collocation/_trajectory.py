@@ -88,12 +88,19 @@ class SingleRun(Trajectory):
 
     def sample(self, t: Floats) -> Samples:
         """Values at any times within the run."""
+        return self._sampled(t, energies=True)
+
+    def motion(self, t: Floats) -> Samples:
+        """Values at any times within the run, energies being 0."""
+        return self._sampled(t, energies=False)
+
+    def _sampled(self, t: Floats, *, energies: bool) -> Samples:
         t = np.ascontiguousarray(t, dtype=float)
         if self._n_rows == 0:
             return self._at_rest(t)
         row, tau = np.empty(len(t), dtype=np.int64), np.empty(len(t))
         locate(self._run(), self._n_rows, t, row, tau)
-        return self._samples(row, tau, t)
+        return self._samples(row, tau, t, energies=energies)
 
     def _at_rest(self, t: Floats | None = None) -> Samples:
         """The state of a run of no length."""
@@ -148,9 +155,9 @@ class SingleRun(Trajectory):
         self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), found[:, :k]]), axis=1)
         return self._totals[:, row] + found[:, k:]
 
-    def _samples(self, row: Ints, tau: Floats, t: Floats) -> Samples:
+    def _samples(self, row: Ints, tau: Floats, t: Floats, *, energies: bool = True) -> Samples:
         q, v, F, g, mode, loss = self._states(row, tau, t)
-        damping, supply = self._energies(row, tau)
+        damping, supply = self._energies(row, tau) if energies else np.zeros((2, len(t)))
         return Samples(
             t=t, q=q, v=v, z=np.empty((0, len(t))), F=F, g=g, N=np.full((1, len(t)), self.problem.contacts.N[0]),
             mode=mode.astype(np.int8)[None], friction_loss=loss[None], damping_loss=damping, input=supply,
