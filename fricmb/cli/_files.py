@@ -90,10 +90,20 @@ def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
         pictures["force"] = partial(plots.force, sol.contact_names[0])
     for name, draw in pictures.items():
         figure = draw()
-        options: dict[str, Any] = {"pil_kwargs": {"compress_level": 2}} if kind == "png" else {}
-        figure.savefig(folder / f"{name}.{kind}", dpi=130, **options)
+        _save(figure, folder / f"{name}.{kind}")
         plt.close(figure)
     return [f"{name}.{kind}" for name in pictures]
+
+
+def _save(figure: Figure, path: Path) -> None:
+    """Write a figure, drawn once: savefig draws one that has still to be laid out twice."""
+    figure.set_dpi(130)
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
+        figure.set_layout_engine("none")
+    options: dict[str, Any] = {"pil_kwargs": {"compress_level": 2}} if path.suffix == ".png" else {}
+    figure.savefig(path, dpi=130, **options)
 
 
 def _liveliest(sol: fm.Solution) -> str:

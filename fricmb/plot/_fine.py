@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.analysis import AnalysisError
-
 if TYPE_CHECKING:
     from fricmb.solution import Solution
 
@@ -39,6 +37,8 @@ def span_of(sol: Solution, t_start: float | None, t_end: float | None) -> tuple[
     end = sol.t_end if t_end is None else float(t_end)
     margin = 1e-9 * max(abs(sol.t_start), abs(sol.t_end))
     if not sol.t_start - margin <= begin < end <= sol.t_end + margin:
+        from fricmb.analysis import AnalysisError  # all of it is slow to load, and few pictures need it
+
         raise AnalysisError(
             f"t_start, t_end: got {begin:g}, {end:g}; they must rise and lie in {sol.t_start:g} to {sol.t_end:g}"
         )
