@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from fricmb.bench._case import SceneCase
 from fricmb.bench._method import Method
 from fricmb.bench._metrics import Metrics, measure
 from fricmb.bench._run import Setting
+from fricmb.bench._timed import timed
 from fricmb.errors import FricmbError
 
 
@@ -101,9 +101,8 @@ def _timed(case: SceneCase, method: Method, setting: Setting, patience: float) -
     times: list[float] = []
     memory = None
     while not times or (sum(times) < patience and len(times) < TRIES):
-        begin = time.process_time()
-        run = method.run(case, setting, detail=False)
-        times.append(time.process_time() - begin if run.seconds is None else run.seconds)
+        run, seconds = timed(lambda: method.run(case, setting, detail=False))
+        times.append(seconds if run.seconds is None else run.seconds)
         highest = _resident(reset=False)
         if before is not None and highest is not None and len(times) == 1:
             memory = max(0.0, highest - before)

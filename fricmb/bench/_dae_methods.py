@@ -5,7 +5,6 @@ An equation that describes a mechanism is also run as one, from its bodies and j
 
 from __future__ import annotations
 
-import time
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -14,12 +13,14 @@ from typing import Any
 import numpy as np
 
 import fricmb as fm
+from fricmb._simulate._watch import CompileWatch
 from fricmb.bench._cell import Outcome, one_line
 from fricmb.bench._daes import DaeCase
 from fricmb.bench._metrics import Metrics
 from fricmb.bench._peers import PeerError
 from fricmb.bench._reference import Floats
 from fricmb.bench._run import Setting
+from fricmb.bench._timed import timed
 from fricmb.errors import FricmbError
 
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
@@ -154,16 +155,15 @@ def measure_dae(case: DaeCase, method: DaeMethod, setting: Setting) -> Outcome:
     rtol = 1e-6 if setting.rtol is None else setting.rtol
     times: list[float] = []
     try:
-        while len(times) < 2 or (sum(times[1:]) < 0.5 and len(times) < 6):
-            begin = time.process_time()
+        with CompileWatch() as watch:
             y, counters = method.solve(case, rtol)
-            times.append(time.process_time() - begin)
+        while not times or (sum(times) < 0.5 and len(times) < 5):
+            times.append(timed(lambda: method.solve(case, rtol))[1])
     except (FricmbError, ArithmeticError, ValueError, RuntimeError, TypeError) as error:
         return Outcome(**known, failure=one_line(error))
     known_part = slice(None, case.compared)
     worst = float((np.abs(y[known_part] - case.end) / case.size[known_part]).max())
     state = worst if np.isfinite(worst) else float("inf")
-    best = min(times)
     return Outcome(
-        **known, metrics=Metrics(state=state, grown=state), seconds=best, first=times[0] - best, counters=counters
+        **known, metrics=Metrics(state=state, grown=state), seconds=min(times), first=watch.seconds, counters=counters
     )

@@ -16,6 +16,7 @@ from fricmb.bench._cell import one_line
 from fricmb.bench._fit import exponent
 from fricmb.bench._reference import shipped
 from fricmb.bench._smooth import smooth
+from fricmb.bench._timed import timed
 from fricmb.errors import FricmbError
 
 RTOL = 1e-4
@@ -127,9 +128,7 @@ def measure_size(name: str, method: str, n: int) -> dict[str, Any]:
 def _own(case: SizeCase, scene: fm.Scene, method: str, n: int) -> dict[str, Any]:
     times = np.linspace(0.0, case.t_end, 41)
     fm.simulate(scene, t_end=case.t_end * 1e-4, rtol=RTOL, method=method)  # loads, plans
-    begin = time.process_time()
-    sol = fm.simulate(scene, t_end=case.t_end, rtol=RTOL, method=method, t_eval=times)
-    seconds = time.process_time() - begin
+    sol, seconds = timed(lambda: fm.simulate(scene, t_end=case.t_end, rtol=RTOL, method=method, t_eval=times))
     if case.per_step:
         seconds /= sol.stats.n_steps + sol.stats.n_rejected
     return {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -35,6 +36,7 @@ def bench(options: argparse.Namespace) -> int:
     for name in options.scene:
         if name not in known:
             raise unknown_name("--scene", name, known)
+    begin = time.perf_counter()
     chosen = Options(quick=options.quick, scenes=tuple(options.scene), limit=options.limit)
     store = Store(options.out / "cells.jsonl", fingerprint(chosen))
     if options.again:
@@ -50,6 +52,7 @@ def bench(options: argparse.Namespace) -> int:
         print(json.dumps(result))
     else:
         _summary(result, options.out)
+        print(f"took {time.perf_counter() - begin:.0f} s")
     return 0
 
 

@@ -320,3 +320,24 @@ def test_a_case_can_be_declared_outside():
     outcome = measure_cell(case, Own("radau"), Setting(rtol=1e-8))
     assert outcome.failure == ""
     assert outcome.metrics.state < 1e-7
+
+
+def test_a_run_that_compiles_is_not_the_one_that_counts():
+    from numba import njit
+
+    from fricmb.bench._timed import timed
+
+    runs = []
+
+    @njit
+    def inner(x):
+        return x + 1
+
+    def run():
+        runs.append(inner(len(runs)))
+        return len(runs)
+
+    result, seconds = timed(run)
+    assert result == 2
+    assert seconds < 0.02
+    assert timed(run)[0] == 3
