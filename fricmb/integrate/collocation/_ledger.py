@@ -38,9 +38,9 @@ def powers(problem: Problem, start: Floats, rate: Floats, t: Floats, q: Floats, 
 
 
 #: Points of Gauss's formula by the length x of a piece (times the fastest rate).  Powers have twice the rate of the
-#: motion: the error with n points is some (x/2)^(2n) / (2n)!, round-off of the whole.
-POINTS = ((0.05, 3), (0.2, 4), (0.5, 5), (2.0, 8), (4.0, 11), (8.0, 16), (16.0, 22))
-
+#: motion: the error with n points is some (x/2)^(2n) / (2n)!, round-off of the whole.  The longest steps have x = 8 and
+#: a little more, so that the limit is there.
+POINTS = ((0.05, 3), (0.2, 4), (0.5, 5), (1.0, 6), (2.0, 8), (3.0, 10), (4.0, 11), (6.0, 14), (8.4, 16), (16.0, 22))
 
 _gauss = cache(np.polynomial.legendre.leggauss)
 
