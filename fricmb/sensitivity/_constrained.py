@@ -164,8 +164,8 @@ class Constrained(Equations):
         a = u[:, :n]
         X = np.zeros((count, u.shape[1], columns))
         X[:, :n] = self._slopes[:, :columns].transpose(2, 0, 1)
-        for i, j, slope in self.seeded_masses:
-            X[:, i, j] -= slope * a[:, i]
+        for i, k, j, slope in self.seeded_masses:
+            X[:, i, j] -= slope * a[:, k]
         r = n
         for held in found.held:
             _subtract(X[:, r], held.drift, held.row, a)

@@ -177,8 +177,8 @@ class Equations:
         if stuck:
             drift, drift_slopes = drift[at].T, drift_slopes[at].transpose(1, 0, 2)
             a -= B @ drift
-        for i, j, slope in self.seeded_masses:
-            G[i, :, j] -= slope * a[i]
+        for i, k, j, slope in self.seeded_masses:
+            G[i, :, j] -= slope * a[k]
         slopes = np.tensordot(free, G, 1)
         if stuck:
             slopes -= np.tensordot(B, drift_slopes, 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NoReturn, Protocol
 
 import numpy as np
@@ -15,7 +16,7 @@ from fricmb.sensitivity._found import Found
 from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._motions import Given, Moment
 from fricmb.sensitivity._seeds import Seeds
-from fricmb.values import value_of
+from fricmb.values import parameters_in, value_of
 
 #: Part by which a number is changed to find the slope of what is linear in it; a power of 2.
 _LITTLE = 2.0**-7
@@ -83,31 +84,67 @@ class Pushes:
 
 
 class Vibrates:
-    """Stiffness and damping of a modal body, or of matrices, on rows of q and v."""
+    """Stiffness and damping (2, k, k) of a modal body, or of matrices, on rows of q and v; ``slopes`` by column."""
 
-    seeded = False
-
-    def __init__(self, rows: list[int], K: Any, C: Any) -> None:
-        self.rows, self.matrices = np.array(rows, dtype=np.int64), (_dense(K), _dense(C))
+    def __init__(self, rows: list[int], matrices: Floats, slopes: dict[int, Floats]) -> None:
+        self.rows, self.matrices, self.slopes = np.array(rows, dtype=np.int64), matrices, slopes
+        self.seeded = bool(slopes)
 
     def add(self, moment: Moment, found: Found) -> None:
         """Their forces."""
-        for matrix, values, first in ((self.matrices[0], moment.q, 0), (self.matrices[1], moment.v, moment.frame.n)):
-            if matrix is not None:
-                found.force[self.rows] -= matrix @ values[self.rows]
-                for a, b in zip(*np.nonzero(matrix), strict=True):
-                    found.add_slope(int(self.rows[a]), first + int(self.rows[b]), -matrix[a, b])
+        y = np.stack([moment.q[self.rows], moment.v[self.rows]])
+        found.force[self.rows] -= (self.matrices @ y).sum(axis=0)
+        for part, a, b in zip(*np.nonzero(self.matrices), strict=True):
+            column = int(part) * moment.frame.n + int(self.rows[b])
+            found.add_slope(int(self.rows[a]), column, -self.matrices[part, a, b])
+        for j, matrices in self.slopes.items():
+            for row, force in zip(self.rows.tolist(), (matrices @ y).sum(axis=0), strict=True):
+                found.add_slope(row, j, -force)
 
     def is_linear(self, moment: Moment) -> bool:
         """It is."""
         return True
 
 
-def _dense(matrix: Any) -> Floats | None:
+def _dense(matrix: Any, size: int) -> Floats:
+    """A matrix, or a diagonal, or nothing, as an array (size, size)."""
     if matrix is None:
-        return None
-    found: Floats = np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix, dtype=float)
+        return np.zeros((size, size))
+    found: Floats = np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else value_of(matrix), dtype=float)
     return np.diag(found) if found.ndim == 1 else found
+
+
+def _vibrating(part: Any) -> Floats:
+    """Stiffness and damping (2, k, k) of a part."""
+    size = len(part.dof_names if isinstance(part, ModalBody) else part.dofs)
+    K, C = modal_matrices(part)[1:] if isinstance(part, ModalBody) else (part.K, part.C)
+    return np.stack([_dense(K, size), _dense(C, size)])
+
+
+def _inertia(part: Any) -> Floats:
+    """Masses (k, k) of a part that is given by modes, matrices, or in space."""
+    if isinstance(part, SpaceBody):
+        return np.diag(np.asarray(part.masses(), dtype=float))
+    return np.diag(modal_matrices(part)[0]) if isinstance(part, ModalBody) else _dense(part.M, len(part.dofs))
+
+
+def _slopes(scene: Any, part: Any, seeds: Seeds, values: Callable[[Any], Floats]) -> dict[int, Floats]:
+    """Slopes of numbers of a part by the columns of parameters that its entries hold.
+
+    By Richardson's differences, to 1e-10: exact for entries that are linear in a parameter, as most are.
+    """
+    found = {}
+    for name in dict.fromkeys(seeds.touch(part)):
+        p = float(value_of(scene.parameters[name]))
+        size = abs(p) or 1.0
+        rates = []
+        for h in (_LITTLE * size, 0.5 * _LITTLE * size):
+            high, low = (values(scene.with_parameters({name: p + side * h})[part.name]) for side in (1.0, -1.0))
+            rates.append((high - low) / (2.0 * h))
+        slope = (4.0 * rates[1] - rates[0]) / 3.0
+        if slope.any():
+            found[seeds.columns[name]] = slope
+    return found
 
 
 class Falls:
@@ -135,8 +172,8 @@ class Falls:
 
 def masses(
     scene: Any, parts: set[str], index: dict[str, int], seeds: Seeds
-) -> tuple[Floats, list[tuple[int, int, float]], Floats]:
-    """The mass matrix (n, n), (row, column, slope) of masses that depend on a parameter, and what changes count by.
+) -> tuple[Floats, list[tuple[int, int, int, float]], Floats]:
+    """The mass matrix (n, n), its slopes as (row, column, column of a parameter, slope), and what changes count by.
 
     That is the mass matrix too, but above 0 where a coordinate of a body in space has no mass.
     """
@@ -148,36 +185,22 @@ def masses(
                 if name in index:
                     i = index[name]
                     M[i, i] += mass.value
-                    seeded += [(i, j, slope) for j, slope in mass.slopes.items()]
-        elif isinstance(part, ModalBody | SpaceBody):
-            values = part.masses() if isinstance(part, SpaceBody) else modal_matrices(part)[0].tolist()
-            for name, value in zip(part.dof_names, values, strict=True):
-                if name in index:
-                    M[index[name], index[name]] += value
-            seeded += _seeded_masses(scene, part, index, seeds) if isinstance(part, SpaceBody) else []
-            least = part.least_masses() if isinstance(part, SpaceBody) else values
-            weights[[index[name] for name in part.dof_names if name in index]] = [
-                value for name, value in zip(part.dof_names, least, strict=True) if name in index
-            ]
-        elif isinstance(part, MatrixElement) and part.M is not None and part.name in parts:
-            at = np.array([index[name] for name in part.dofs])
-            M[np.ix_(at, at)] += _dense(value_of(part.M))
+                    seeded += [(i, i, j, slope) for j, slope in mass.slopes.items()]
+            continue
+        if isinstance(part, MatrixElement) and (part.M is None or part.name not in parts):
+            continue
+        if isinstance(part, ModalBody | SpaceBody | MatrixElement):
+            names = part.dofs if isinstance(part, MatrixElement) else part.dof_names
+            own = [k for k, name in enumerate(names) if name in index]
+            at = np.array([index[names[k]] for k in own], dtype=np.int64)
+            M[np.ix_(at, at)] += _inertia(part)[np.ix_(own, own)]
+            for column, slopes in _slopes(scene, part, seeds, _inertia).items():
+                held = slopes[np.ix_(own, own)]
+                seeded += [(int(at[a]), int(at[b]), column, held[a, b]) for a, b in zip(*np.nonzero(held), strict=True)]
+            if isinstance(part, SpaceBody):
+                weights[at] = np.asarray(part.least_masses(), dtype=float)[own]
     lacking = np.maximum(weights - np.diag(M), 0.0)
     return M, seeded, M + np.diag(lacking)
-
-
-def _seeded_masses(
-    scene: Any, body: SpaceBody, index: dict[str, int], seeds: Seeds
-) -> list[tuple[int, int, float]]:
-    """Slopes of the masses of a body in space, which are linear in its mass and inertias."""
-    found = []
-    for name in dict.fromkeys(seeds.touch(body)):
-        value = float(value_of(scene.parameters[name]))
-        other = scene.with_parameters({name: value * (1.0 + _LITTLE)})[body.name]
-        for dof, m, n in zip(body.dof_names, body.masses(), other.masses(), strict=True):
-            if dof in index and m != n:
-                found.append((index[dof], seeds.columns[name], (n - m) / (_LITTLE * value)))
-    return found
 
 
 def _masses(part: Body | RigidBody, seeds: Seeds) -> list[tuple[str, Dual]]:
@@ -195,23 +218,23 @@ def acting(scene: Any, part: Any, index: dict[str, int], seeds: Seeds) -> Acting
         return Pushes(part, seeds)
     if isinstance(part, Gravity):
         return Falls(scene, part, index, seeds)
-    if isinstance(part, ModalBody):
-        _refuse_matrices(part, seeds)
-        built = [i for i, name in enumerate(part.dof_names) if name in index]
-        _, stiffness, damping = modal_matrices(part)
-        rows = [index[part.dof_names[i]] for i in built]
-        return Vibrates(rows, stiffness[built], damping[np.ix_(built, built)] if damping.ndim == 2 else damping[built])
-    if isinstance(part, MatrixElement):
-        _refuse_matrices(part, seeds)
-        K, C = (None if m is None else value_of(m) for m in (part.K, part.C))
-        return None if K is None and C is None else Vibrates([index[name] for name in part.dofs], K, C)
+    if isinstance(part, ModalBody | MatrixElement):
+        names = part.dof_names if isinstance(part, ModalBody) else part.dofs
+        _refuse_shapes(part, seeds)
+        own = [k for k, name in enumerate(names) if name in index]
+        places = np.ix_(range(2), own, own)
+        matrices = _vibrating(part)[places]
+        slopes = {j: slope[places] for j, slope in _slopes(scene, part, seeds, _vibrating).items()}
+        return Vibrates([index[names[k]] for k in own], matrices, slopes) if matrices.any() or slopes else None
     return Acts(part, seeds) if hasattr(part, "local_coordinates") else None
 
 
-def _refuse_matrices(part: Any, seeds: Seeds) -> None:
-    held = [name for name in seeds.touch(part) if ".position." not in name and ".velocity." not in name]
-    if held:
-        refuse(part, f"the parameter {held[0]!r} of a part that is given by modes or matrices")
+def _refuse_shapes(part: Any, seeds: Seeds) -> None:
+    """Shapes of modes say where forces act, which is not differentiated."""
+    for path, value in part.slots().items():
+        held = [p.name for p in parameters_in(value) if p.name in seeds.columns]
+        if held and path.startswith("shapes"):
+            refuse(part, f"the parameter {held[0]!r} of shapes of modes")
 
 
 def refuse(part: Any, what: str) -> NoReturn:

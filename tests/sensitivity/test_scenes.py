@@ -67,6 +67,40 @@ def test_loads_that_vary(method):
     assert max(found.values()) < 1e3, found
 
 
+def test_entries_of_matrices():
+    """Masses beside the diagonal, stiffness and damping of a matrix, named by parameters."""
+    m, k, c = fm.parameter("m", 0.2), fm.parameter("k", 1.5), fm.parameter("c", 0.05)
+    belt = fm.Driven("belt", velocity={"x": 0.3})
+    bodies = [fm.Body("one", mass=1.0, velocity={"x": 0.3}), fm.Body("two", mass=1.5, position={"x": 0.4})]
+    parts = [fm.Spring(f"s_{body.name}", body, axis="x", stiffness=0.7) for body in bodies]
+    between = fm.MatrixElement(
+        "between", dofs=("one.x", "two.x"),
+        M=[[m, -0.5 * m], [-0.5 * m, m]], K=[[k, -k], [-k, k]], C=[[c, -c], [-c, c]],
+    )  # fmt: skip
+    rub = fm.Contact("rub", bodies[0], belt, law=fm.laws.Coulomb(mu_s=0.9, mu_k=0.6), normal_force=1.0)
+    found = worst(fm.Scene("matrices", [belt, *bodies, *parts, between, rub]), ("m", "k", "c"), rtol=1e-8, t_end=12.0)
+    assert set(found) == {"m", "k", "c"}
+    assert max(found.values()) < 1e3, found
+
+
+def test_frequencies_of_modes():
+    f, z = fm.parameter("f", 2.0), fm.parameter("z", 0.02)
+    belt = fm.Driven("belt", velocity={"x": 0.4})
+    plate = fm.ModalBody(
+        "plate", frequencies=[f, 2.5 * f], damping_ratios=[z, z], shapes={"tip": [[1.0, 0.6]]},
+        position={"mode1": 0.1}, velocity={"mode1": 0.2},
+    )  # fmt: skip
+    rub = fm.Contact("rub", plate.point("tip"), belt, law=fm.laws.Coulomb(mu_s=0.9, mu_k=0.6), normal_force=1.0)
+    found = worst(fm.Scene("plate", [belt, plate, rub]), ("f", "z"), rtol=1e-8, t_end=8.0)
+    assert set(found) == {"f", "z"}
+    assert max(found.values()) < 1e3, found
+
+
 def test_what_is_not_covered_says_so():
     with pytest.raises(fm.SceneError, match=r"'top\.spin' of a body in space is not covered"):
         fm.simulate(fm.models.heavy_top(), t_end=0.1, sensitivities=("top.spin",))
+    shape = fm.parameter("shape", 0.6)
+    plate = fm.ModalBody("plate", frequencies=[1.0, 2.0], damping_ratios=[0.0, 0.0], shapes={"tip": [[1.0, shape]]})
+    push = fm.Force("push", plate.point("tip"), axis="x", value=1.0)
+    with pytest.raises(fm.SceneError, match="'shape' of shapes of modes is not covered"):
+        fm.simulate(fm.Scene("plate", [plate, push]), t_end=0.1, sensitivities=("shape",))
