@@ -12,7 +12,7 @@ author = "The fricmb developers"
 copyright = "2026, The fricmb developers"
 release = version = installed_version("fricmb")
 
-sys.path.insert(0, os.path.dirname(__file__))  # what the pages are made with: _api, _examples, _pages, _pictures
+sys.path.insert(0, os.path.dirname(__file__))  # _api, _examples, _layers, _pages, _pictures
 
 import _api  # noqa: E402
 
@@ -115,9 +115,11 @@ def reference_pages(app):
     import json
     from pathlib import Path
 
+    import _layers
     import _pages
     import _pictures
 
+    _layers.draw(Path(app.srcdir) / "explanation" / "_layers.svg")
     here = Path(app.srcdir) / "reference"
     found = {
         name: json.loads((here.parent / "benchmark" / f"{name}.json").read_text(encoding="utf-8"))

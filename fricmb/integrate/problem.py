@@ -146,7 +146,7 @@ class Contacts:
     Attributes
     ----------
     row : (n_c+1,) int64
-        Contact k owns the rows ``row[k]:row[k+1]`` (1 or 2) of ``W``, ``w``, ``Wu``.
+        Contact k owns the rows ``row[k]:row[k+1]`` (1 to 3) of ``W``, ``w``, ``Wu``.
     W : (n, m); w : (m,); Wu : (m, n_u)
         ``g = W.T v - w - Wu u'``; the force F on the rows acts as ``W F`` on the dofs.
     law : (n_c,) int8
@@ -162,7 +162,7 @@ class Contacts:
     z_start : (n_c+1,) int64
         Contact k owns the internal states ``z_start[k]:z_start[k+1]``.
     normal : (n_c,) int8
-        NORMAL_CONSTANT, NORMAL_EXPRESSION or NORMAL_LAW.
+        NORMAL_CONSTANT, NORMAL_EXPRESSION, NORMAL_LAW or NORMAL_REACTION.
     N : (n_c,)
         The constant normal force; for the other kinds unused.
     normal_table : Templates
@@ -240,7 +240,7 @@ class Problem:
 
     ``omega``, ``zeta``: angular frequencies and damping ratios of the linear structure without friction.
     ``contact_names``, ``dof_names`` serve messages alone.  ``mechanism``: bodies that turn and joints; then ``linear``
-    is empty, and everything else sees extended coordinates (see ``_mechanism``).
+    is empty, and everything else sees extended coordinates (see :mod:`~fricmb.integrate.mechanism`).
     """
 
     linear: Linear

@@ -28,7 +28,7 @@ class History(NamedTuple):
     and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;
     ``adams`` (7,) weights of an integral over the last step by backward differences (Adams-Moulton).  ``unit`` (1,)
     allowed local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
-    ``growth`` table of :mod:`_orders`, ``omega`` and ``decay`` spectrum of the scene.
+    ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` spectrum of the scene.
     ``over`` (n_c+1,) how fast stuck forces came nearer to their limits in the last step, and its length; ``U``, ``E``,
     ``column`` room for rescaling.
     """

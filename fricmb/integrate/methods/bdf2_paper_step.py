@@ -1,6 +1,6 @@
 """Steps of the published scheme: BDF2 inside a mode, backward Euler where it changes, stick tried first.
 
-Kinkaid, O'Reilly and Papadopoulos (2005), Eqs. (12) to (14); see :mod:`_bdf2_paper`.
+Kinkaid, O'Reilly and Papadopoulos (2005), Eqs. (12) to (14); see :mod:`~fricmb.integrate.methods.bdf2_paper`.
 """
 
 from __future__ import annotations

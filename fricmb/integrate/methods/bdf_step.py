@@ -4,7 +4,7 @@ With gamma_k = 1 + 1/2 + ... + 1/k the formula reads
 
     y = psi + (h/gamma_k) y',   psi = guess - sum_j gamma_j D_j / gamma_k
 
-(Shampine and Reichelt 1997, with kappa = 0): one stage of :mod:`_stages`.
+(Shampine and Reichelt 1997, with kappa = 0): one stage of :mod:`~fricmb.integrate.step.stages`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The nonlinear problem left when an implicit step is condensed to its contacts.
+"""The nonlinear problem left when an implicit step is condensed to its contacts, for given modes.
 
 At every stage i the relative velocities are affine in the port forces of all stages, ``g_i = gb_i + sum_j G_ij dF_j``
 with dF = F - F_old, and so are varying normal forces.  Unknowns per contact: slip (dtheta, r) with g = r n and

@@ -1,5 +1,7 @@
 """The port equations where every contact has constant friction and a constant normal force: fewest unknowns.
 
+Collocation of several contacts takes these instead of :mod:`~fricmb.integrate.step.contact_newton`.
+
 One angle a stage for slip in two dimensions, the force for stick, nothing for slip in one dimension: with
 F = -mu N n and t = J n, solve t . g = 0; r = n . g follows.  Regular at r = 0, and no trigonometry.
 """

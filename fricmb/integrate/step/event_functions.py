@@ -1,4 +1,7 @@
-"""Looking for transitions inside a step that has been solved, and how far from one its end is."""
+"""Looking for transitions inside a step that has been solved, and how far from one its end is.
+
+Whether a contact that sticks has left its friction cone, |F| > mu_s N, is seen here: ``cone_crossing`` and ``margin``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One Radau IIA step of given modes: solve, estimate the error, look for transitions inside."""
+"""One step of a one-step method under given modes: its stages, and its end.  Its error is in ``step_error``."""
 
 from __future__ import annotations
 
