@@ -66,6 +66,14 @@ def test_shares_of_a_load_that_jump_within_a_step_leave_no_cone():
     assert {method: judge(true, method).kind for method in ("bdf", "radau")} == {"bdf": "right", "radau": "right"}
 
 
+@pytest.mark.parametrize(("kind", "seed"), [("stack", 31000), ("modes", 31039), ("modes", 31098)])
+def test_time_steps_that_tell_a_rest_too_many_say_that_it_may_be_none(kind, seed):
+    true = truth(case_of(generate(kind, seed)))
+    verdict = judge(true, "timestepping")
+    assert verdict.kind in ("right", "noted"), verdict
+    assert verdict.ratio < 100.0
+
+
 @pytest.mark.parametrize("seed", [30176, 20012])
 def test_equations_of_a_step_that_are_solved_to_the_last_digit_are_solved(seed):
     """A correction of exactly 0 says that the iteration is over: its rate, 0 / 0, once said that it never is."""

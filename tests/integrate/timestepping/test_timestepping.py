@@ -68,7 +68,7 @@ def test_the_error_follows_the_tolerance(name, rtol):
     make, t_end = CASES[name]
     found, sol = error(make(), reference.load(name), t_end, rtol=rtol, method="timestepping")
     assert found < 10 * rtol
-    assert sol.stats.notes == ()
+    assert [note for note in sol.stats.notes if "changes its mode" not in note] == []
 
 
 @pytest.mark.parametrize(("n", "events"), [(10, 34), (100, 340)])
