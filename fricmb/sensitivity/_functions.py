@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from fricmb.laws._numeric import _lengths
+from fricmb.laws._numeric import squares
 from fricmb.sensitivity._dual import Dual, composed
 from fricmb.stated import MODULES, Statement
 
@@ -87,20 +88,68 @@ class Function:
 def _with_slopes(
     arguments: Sequence[Any], outputs: Sequence[Any], active: Sequence[int]
 ) -> tuple[Callable[..., Any], list[tuple[int, int]]]:
-    """Outputs, then their derivatives that do not vanish, and (output, argument) of these."""
+    """Outputs, then their derivatives that do not vanish, and (output, argument) of these.
+
+    By the chain rule over common subexpressions: SymPy's derivative of the whole grows much faster than the expression.
+    """
     import sympy
 
-    plain = [sympy.sympify(e).rewrite(sympy.Heaviside, sympy.Piecewise) for e in outputs]
-    slopes, places = [], []
-    for i, expression in enumerate(plain):
-        for j in active:
-            # a jump is a transition of its own, not a slope
-            slope = sympy.diff(expression, arguments[j]).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
-            if slope != 0:
-                slopes.append(slope)
-                places.append((i, j))
-    made = sympy.lambdify(list(arguments), [_lengths(e) for e in [*plain, *slopes]], MODULES, cse=True)
+    plain = [_guarded(sympy.sympify(e).rewrite(sympy.Heaviside, sympy.Piecewise)) for e in outputs]
+    parts, reduced = sympy.cse(plain, symbols=sympy.numbered_symbols("part"), order="none")
+    statements: list[tuple[Any, Any]] = []
+    slopes: dict[Any, dict[int, Any]] = {arguments[j]: {j: sympy.S.One} for j in active}
+    for symbol, expression in parts:
+        statements.append((symbol, expression))
+        slopes[symbol] = {}
+        for j, slope in _chained(expression, slopes).items():
+            name = sympy.Symbol(f"{symbol}_{j}", real=True)
+            statements.append((name, slope))
+            slopes[symbol][j] = name
+    places, results = [], list(reduced)
+    for i, expression in enumerate(reduced):
+        for j, slope in sorted(_chained(expression, slopes).items()):
+            places.append((i, j))
+            results.append(slope)
+    made = sympy.lambdify(list(arguments), results, MODULES, cse=lambda given: (statements, given))
     return made, places
+
+
+def _chained(expression: Any, slopes: dict[Any, dict[int, Any]]) -> dict[int, Any]:
+    """Derivatives of a short expression by the arguments, from those of symbols in it; vanishing ones left out."""
+    import sympy
+
+    terms: dict[int, list[Any]] = {}
+    for symbol in sorted(expression.free_symbols & slopes.keys(), key=str):
+        # a jump is a transition of its own, not a slope
+        slope = sympy.diff(expression, symbol).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
+        if slope != 0:
+            for j, inner in slopes[symbol].items():
+                terms.setdefault(j, []).append(slope * inner)
+    return {j: total for j, own in terms.items() if (total := sympy.Add(*own)) != 0}
+
+
+def _guarded(expression: Any) -> Any:
+    """Guarded roots of sums of squares as lengths, which neither overflow nor underflow, with slopes of their own."""
+
+    def replaced(node: Any) -> Any:
+        components = squares(node.base)
+        return node if components is None else _length()(*components) ** (2 * node.exp)
+
+    return expression.replace(lambda node: node.is_Pow and squares(node.base) is not None, replaced)
+
+
+@lru_cache(maxsize=1)
+def _length() -> Any:
+    """The length of a vector as a function of SymPy: its slope is the unit vector."""
+    import sympy
+
+    class vector_length(sympy.Function):  # type: ignore[misc]  # the name that numpy code calls it by
+        is_positive = True
+
+        def fdiff(self, argindex: int = 1) -> Any:
+            return self.args[argindex - 1] / self
+
+    return vector_length
 
 
 def _conditions(
