@@ -130,8 +130,10 @@ class Weak:
         change = self.values(end) - self.values(begin)
         size = np.abs(self.values(begin)) + np.abs(self.values(end))
         if self.statements.joints:  # what returns to constraints has the round-off of all that they tie together
-            places = slice(begin.q.shape[0], 2 * begin.q.shape[0])
+            n = begin.q.shape[0]
+            places = slice(n, 2 * n)
             size[places] = size[places].max(axis=0, initial=0.0)
+            size[:n] = size[:n].max(axis=0, initial=0.0) + (b - a) * self._reaction(begin, end)
         whole, unsure, slack = self._integrals(a, b, rng)
         allowed = 2.0 * self.unit[:, None] + slack + 1e-15 * size + extra + 1e-300
         bad = np.flatnonzero(((np.abs(change - whole) > allowed) & (unsure > 0.1 * allowed)).any(axis=0))
@@ -141,6 +143,12 @@ class Weak:
             whole[:, bad], unsure[:, bad] = self._finer(a[bad], b[bad], allowed[:, bad])
             allowed[:, bad] += unsure[:, bad]
         return change - whole, allowed
+
+    def _reaction(self, *samples: Samples) -> Floats:
+        """Largest reaction (n_stretches,): its round-off is in all equations that joints tie together."""
+        held = (rows for given in samples for rows in self.statements.moment(given).lam.values())
+        found: Floats = np.max([np.abs(rows).max(axis=0, initial=0.0) for rows in held], axis=0)
+        return found
 
     def judged(self, difference: Floats, allowed: Floats, t: Floats, fading: Fading) -> Floats:
         """Residuals over what is allowed; those of states that fade, made at times t, by the force they make."""

@@ -166,3 +166,18 @@ def test_loads_in_time_and_springs_of_belts():
     ])  # fmt: skip
     audit = fm.simulate(scene, t_end=10.0, rtol=1e-7).audit()
     assert audit.ok, audit.table()
+
+
+@pytest.mark.parametrize("axis", [(0, 1, 0), (1, 1, 0), (1, 2, 3)])
+@pytest.mark.parametrize("weight", [0.0, 9.81])
+def test_what_slides_evenly_in_a_guide_is_not_found_wrong(axis, weight):
+    """Nothing turns and nothing changes: the round-off of reactions is all there is in most of the equations."""
+    along = np.array(axis) / np.linalg.norm(axis)
+    body = fm.space.RigidBody(
+        "slide", mass=2.0, inertia=(0.1, 0.2, 0.15), velocity=along, points={"shoe": (0.1, 0.05, -0.2)}
+    )
+    guide = fm.space.Prismatic("guide", body.point("shoe"), fm.space.ground_point(0.1, 0.05, -0.2), axis=axis)
+    across = np.cross(along, (1.0, 0.0, 0.0))
+    push = fm.Gravity("push", acceleration=dict(zip("xyz", weight * across / np.linalg.norm(across), strict=True)))
+    found = fm.simulate(fm.Scene("guide", [body, guide, push]), t_end=1.0, rtol=1e-8).audit()
+    assert found.ok
