@@ -34,8 +34,8 @@ def odd_stages(name: str, problem: Problem, stages: int | None) -> str | None:
 class Integrator(ABC):
     """Base of all integrators.  Subclass, give the facts as class attributes, implement :meth:`integrate`.
 
-    Class attributes
-    ----------------
+    Attributes
+    ----------
     name : str
         As given to ``simulate(method=...)``.
     adaptive : bool

@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.timestepping._doubts import kinks, short_phases
 from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, begin, drive
 from fricmb.integrate.timestepping._layout import (
     BAND,
@@ -126,7 +127,8 @@ class TimeStepping(Integrator):
             if progress is not None:
                 progress(float(run.x[TIME]))
         failure = None if code == DONE else ended() or FAILURES.get(code)
-        return _trajectory(problem, run, chunks, failure)
+        promised = np.inf if self.fixed_step else tolerance.rtol
+        return _trajectory(problem, run, chunks, failure, promised)
 
     def _set_start(self, problem: Problem, run: Run, start: Start, t_end: float, tolerance: Tolerance) -> Run:
         run.q[HERE], run.v[HERE] = start.q, start.v
@@ -185,7 +187,9 @@ def _emptied(run: Run) -> dict[str, Any]:
     return taken
 
 
-def _trajectory(problem: Problem, run: Run, chunks: list[dict[str, Any]], failure: str | None) -> SteppedRun:
+def _trajectory(
+    problem: Problem, run: Run, chunks: list[dict[str, Any]], failure: str | None, rtol: float
+) -> SteppedRun:
     event = np.concatenate([chunk.pop("event") for chunk in chunks])
     event = event[np.argsort(event[:, 0], kind="stable")]
     transitions = Transitions(t=event[:, 0].copy(), contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
@@ -194,6 +198,7 @@ def _trajectory(problem: Problem, run: Run, chunks: list[dict[str, Any]], failur
     if i[N_UNSETTLED]:
         notes = (f"{i[N_UNSETTLED]} of {i[N_STEPS]} steps were taken though their error or lag is above the tolerance",)
     notes += short_phases(problem, np.concatenate([chunk["row_t"] for chunk in chunks]), transitions)
+    notes += kinks(problem, chunks, transitions, rtol)
     counters = Counters(
         n_steps=int(i[N_STEPS]), n_rejected=int(i[N_REJECTED]), n_rhs=int(i[N_ROUNDS]), n_jac=int(i[N_NEWTON]),
         n_lu=int(i[N_FACTOR]), notes=notes,
@@ -208,29 +213,3 @@ def _trajectory(problem: Problem, run: Run, chunks: list[dict[str, Any]], failur
         direction=direction, **{name: getattr(run, name)[HERE].copy() for name in _HELD},
     )  # fmt: skip
     return SteppedRun(problem, chunks, transitions, counters, end, failure)
-
-
-#: Steps below which a rest or a slip may be none: of the scenes from seeds whose transitions were wrong, four in five
-#: had one as short, of the others one in ten.
-SHORT = 3.0
-
-
-def short_phases(problem: Problem, t: Floats, transitions: Transitions) -> tuple[str, ...]:
-    """A note where a contact changes its mode again within so few steps, which end at ``t``, that it may not have."""
-    t = np.unique(t)
-    h = np.diff(t)
-    order = np.lexsort((transitions.t, transitions.contact))
-    at, contact = transitions.t[order], transitions.contact[order]
-    step = np.clip(np.searchsorted(t, at) - 1, 0, max(len(h) - 1, 0))
-    if len(at) < 2 or not len(h):
-        return ()
-    again = contact[1:] == contact[:-1]
-    short = np.flatnonzero(again & (np.diff(at) < SHORT * np.maximum(h[step[1:]], h[step[:-1]])))
-    if not short.size:
-        return ()
-    first = short[np.argmin(at[short])]
-    more = f" (and {len(short) - 1} times more)" if len(short) > 1 else ""
-    return (
-        f"contact {problem.contact_names[contact[first]]!r} changes its mode at t = {at[first]:.6g} and again within"
-        f" {SHORT:g} steps{more}: whether it does hangs on the steps (a smaller rtol or another method tells)",
-    )
