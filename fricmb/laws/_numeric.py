@@ -77,11 +77,14 @@ def _make(law: Any, what: str, d: int) -> Callable[..., Any]:
     return sympy.lambdify(arguments, [_lengths(e) for e in chosen], _MODULES)  # type: ignore[no-any-return]
 
 
-def _lengths(expression: Any) -> Any:
-    """Guarded roots of sums of squares as a function that neither overflows nor underflows."""
+def _lengths(expression: Any, length: Any = None) -> Any:
+    """Guarded roots of sums of squares as a function that neither overflows nor underflows.
+
+    ``length``: that function, where it is more than a name.
+    """
     import sympy
 
-    length = sympy.Function("vector_length", positive=True)
+    length = length or sympy.Function("vector_length", positive=True)
 
     def replaced(node: Any) -> Any:
         parts = squares(node.base)

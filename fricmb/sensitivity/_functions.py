@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.laws._numeric import squares
+from fricmb.laws._numeric import _lengths
 from fricmb.sensitivity._dual import Dual, composed
 from fricmb.stated import MODULES, Statement
 
@@ -94,8 +94,11 @@ def _with_slopes(
     """
     import sympy
 
-    plain = [_guarded(sympy.sympify(e).rewrite(sympy.Heaviside, sympy.Piecewise)) for e in outputs]
-    parts, reduced = sympy.cse(plain, symbols=sympy.numbered_symbols("part"), order="none")
+    plain = [_lengths(sympy.sympify(e).rewrite(sympy.Heaviside, sympy.Piecewise), _length()) for e in outputs]
+    prefix = "part"
+    while any(str(argument).startswith(prefix) for argument in arguments):  # parameters are named by their authors
+        prefix += "_"
+    parts, reduced = sympy.cse(plain, symbols=sympy.numbered_symbols(prefix), order="none")
     statements: list[tuple[Any, Any]] = []
     slopes: dict[Any, dict[int, Any]] = {arguments[j]: {j: sympy.S.One} for j in active}
     for symbol, expression in parts:
@@ -126,16 +129,6 @@ def _chained(expression: Any, slopes: dict[Any, dict[int, Any]]) -> dict[int, An
             for j, inner in slopes[symbol].items():
                 terms.setdefault(j, []).append(slope * inner)
     return {j: total for j, own in terms.items() if (total := sympy.Add(*own)) != 0}
-
-
-def _guarded(expression: Any) -> Any:
-    """Guarded roots of sums of squares as lengths, which neither overflow nor underflow, with slopes of their own."""
-
-    def replaced(node: Any) -> Any:
-        components = squares(node.base)
-        return node if components is None else _length()(*components) ** (2 * node.exp)
-
-    return expression.replace(lambda node: node.is_Pow and squares(node.base) is not None, replaced)
 
 
 @lru_cache(maxsize=1)
