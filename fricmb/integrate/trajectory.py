@@ -80,6 +80,15 @@ class Trajectory(ABC):
     moving: Ints | None = None
     instead: tuple[str, str] | None = None
 
+    def __init__(
+        self, problem: Problem, transitions: Transitions, counters: Counters, end: Start, failure: str | None
+    ) -> None:  # fmt: skip
+        self.problem = problem
+        self.transitions = transitions
+        self.counters = counters
+        self.end = end
+        self.failure = failure
+
     @property
     @abstractmethod
     def t(self) -> Floats:
@@ -122,11 +131,7 @@ class SampledTrajectory(Trajectory):
         self, problem: Problem, samples: Samples, transitions: Transitions, counters: Counters, end: Start,
         failure: str | None,
     ) -> None:  # fmt: skip
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
+        super().__init__(problem, transitions, counters, end, failure)
         self._samples = samples
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -271,8 +272,9 @@ def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
     return figure
 
 
-def legend(ax: Axes, colours: Paint, modes: set[int], *, arrows: bool, cones: bool = False) -> None:
+def legend(ax: Axes, colours: Paint, touches: Sequence[Any], *, arrows: bool, cones: bool = False) -> None:
     """What the colours of contacts mean, and arrows and the signs of break-away forces, where there are any."""
+    modes = {int(mode) for touch in touches if touch.mode is not None for mode in np.unique(touch.mode)}
     named = {STICK: ("stick", colours.stick), SLIP: ("slip", colours.slip), OPEN: ("open", colours.paper)}
     for mode, (label, colour) in named.items():
         if mode in modes:
@@ -327,9 +329,8 @@ def _of_run(sol: Solution, times: Floats, magnify: float | None) -> tuple[Figure
         return space_drawing_of_run(sol, times)
     sketch = sketch_of_run(sol, times, magnify)
     figure, ax = canvas(sketch)
-    modes = {int(mode) for touch in sketch.touches if touch.mode is not None for mode in np.unique(touch.mode)}
     cones = any(touch.limit is not None and not touch.turns for touch in sketch.touches)
-    legend(ax, paint(), modes, arrows=True, cones=cones)
+    legend(ax, paint(), sketch.touches, arrows=True, cones=cones)
     return figure, Drawing(sketch, ax)
 
 

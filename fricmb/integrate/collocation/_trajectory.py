@@ -22,11 +22,7 @@ class SingleRun(Trajectory):
         self, problem: Problem, s: int, rows: Rows, transitions: Transitions, counters: Counters, end: Start,
         failure: str | None,
     ) -> None:  # fmt: skip
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
+        super().__init__(problem, transitions, counters, end, failure)
         self._s = s
         self._rows = rows
         self._n_rows = len(rows.kinds)

@@ -32,11 +32,7 @@ class StepTrajectory(Trajectory):
         failure: str | None,
         nodes: Floats,
     ) -> None:
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
+        super().__init__(problem, transitions, counters, end, failure)
         self._span, self._values, self._force, self._mode, self._after = span, values, force, mode, after
         self._nodes, self._opened = nodes, opened
         # every step's end, the start of the run, and right-hand values after transitions

@@ -29,11 +29,7 @@ class RowTrajectory(Trajectory):
         self, problem: Problem, chunks: list[Chunk], transitions: Transitions, counters: Counters, end: Start,
         failure: str | None,
     ) -> None:  # fmt: skip
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
+        super().__init__(problem, transitions, counters, end, failure)
         values, kind, mode = zip(*chunks, strict=True)
         self._parts: dict[str, Sequence[Any]] = {"values": values, "kind": kind, "mode": mode}
 

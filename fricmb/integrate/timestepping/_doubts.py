@@ -45,7 +45,10 @@ def kinks(problem: Problem, chunks: list[dict[str, Any]], transitions: Transitio
     With slopes a and b before and after a transition at the share x of a step h, the line is off by |b - a| x (1 - x) h
     at most; a and b are those of the steps beside it.
     """
-    largest = np.max([np.abs(chunk["row_v"]).max(axis=0, initial=0.0) for chunk in chunks], axis=0)
+    if not (len(transitions.t) and rtol < np.inf):
+        return ()
+    rows = [chunk["row_v"] for chunk in chunks]
+    largest = np.max([np.maximum(v.max(axis=0, initial=0.0), -v.min(axis=0, initial=0.0)) for v in rows], axis=0)
     worst, when, dof = 0.0, 0.0, 0
     for chunk in chunks:
         t, v = chunk["row_t"], chunk["row_v"]

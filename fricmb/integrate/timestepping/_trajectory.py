@@ -34,11 +34,7 @@ class SteppedRun(Trajectory):
         self, problem: Problem, chunks: list[dict[str, Any]], transitions: Transitions, counters: Counters,
         end: Start, failure: str | None,
     ) -> None:  # fmt: skip
-        self.problem = problem
-        self.transitions = transitions
-        self.counters = counters
-        self.end = end
-        self.failure = failure
+        super().__init__(problem, transitions, counters, end, failure)
         self._chunks = chunks
 
     @cached_property

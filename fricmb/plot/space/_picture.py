@@ -162,8 +162,7 @@ def space_drawing_of_run(sol: Solution, times: Floats) -> tuple[Figure, SpaceDra
     """A figure, and the drawing in it that shows a run at given times."""
     sketch = space_sketch_of_run(sol, times)
     figure, ax = space_canvas(sketch)
-    modes = {int(mode) for touch in sketch.touches if touch.mode is not None for mode in np.unique(touch.mode)}
-    legend(ax, paint(), modes, arrows=any(touch.force is not None for touch in sketch.touches))
+    legend(ax, paint(), sketch.touches, arrows=any(touch.force is not None for touch in sketch.touches))
     return figure, SpaceDrawing(sketch, ax)
 
 
