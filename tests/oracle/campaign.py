@@ -17,7 +17,9 @@ from .mechanisms import case_of as chain_case
 from .problem import OracleError
 from .random_scenes import generate
 from .shrink import BAD, shrunk
-from .spec import case_of
+from .space import Bodies
+from .space import case_of as space_case
+from .spec import Spec, case_of
 from .table import LAWS, SITUATIONS
 from .table import case as cell
 
@@ -44,6 +46,8 @@ def make(where: dict[str, Any], spec: Any) -> Any:
     """The scene in both forms."""
     if spec is None:
         return cell(where["law"], where["situation"])
+    if isinstance(spec, Bodies):
+        return space_case(spec)
     return chain_case(spec) if isinstance(spec, Chain) else case_of(spec)
 
 
@@ -114,6 +118,6 @@ def runs(true: Truth, spec: Any, worker: Worker, options: argparse.Namespace) ->
         if method == "auto" and verdict.method not in ("", *LEAST):
             known[verdict.method] = verdict
         extra = {}
-        if options.shrink and verdict.kind in BAD and spec is not None and not isinstance(spec, Chain):
+        if options.shrink and verdict.kind in BAD and isinstance(spec, Spec):
             extra["smallest"] = shrunk(spec, method, options.rtol, worker).data()
         yield method, verdict, extra

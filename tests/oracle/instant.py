@@ -9,13 +9,13 @@ from scipy.optimize import brentq, linprog
 
 
 def block(D: np.ndarray, b: np.ndarray, c: float) -> np.ndarray:
-    """Least 1/2 F D F + F b in the ball of radius c (D positive definite, 1 x 1 or 2 x 2)."""
+    """Least 1/2 F D F + F b in the ball of radius c (D positive definite, one row for each direction)."""
     if c <= 0.0:
         return np.zeros_like(b)
     if b.size == 1:
         return np.clip(-b / D[0, 0], -c, c)
     F = -np.linalg.solve(D, b)
-    if np.hypot(*F) <= c:
+    if np.linalg.norm(F) <= c:
         return F
     w, Q = np.linalg.eigh(D)
     y = Q.T @ b
@@ -30,7 +30,7 @@ def block(D: np.ndarray, b: np.ndarray, c: float) -> np.ndarray:
     elif excess(high) < 0.0:
         rho = brentq(excess, 0.0, high, xtol=1e-300, rtol=8.9e-16)
     F = -Q @ (y / (w + rho))
-    return F * (c / np.hypot(*F))
+    return F * (c / np.linalg.norm(F))
 
 
 def convex(D: np.ndarray, b: np.ndarray, radii: np.ndarray, rows: list[slice]) -> np.ndarray:

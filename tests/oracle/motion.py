@@ -24,7 +24,6 @@ class Field:
             [j for c, s, m in zip(self.contacts, self.rows, modes, strict=True) if m == STICK and c.force is None
              for j in range(s.start, s.stop)], dtype=int,
         )  # fmt: skip
-        self.W_held = self.W[:, self.held]
         self.acting = [
             i for i, (c, m) in enumerate(zip(self.contacts, modes, strict=True)) if c.force is not None or m == SLIP
         ]
@@ -34,32 +33,44 @@ class Field:
         self.load: list[float] = []
         self.active: set[int] = set()
         self.full: bool | None = None
-        self.fixed = None if problem.mass is not None else self.inverse(problem.M)
+        self.varies = problem.mass is not None or problem.slip is not None
+        self.fixed = None if self.varies else self.inverse(problem.M, self.W)
 
-    def inverse(self, M: np.ndarray) -> tuple[np.ndarray, ...]:
-        """M^-1, D, and what turns accelerations of held contacts into their forces."""
+    def inverse(self, M: np.ndarray, W: np.ndarray) -> tuple[np.ndarray, ...]:
+        """M^-1, D, what turns accelerations of held contacts into their forces, and W."""
         Mi = np.linalg.inv(M)
-        D = self.W.T @ Mi @ self.W
+        D = W.T @ Mi @ W
         h = self.held
         P = np.linalg.pinv(D[np.ix_(h, h)], rcond=1e-11, hermitian=True) if h.size else np.zeros((0, 0))
-        return Mi, D, P
+        return Mi, D, P, W
 
     def matrices(self, q: np.ndarray) -> tuple[np.ndarray, ...]:
-        """M^-1, D and P at q."""
-        return self.fixed if self.fixed is not None else self.inverse(self.problem.mass(q))  # type: ignore[misc]
+        """M^-1, D, P and W at q."""
+        if self.fixed is not None:
+            return self.fixed
+        return self.inverse(self.problem.M if self.problem.mass is None else self.problem.mass(q), self.slip_rows(q))
 
-    def speeds(self, t: float, v: np.ndarray) -> np.ndarray:
+    def slip_rows(self, q: np.ndarray) -> np.ndarray:
+        """W of all contacts at q."""
+        return self.W if self.problem.slip is None else self.problem.slip(q)
+
+    def speeds(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Relative velocities of all contacts."""
-        g = self.W.T @ v
+        g = self.slip_rows(q).T @ v
         for i in self.driven:
             g[self.rows[i]] -= self.contacts[i].slide(t)
         return g
 
-    def slide_rates(self, t: float) -> np.ndarray:
-        """Rates of the prescribed part."""
-        rates = np.zeros(self.W.shape[1])
+    def speed_up(self, t: float, y: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """Relative accelerations of all contacts."""
+        q, v = y[: self.n], y[self.n : 2 * self.n]
+        return self.slip_rows(q).T @ a - self.wanted(t, q, v)
+
+    def wanted(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """``W^T a`` of what keeps its relative velocity: rates of the prescribed part, less ``W'^T v``."""
+        rates = np.zeros(self.W.shape[1]) if self.problem.slip_rate is None else -self.problem.slip_rate(q, v)
         for i in self.driven:
-            rates[self.rows[i]] = self.contacts[i].slide_rate(t)
+            rates[self.rows[i]] += self.contacts[i].slide_rate(t)
         return rates
 
     def given(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -101,14 +112,14 @@ class Field:
     def known(self, t: float, y: np.ndarray) -> tuple[Any, ...]:
         """What does not depend on the loads: relative velocities, forces other than friction, matrices."""
         q, v = y[: self.n], y[self.n : 2 * self.n]
-        return self.speeds(t, v), self.given(t, q, v), self.matrices(q)
+        return self.speeds(t, q, v), self.given(t, q, v), self.matrices(q)
 
     def under(
         self, t: float, y: np.ndarray, load: list[float], known: tuple[Any, ...] | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The same under given loads."""
         n = self.n
-        g, given, (Mi, _D, P) = self.known(t, y) if known is None else known
+        g, given, (Mi, _D, P, W) = self.known(t, y) if known is None else known
         F = np.zeros(g.size)
         rates = np.zeros(y.size - 2 * n)
         for i in self.acting:
@@ -120,11 +131,11 @@ class Field:
             F[s] = c.force(g[s], N, z)
             if c.rate is not None:
                 rates[self.z_rows[i]] = c.rate(g[s], N, z)
-        a = Mi @ (given + self.W @ F)
+        a = Mi @ (given + W @ F)
         if self.held.size:
             h = self.held
-            F[h] = P @ (self.slide_rates(t)[h] - self.W_held.T @ a)
-            a = a + Mi @ (self.W_held @ F[h])
+            F[h] = P @ (self.wanted(t, y[:n], y[n : 2 * n])[h] - W[:, h].T @ a)
+            a = a + Mi @ (W[:, h] @ F[h])
         return a, F, g, rates
 
     def slip(self, i: int, g: np.ndarray, N: float) -> np.ndarray:
@@ -165,10 +176,10 @@ class Field:
 
     def share(self, margins: np.ndarray, F: np.ndarray, q: np.ndarray) -> None:
         """Of contacts more than enough to hold what they hold: the margin of the best distribution of forces."""
-        _Mi, D, _P = self.matrices(q)
+        D = self.matrices(q)[1]
         held = D[np.ix_(self.held, self.held)]
         stuck = [i for i, c in enumerate(self.contacts) if self.modes[i] == STICK and c.force is None]
-        if self.full is None or self.problem.mass is not None:
+        if self.full is None or self.varies:
             self.full = bool(np.linalg.matrix_rank(held, tol=1e-11 * np.abs(held).max()) == held.shape[0])
         if self.full:
             return

@@ -53,6 +53,8 @@ class Contact:
 class Problem:
     """M q'' + C q' + K q = load(t) + extra(t, q, v) + friction; ``mass(q)`` in place of M where it varies.
 
+    ``slip(q)`` holds W of all contacts side by side where it varies, and ``slip_rate(q, v)`` is ``W'^T v`` then.
+
     Functions of time are continuous from the right; ``breaks`` are the times at which anything jumps or has a kink.
     """
 
@@ -66,6 +68,8 @@ class Problem:
     load: Callable[[float], Any] = nothing
     extra: Callable[[float, np.ndarray, np.ndarray], np.ndarray] | None = None
     mass: Callable[[np.ndarray], np.ndarray] | None = None
+    slip: Callable[[np.ndarray], np.ndarray] | None = None
+    slip_rate: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
     breaks: tuple[float, ...] = ()
     scale: float = 1.0
     """A typical speed; times 1e-12 it is nothing."""

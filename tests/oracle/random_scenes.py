@@ -1,4 +1,4 @@
-"""Scenes from seeds: lines, planes, stacks, loops, bodies of modes, chains of links."""
+"""Scenes from seeds: lines, planes, stacks, loops, bodies of modes, chains of links, bodies in space."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .mechanisms import Chain
+from .space import Bodies, Link, Push, Triple, turned
 from .spec import Pull, Spec, Touch
 
 Generator = np.random.Generator
@@ -173,8 +174,99 @@ def chain(rng: Generator) -> Chain:
     )  # fmt: skip
 
 
+def triple(rng: Generator, size: float) -> Triple:
+    """Three numbers of either sign."""
+    return (even(rng, -size, size), even(rng, -size, size), even(rng, -size, size))
+
+
+def box(rng: Generator, mass: float, *, round: bool) -> Triple:
+    """Moments of inertia of a box, or of one with a square base."""
+    a, b, c = (some(rng, 0.3, 1.0) for _ in range(3))
+    b = a if round else b
+    return tuple(round_to(mass / 12.0 * x) for x in (b * b + c * c, a * a + c * c, a * a + b * b))  # type: ignore[return-value]
+
+
+def round_to(x: float) -> float:
+    """Four digits."""
+    return float(f"{x:.4g}")
+
+
+def hanging(rng: Generator, before: Link | None, *, round: bool) -> Link:
+    """A body on a ball joint or a hinge, four of five dry."""
+    mass = some(rng, 0.5, 2.0)
+    joint = "spherical" if rng.random() < 0.6 or (before is not None and before.round) else "revolute"
+    link = Link(joint, mass, box(rng, mass, round=round), [], [], round)
+    link.own = (0.0, 0.0, some(rng, 0.3, 0.8)) if round else triple(rng, 0.5)
+    if before is not None:
+        link.there = (0.0, 0.0, round_to(-0.8 * before.own[2])) if before.round else triple(rng, 0.4)
+    link.start = list(triple(rng, 0.7))
+    if joint == "revolute" and not round:
+        axis = rng.normal(size=3)
+        x, y, z = (float(c) for c in axis / np.linalg.norm(axis))
+        link.axis = (x, y, z)
+    speed = 0.0 if rng.random() < 0.3 else 3.0
+    link.rates = list(triple(rng, speed)) if joint == "spherical" else [even(rng, -speed, speed)]
+    if round and joint == "spherical" and rng.random() < 0.5:
+        link.rates = [round_to(x) for x in np.array(link.rates) + turned(link)[:, 2] * even(rng, -25.0, 25.0)]
+    if before is None or rng.random() < 0.8:
+        link.law, link.fields = law(rng)
+        link.radius = some(rng, 0.05, 0.4)
+        if joint == "revolute":
+            link.length = some(rng, 0.1, 0.5) if rng.random() < 0.7 else 0.0
+            link.thrust = some(rng, 0.03, 0.2) if rng.random() < 0.5 else 0.0
+    return link
+
+
+def tree(rng: Generator) -> Bodies:
+    """One or two bodies in space that hang on dry joints."""
+    spec = Bodies("tree", [], even(rng, 0.8, 2.0))
+    for _ in range(int(rng.integers(1, 3))):
+        before = spec.links[-1] if spec.links else None
+        spec.links.append(hanging(rng, before, round=bool(rng.random() < 0.35)))
+    disturbed(rng, spec)
+    return spec
+
+
+def disturbed(rng: Generator, spec: Bodies) -> None:
+    """Springs, dampers and forces on centres of mass, a torque on the last."""
+    for i, link in enumerate(spec.links):
+        axes = (0, 1) if link.on_floor else (0, 1, 2)
+        for _ in range(2 if link.joint == "ball" else rng.integers(2)):
+            spec.springs.append((i, int(rng.choice(axes)), some(rng, 3.0, 60.0), even(rng, 0.0, 0.5)))
+        if rng.random() < 0.4:
+            shape = even(rng, -2.0, 2.0), even(rng, 0.0, 4.0), some(rng, 1.0, 8.0), even(rng, 0.0, 6.28)
+            spec.pushes.append(Push(i, int(rng.choice(axes)), *shape))
+    if rng.random() < 0.2:
+        spec.torque = triple(rng, 1.0)
+
+
+def roller(rng: Generator) -> Bodies:
+    """A ball, a coin or a top on a floor, sliding at first; on one in four hangs another body."""
+    mass, joint = some(rng, 0.5, 2.0), ("ball", "edge", "tip")[int(rng.integers(3))]
+    radius = some(rng, 0.2, 0.6) if joint != "tip" else some(rng, 0.02, 0.1)
+    m = mass * radius**2
+    link = Link(joint, mass, (0.4 * m, 0.4 * m, 0.4 * m), [], [])
+    link.radius, link.round = radius, joint != "ball"
+    link.start = [*triple(rng, 1.0), even(rng, 0.7, 1.4), 0.0]
+    link.rates = [even(rng, -most, most) for most in (1.5, 1.5, 1.0, 0.5, 4.0)]
+    if joint == "edge":
+        link.inertia = (0.25 * m, 0.25 * m, 0.5 * m)
+    elif joint == "tip":
+        link.reach, link.start[3] = some(rng, 0.1, 0.4), even(rng, 0.2, 1.0)
+        link.inertia = box(rng, mass, round=True)
+        link.rates[4] = even(rng, 20.0, 60.0)
+    link.law, link.fields = law(rng)
+    spec = Bodies("roller", [link], even(rng, 0.5, 1.5))
+    if joint != "ball" and rng.random() < 0.25:
+        spec.links.append(hanging(rng, link, round=bool(rng.random() < 0.5)))
+        spec.links[1].there = (0.0, 0.0, even(rng, -0.2, 0.2))
+    disturbed(rng, spec)
+    return spec
+
+
 KINDS: dict[str, Callable[[Generator], Any]] = {
     "line": line, "plane": plane, "stack": stack, "loop": loop, "modes": modes, "chain": chain,
+    "tree": tree, "roller": roller,
 }  # fmt: skip
 
 

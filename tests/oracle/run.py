@@ -63,10 +63,11 @@ class Run:
         """New modes at this instant for all that is at rest."""
         p, field = self.p, self.field()
         t = min(max(self.t, field.low), field.high)
-        g = field.speeds(t, self.y[self.n : 2 * self.n])
+        g = field.speeds(t, self.y[: self.n], self.y[self.n : 2 * self.n])
         loads = field.loads(t, self.y[: self.n], self.y[self.n : 2 * self.n], np.zeros(self.n))
         before, self.start = list(zip(self.modes, self.signs, strict=True)), {}
-        guess = field.evaluate(t, self.y)[0] if field.reactive else np.zeros(self.n)
+        # (at the start, what is at rest has no direction of slip from which to have any)
+        guess = field.evaluate(t, self.y)[0] if field.reactive and not first else np.zeros(self.n)
         resting = []
         for i, (c, s) in enumerate(zip(p.contacts, field.rows, strict=True)):
             if c.force is not None:
@@ -102,23 +103,23 @@ class Run:
         modes = [OPEN if i in resting else m for i, m in enumerate(self.modes)]
         moving = Field(p, modes, self.signs, (self.t, self.end))
         q, v = self.y[: self.n], self.y[self.n : 2 * self.n]
-        Mi, D, _ = moving.matrices(q)
+        Mi, D, _, W = moving.matrices(q)
         columns = np.concatenate([np.arange(moving.rows[i].start, moving.rows[i].stop) for i in resting])
         rows, at = [], 0
         for i in resting:
             rows.append(slice(at, at + p.contacts[i].d))
             at += p.contacts[i].d
-        D = D[np.ix_(columns, columns)]
+        W, D = W[:, columns], D[np.ix_(columns, columns)]
         local = frozenset(resting.index(i) for i in released if i in resting)
         some = frozenset(resting.index(i) for i in one_of if i in resting)
         total, push = guess, np.zeros(moving.W.shape[1])
         for _ in range(200):  # once, unless loads depend on accelerations
             loads = moving.loads(t, q, v, total)
             a, push, _, _ = moving.under(t, self.y, loads)
-            b = moving.W[:, columns].T @ a - moving.slide_rates(t)[columns]
+            b = moving.speed_up(t, self.y, a)[columns]
             found = self.consistent(D, b, resting, loads, rows, local, some)
             push[columns] = found[0][1]
-            before, total = total, a + Mi @ (moving.W[:, columns] @ found[0][1])
+            before, total = total, a + Mi @ (W @ found[0][1])
             if not moving.reactive or np.abs(total - before).max() <= 1e-13 * max(1.0, np.abs(total).max()):
                 break
         else:
@@ -127,14 +128,13 @@ class Run:
             self.motion.ambiguous = True
         slips, F = found[0]
         # to exactly zero slip
-        g = moving.speeds(t, v)[columns]
-        W = moving.W[:, columns]
+        g = moving.speeds(t, q, v)[columns]
         self.y[self.n : 2 * self.n] -= Mi @ (W @ (np.linalg.pinv(D, rcond=1e-11, hermitian=True) @ g))
         for j, i in enumerate(resting):
             if j in slips:
                 self.modes[i] = SLIP
                 self.signs[i] = -1.0 if F[rows[j].start] > 0.0 else 1.0
-                if p.contacts[i].d == 2:
+                if p.contacts[i].d > 1:
                     self.start[i] = push
 
     def consistent(
@@ -158,9 +158,9 @@ class Run:
         return found
 
     def begin(self) -> None:
-        """Leap over the singular first moment of slip in two directions."""
+        """Leap over the singular first moment of slip in several directions."""
         if len(self.start) > 1:
-            raise OracleError("two contacts begin to slip in two directions at once")
+            raise OracleError("two contacts begin to slip in several directions at once")
         ((i, push),) = self.start.items()
         field, t0 = self.field(), self.t
         tau = min(1e-4, 0.1 * (self.end - self.t))
@@ -252,7 +252,7 @@ class Run:
             self.settle(arrived=frozenset([i]))
 
     def catch(self, field: Field) -> bool:
-        """In two directions: whether a contact comes to rest here; if it does, to first order exactly."""
+        """In several directions: whether a contact comes to rest here; if it does, to first order exactly."""
         for i, (c, s) in enumerate(zip(self.p.contacts, field.rows, strict=True)):
             if c.force is not None or c.d == 1 or self.modes[i] != SLIP or self.slow:
                 continue
@@ -260,7 +260,7 @@ class Run:
             r = float(np.linalg.norm(g[s]))
             if r > NEAR * self.p.scale:
                 continue
-            rate = field.W[:, s].T @ a - field.slide_rates(min(max(self.t, field.low), field.high))[s]
+            rate = field.speed_up(min(max(self.t, field.low), field.high), self.y, a)[s]
             closing = -float(rate @ g[s]) / r
             if closing <= 0.0:
                 self.motion.closest = min(self.motion.closest, r / self.p.scale)

@@ -62,6 +62,14 @@ def eased(k: Moving, c: int, force: float) -> float:
 
 
 @kernel
+def eased_slope(k: Moving, c: int, force: float) -> float:
+    """Derivative of :func:`eased` by ``force``: the load may fall steeply on the way."""
+    if k.part[0] == 1.0 or k.held[c] <= 0.0 or force <= 0.0:
+        return 1.0
+    return float(k.part[0] * eased(k, c, force) / force)
+
+
+@kernel
 def add_found(
     mech: Mech, k: Moving, c: int, n: Floats, F: Floats, lam: Floats, load: float, x: Floats, L: Layers, row: int,
     full: bool,
@@ -87,7 +95,8 @@ def add_found(
         add_slip(mech, k, c, m, lam, L, row + a, n_a, full, mech.address)
         add(mech.order, L.A1, row + a, row + a, -n_m * along / size)
         add(mech.order, L.A1, row + a, row + m, n_a * along / size)
-    add_load(mech, k, c, lam, L, row + m, -(mu + by_load * load), full, mech.address)
+    slope = 1.0 if full else eased_slope(k, c, mu * load)
+    add_load(mech, k, c, lam, L, row + m, -slope * (mu + by_load * load), full, mech.address)
 
 
 @kernel
