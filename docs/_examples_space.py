@@ -77,6 +77,22 @@ EXAMPLES = {
     + _PICTURE
     + 'seen = sol.at(np.linspace(0.0, 3.0, 400))\nax.plot(seen.t, seen["ball.z"])\n'
     + 'ax.set(xlabel="time", ylabel="height")\n',
+    "space.Pad": "import matplotlib.pyplot as plt\nimport numpy as np\n"
+    'disc = fm.space.Rotor("disc", mass=18.0, inertia_across=0.16, inertia_axial=0.32, angular_velocity=(0, 60, 50))\n'
+    'hub = fm.space.Spherical("hub", disc)\n'
+    "pads = [\n"
+    "    fm.space.Pad(name, disc, at=(0.13, 0, side * 0.01), normal=(0, 0, side), preload=3e3, stiffness=6e6,\n"
+    "                 damping=5.0, friction=fm.laws.Coulomb(mu_s=0.4))\n"
+    '    for name, side in (("upper", 1), ("lower", -1))\n'
+    "]\n"
+    + _run("disc, hub, *pads", "[event.kind for event in sol.events[:4]]", 0.005)
+    + _PICTURE
+    + "seen = sol.at(np.linspace(0.0, 0.005, 600))\n"
+    + 'for name in ("upper", "lower"):\n    ax.plot(1e3 * seen.t, seen.normal_force(name) / 1e3, label=name)\n'
+    + 'ax.set(xlabel="time, ms", ylabel="normal force, kN")\nax.legend()\n',
+    "space.DrivenSpin": 'wheel = fm.space.Rotor("wheel", mass=1.0, inertia_across=0.1, inertia_axial=0.2)\n'
+    'drive = fm.space.DrivenSpin("drive", wheel, speed=3.0 * fm.t)\n'
+    + _run("wheel, drive", 'sol.reaction("drive")[0, -1].round(6)'),
     "space.kalker": "found = fm.space.kalker(a=6e-3, b=5e-3, shear_modulus=8e10, poisson=0.28)\nprint(found)\n",
     "space.WheelRail": _AXLE
     + "creep = fm.space.ShenHedrickElkins(mu=0.3, f11=8e6, f22=7e6, speed=120.0)\n"

@@ -27,6 +27,7 @@ TELLING = {
     "ball_in_cylinder": ["ball.x", "ball.z"],
     "dry_ball_joint": ["bob.x", "bob.y", "bob.z"],
     "wheelset": ["axle.y", "axle.x"],
+    "wobbling_disc_brake": ["disc.axis_x", "disc.axis_y"],
 }
 
 

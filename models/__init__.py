@@ -33,6 +33,7 @@ from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
 from fricmb.models.wheelset import wheelset
+from fricmb.models.wobbling_disc_brake import wobbling_disc_brake
 
 __all__ = [
     "Model",
@@ -63,4 +64,5 @@ __all__ = [
     "stick_slip_chain",
     "turntable",
     "wheelset",
+    "wobbling_disc_brake",
 ]

@@ -34,6 +34,7 @@ from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
 from fricmb.models.wheelset import wheelset
+from fricmb.models.wobbling_disc_brake import wobbling_disc_brake
 from fricmb.values import DIMENSIONLESS, SI, Units
 
 
@@ -93,6 +94,7 @@ _MODELS = (
     Model(build=ball_in_cylinder, t_end=2.0, units=SI),
     Model(build=dry_ball_joint, t_end=6.0, units=SI),
     Model(build=wheelset, t_end=2.0, units=SI),
+    Model(build=wobbling_disc_brake, t_end=0.02, units=SI),
 )
 
 #: The built-in models by name.

@@ -121,7 +121,7 @@ class _Extended:
         slopes = slopes_of(table, j, self.X.size)
         x = np.concatenate([arguments(table, j, self.X[:, None])[0], self.lam[own]])
         at = m + 2 * m * n_x + n_x * n_x
-        n_out = at + (d * n_x * (1 + n_x) + 1 + m + n_x if c >= 0 else 0)
+        n_out = at + (d * n_x * (1 + n_x) + 1 + m + 2 * n_x if c >= 0 else 0)
         out = evaluate(table, j, x[None], n_out)[:, 0]
         kept = joints.dropped[own] == 0
         G, bend = out[m : m + m * n_x].reshape(m, n_x), out[m + m * n_x : m + m * n_x + n_x * n_x].reshape(n_x, n_x)
@@ -144,7 +144,7 @@ class _Extended:
         self.force_X += spread @ np.einsum("dab,d->ab", turn, self.F[rows]) @ place
         self.force_F[:, rows] += spread @ s.T
         self.N[c], self.N_lam[c, own] = out[load], out[load + 1 : load + 1 + m]
-        self.N_X[c] = out[load + 1 + m : load + 1 + m + n_x] @ place
+        self.N_X[c] = out[load + 1 + m : load + 1 + m + 2 * n_x] @ slopes
 
     def _contact(self, c: int) -> None:
         """Friction and normal force of a contact that is no joint."""

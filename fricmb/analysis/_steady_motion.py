@@ -37,7 +37,7 @@ class SteadyMotion(SteadySliding):
     Attributes
     ----------
     moving : (k,) int64
-        Degrees of freedom on whose position nothing depends: they may move evenly.
+        Degrees of freedom on whose position nothing depends, but a drive: they may move evenly.
     tangent : Tangent
         Derivatives at the state.
     mass : Entries
@@ -59,8 +59,10 @@ class SteadyMotion(SteadySliding):
             rank = int((sizes > 1e-10 * sizes.max(initial=0.0)).sum())
             Z = np.zeros((n, still.size - rank))
             Z[still] = rows[rank:].T
-        even = np.zeros((n, self.moving.size))
-        even[self.moving, np.arange(self.moving.size)] = 1.0
+        _, sizes, rows = np.linalg.svd(self.tangent.G[:, self.moving])
+        driven = int((sizes > 1e-10 * sizes.max(initial=0.0)).sum()) if sizes.max(initial=0.0) > 0.0 else 0
+        even = np.zeros((n, self.moving.size - driven))
+        even[self.moving] = rows[driven:].T if driven else np.eye(self.moving.size)
         return Z, np.hstack([Z, even])
 
     def matrix(self) -> Floats:
@@ -116,7 +118,7 @@ def steady_motion(scene: Scene, system: MechanismSystem, speeds: Mapping[str, fl
     v[moving] += _rolling(system, v, moving)
     q, v, z, lam, F = _solve(system, v, held, moving)
     at = tangent(system, q, v, z, lam, F)
-    _check(system, at, (q, v, z, lam, F), held)
+    _check(system, at, (q, v, z, lam, F), held, moving)
     M = system.mechanism.M
     mass = np.zeros(q.size)
     np.add.at(mass, M.row[M.row == M.column], M.value[M.row == M.column])
@@ -135,11 +137,13 @@ def steady_motion(scene: Scene, system: MechanismSystem, speeds: Mapping[str, fl
 
 
 def _ignorable(system: MechanismSystem, v: Floats) -> list[int]:
-    """Degrees of freedom on whose position nothing depends at the start."""
+    """Degrees of freedom on whose position nothing depends at the start, or nothing but what drives them in time."""
     rng, m = np.random.default_rng(0), system.mechanism
     lam, F = rng.standard_normal(m.n_rows), rng.standard_normal(system.problem.m)
-    at = tangent(system, system.start.q, v + 1e-3 * rng.standard_normal(v.size), system.start.z, lam, F)
-    columns = np.vstack([at.force_q, at.G, at.law_q, at.rate_q])
+    state = (system.start.q, v + 1e-3 * rng.standard_normal(v.size), system.start.z, lam, F)
+    at, later = tangent(system, *state), tangent(system, *state, 1.0)
+    drives = (later.phi != at.phi) & (np.count_nonzero(at.G, axis=1) == 1)
+    columns = np.vstack([at.force_q, np.where(drives[:, None], 0.0, at.G), at.law_q, at.rate_q])
     size = np.abs(columns).max(axis=1, initial=0.0)
     scaled = np.abs(columns / np.where(size > 0.0, size, 1.0)[:, None])
     return np.flatnonzero(scaled.max(axis=0, initial=0.0) <= NOTHING).tolist()
@@ -211,7 +215,7 @@ def _equations(
     return residual, J, np.where(size > 0.0, size, 1.0)
 
 
-def _check(system: MechanismSystem, at: Tangent, state: State, held: np.ndarray) -> None:
+def _check(system: MechanismSystem, at: Tangent, state: State, held: np.ndarray, moving: Ints) -> None:
     """Refuse what does not move steadily."""
     names, free = system.dof_names, ~held
     lam, F = state[3], state[4]
@@ -229,7 +233,9 @@ def _check(system: MechanismSystem, at: Tangent, state: State, held: np.ndarray)
     if np.abs(np.concatenate([at.phi, at.rate])).max(initial=0.0) > SMALL * length:
         raise AnalysisError("steady_sliding: no steady motion; joints do not close in it")
     for t in (1.0, 2.718281828):
-        later = tangent(system, *state, t)
+        there = state[0].copy()
+        there[moving] += t * state[1][moving]
+        later = tangent(system, there, *state[1:], t)
         change = np.where(free, np.abs(later.force - at.force), 0.0)
         shift = np.abs(np.concatenate([later.phi - at.phi, later.rate - at.rate, later.g - at.g]))
         if change.max(initial=0.0) > SMALL * scale or shift.max(initial=0.0) > SMALL * length:

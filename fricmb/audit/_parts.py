@@ -116,19 +116,19 @@ class Joins:
         self.function = function(stated.joint(joint, self.count))
         self.n_slip = 0 if joint.friction is None else joint.slip_rows
         self.numbers = numbers(joint.bare())
-        self.one_sided = joint.one_sided
+        self.one_sided, self.constrains = joint.one_sided, joint.constrains
 
     def add(self, moment: Moment, found: Found) -> None:
         """Reactions of the run; what the constraints and the slip are."""
         motions: list[tuple[Any, Any, Row]] = [moment.form(form) for form in self.forms]
         motions += [(*drive.at(moment.t), []) for drive in self.drives]
         lam = moment.lam[self.name]
-        values = self.function(*[m[0] for m in motions], *lam, *self.numbers)
+        values = self.function(*[m[0] for m in motions], *[m[1] for m in motions], *lam, *self.numbers)
         shape, n, n_phi = moment.t.shape, self.count, len(lam)
         whole = [np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values]
         rates = np.array([np.broadcast_to(m[1], shape) for m in motions])
         found.phi[self.name] = np.array(whole[: n_phi])
-        gradient = np.array(whole[n_phi : n_phi * (1 + n)]).reshape(n_phi, n, -1)
+        gradient = np.array(whole[n_phi : n_phi * (1 + n)]).reshape(n_phi, n, moment.t.size)
         found.phi_dot[self.name] = (gradient * rates).sum(axis=1)
         rows = [_combined(motions, slopes) for slopes in gradient]
         found.phi_rows[self.name] = rows
@@ -137,6 +137,7 @@ class Joins:
         if self.n_slip and self.contact is not None:
             *factors, load = whole[n_phi * (1 + n) :]
             slips = np.array(factors).reshape(self.n_slip, n, -1)
+            load = load if self.constrains else np.maximum(load, 0.0)
             found.g[self.contact], found.N[self.contact] = (slips * rates).sum(axis=1), load
             found.rows[self.contact] = [_combined(motions, slip) for slip in slips]
             for i, row in enumerate(found.rows[self.contact]):

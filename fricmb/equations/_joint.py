@@ -38,12 +38,13 @@ def joint_math(joint: Any, n: int) -> JointMath:
     stand = symbolic(joint.bare())
     x, v = (tuple(sympy.Symbol(f"{letter}_{i}", real=True) for i in range(n)) for letter in "xv")
     label = f"{type(joint).__name__} {joint.name!r}"
-    phi = _vector(stand.standin.define_constraint(x), label, "define_constraint")
+    phi = _vector(stand.standin.define_constraint(x), label, "define_constraint") if joint.constrains else ()
     lam = tuple(sympy.Symbol(f"l_{i}", real=True) for i in range(len(phi)))
     slip = load = None
     if joint.friction is not None:
         slip = _slip(stand.standin.define_slip(x), joint.slip_rows, n, label)
-        load = sympy.sympify(stand.standin.define_load(x, lam))
+        rates = stand.standin.define_load_rates(x)
+        load = sympy.sympify(stand.standin.define_load(x, lam)) + sum(d * w for d, w in zip(rates, v, strict=False))
     return JointMath(x=x, v=v, lam=lam, parameters=stand.flat, phi=phi, slip=slip, load=load)
 
 
@@ -73,7 +74,7 @@ def derive_joint(math: JointMath, title: str) -> tuple[dict[str, Any], str]:
     if math.slip is not None:
         factors = [s for row in math.slip for s in row]
         outputs += [*factors, *(sympy.diff(s, b) for s in factors for b in x)]
-        outputs += [math.load, *(sympy.diff(math.load, a) for a in (*lam, *x))]
+        outputs += [math.load, *(sympy.diff(math.load, a) for a in (*lam, *x, *v))]
     outputs = [sympy.sympify(e) for e in outputs]
     for expression in outputs:
         _code.check(expression, title)

@@ -71,7 +71,8 @@ class Joints:
     table : Templates
         x = [x (n_x), x' (n_x), lam (m)]; the linear forms give x and x', lam follows.  out = [phi (m), dphi/dx (m n_x),
         sum lam d2phi/dx2 (n_x n_x), x'^T d2phi/dx2 (m n_x)] and, of a joint with friction in d directions, [s (d n_x),
-        ds/dx (d n_x n_x), N, dN/dlam (m), dN/dx (n_x)]: slip velocities are s_k . x', the normal force N(x, lam).
+        ds/dx (d n_x n_x), N, dN/dlam (m), dN/dx (n_x), dN/dx' (n_x)]: slip velocities are s_k . x', the normal force
+        N(x, x', lam).  A joint without rows (m = 0) holds nothing; its friction is open where N < 0.
     row : (k+1,) int64
         Joint i owns the multipliers ``row[i]:row[i+1]``.
     port : (k,) int64

@@ -73,7 +73,7 @@ class _Edge:
 def topology(scene: Scene, names: Iterable[str] | None = None) -> Topology:
     """Tree and loops of the joints in a scene (of those with the given names)."""
     held = None if names is None else set(names)
-    joints = [joint for joint in scene.joints if held is None or joint.name in held]
+    joints = [joint for joint in scene.joints if joint.constrains and (held is None or joint.name in held)]
     if not joints:
         return Topology()
     moving = {body.name for body in scene.bodies if body.dof_names}

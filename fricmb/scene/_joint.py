@@ -29,6 +29,9 @@ class Joint(Part):
     - :meth:`define_slip`: factors s(x) of the slip velocity ``s . x'``; with :attr:`slip_rows` > 1 a tuple of such;
     - :meth:`define_load`: the normal force N(x, lam) >= 0.
 
+    One that holds nothing (:attr:`constrains` is False: it presses and rubs) states these two alone, and
+    :meth:`parts_within` the element that presses; it is open where N < 0.
+
     Parameters
     ----------
     name : str
@@ -61,6 +64,8 @@ class Joint(Part):
     #: Whether its constraints depend on the motion of its ends relative to one another alone: they stay satisfied where
     #: both ends are moved and turned as one.
     only_relative: ClassVar[bool] = False
+    #: Whether it has constraints.
+    constrains: ClassVar[bool] = True
 
     a: End
     b: End = GROUND
@@ -148,6 +153,8 @@ class Joint(Part):
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Expressions that stay 0."""
+        if not self.constrains:
+            return ()
         raise NotImplementedError(f"{type(self).__name__} must define define_constraint(self, x)")
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -157,6 +164,10 @@ class Joint(Part):
     def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
         """Normal force of the friction, >= 0."""
         raise NotImplementedError(f"{type(self).__name__} must define define_load(self, x, lam)")
+
+    def define_load_rates(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Factors d(x) of what ``d . x'`` adds to the normal force (a damper in the contact); none: ()."""
+        return ()
 
     def undefined(self, values: Mapping[str, float]) -> str:
         """Why the joint has no meaning at positions of the degrees of freedom, a sentence; "" where it has."""

@@ -47,6 +47,10 @@ class Part(Declaration):
         kind: Any = type(self)
         return tuple([value for value in _field_values(kind)(self) if isinstance(value, End)])
 
+    def parts_within(self) -> tuple[Any, ...]:
+        """What is built with this part, and bears its name."""
+        return ()
+
     def expressions(self) -> dict[str, Any]:
         """Slots that hold SymPy expressions of time or motions: path -> expression."""
         if self.only_numbers():

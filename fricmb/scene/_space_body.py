@@ -164,8 +164,8 @@ class InnerConstraint(Joint):
 
 
 def with_inner(parts: Iterable[Any]) -> list[Any]:
-    """Parts, and behind each body in space what is built with it."""
-    return [one for part in parts for one in (part, *(part.parts_within() if isinstance(part, SpaceBody) else ()))]
+    """Parts, and behind each what is built with it."""
+    return [one for part in parts for one in (part, *part.parts_within())]
 
 
 @dataclass(frozen=True)

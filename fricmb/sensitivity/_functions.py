@@ -103,6 +103,8 @@ def _with_slopes(
     slopes: dict[Any, dict[int, Any]] = {arguments[j]: {j: sympy.S.One} for j in active}
     for symbol, expression in parts:
         statements.append((symbol, expression))
+        if expression.is_Relational or expression.is_Boolean:  # a condition that occurs twice
+            continue
         slopes[symbol] = {}
         for j, slope in _chained(expression, slopes).items():
             name = sympy.Symbol(f"{symbol}_{j}", real=True)

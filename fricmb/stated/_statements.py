@@ -42,7 +42,7 @@ def element(part: Any, n: int) -> Statement:
 
 
 def joint(part: Any, n: int) -> Statement:
-    """A joint's statements, of x, multipliers and the joint's numbers.
+    """A joint's statements, of x, x', multipliers and the joint's numbers.
 
     Outputs: constraints, their gradient by rows, and with friction the factors of each slip and the load.
     """
@@ -56,7 +56,7 @@ def joint(part: Any, n: int) -> Statement:
         outputs = [*math.phi, *(sympy.diff(phi, a) for phi in math.phi for a in math.x)]
         if math.slip is not None:
             outputs += [*(s for row in math.slip for s in row), math.load]
-        return [*math.x, *math.lam, *math.parameters], outputs
+        return [*math.x, *math.v, *math.lam, *math.parameters], outputs
 
     return Statement(key=("joint", structure(part.bare()), n, part.friction is None), make=make)
 

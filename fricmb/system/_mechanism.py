@@ -200,11 +200,6 @@ def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: Joint
         structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, (m, m, inertia), strict=True))
     elif isinstance(part, SpaceBody):
         structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, part.masses(), strict=True))
-        for within in part.parts_within():
-            if isinstance(within, Joint):
-                joints.add(within, inner=True)
-            else:
-                structure.add_element(within)
     elif isinstance(part, Body | ModalBody):
         structure.add_body(part, index)
     elif isinstance(part, MatrixElement):
@@ -215,6 +210,11 @@ def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: Joint
         contacts.add(part)
     elif isinstance(part, Joint):
         joints.add(part)
+    for within in part.parts_within():
+        if isinstance(within, Joint):
+            joints.add(within, inner=True)
+        else:
+            structure.add_element(within)
 
 
 def _used_points(scene: Any, parts: Iterable[Any]) -> list[str]:

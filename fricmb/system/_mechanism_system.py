@@ -58,7 +58,8 @@ class MechanismSystem(System):
     def reaction(self, joint: str, samples: Samples) -> Floats:
         """Multipliers of a joint (m, n_t) at states with their friction modes."""
         joints = self.mechanism.joints
-        known = [name for name, inner in zip(joints.names, joints.inner, strict=True) if not inner]
+        holds = np.diff(joints.row) > 0
+        known = [name for name, inner, has in zip(joints.names, joints.inner, holds, strict=True) if has and not inner]
         if joint not in known:
             raise unknown_name("joint", joint, known)
         return self.reactions(samples)[joint]

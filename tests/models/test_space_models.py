@@ -90,6 +90,21 @@ def test_dry_ball_joint():
     assert sol.audit().ok
 
 
+def test_wobbling_disc_brake():
+    """At the critical coefficient, and at no other, one pair of modes neither grows nor decays."""
+    growth = {}
+    for mu in (0.40, 0.413829737886213898, 0.42):
+        steady = fm.analysis.steady_sliding(fm.models.wobbling_disc_brake(mu=mu, kick=0.0))
+        growth[mu] = np.linalg.eigvals(steady.matrix()).real.max()
+    below, at, above = growth.values()
+    assert below < -0.01
+    assert abs(at) < 1e-9
+    assert above > 0.005
+    sol = standard_run("wobbling_disc_brake", 1e-8)
+    assert not sol.events
+    assert np.abs(sol.energy.residual).max() < 1e-10 * np.ptp(sol.energy.friction_loss)
+
+
 def test_wheelset():
     """At the critical speed one pair neither grows nor decays; well above it the oscillation settles to one size."""
     found = certified("wheelset")

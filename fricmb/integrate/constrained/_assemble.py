@@ -54,10 +54,11 @@ def away(problem: Problem, start: Start) -> Codes:
     opened = np.zeros(len(joints.port), np.int8)
     if joints.hands_over.any():
         here = constraints_at(problem, start.t, np.asarray(start.q, float), np.asarray(start.v, float))
-        row = joints.row[:-1]
+        may = np.flatnonzero(joints.hands_over)
+        row = joints.row[may]
         far = here.phi[row] > 1e-9 * max(float(np.abs(start.q).max(initial=0.0)), 1e-300)
         leaves = here.rate[row] > 1e-9 * max(float(np.abs(start.v).max(initial=0.0)), 1e-300)
-        opened[(joints.hands_over != 0) & (far | leaves)] = 1
+        opened[may] = far | leaves
     return opened
 
 

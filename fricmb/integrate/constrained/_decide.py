@@ -267,7 +267,7 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
         part[c] = SLIPS_ON
         row = port.row[c]
         j = port.joint[c]
-        if j >= 0 and mech.joint.dropped[mech.joint.row[j]] == 2:
+        if j >= 0 and mech.joint.hands_over[j] and mech.joint.dropped[mech.joint.row[j]] == 2:
             y.mode[c] = OPEN
             for a in range(row, port.row[c + 1]):
                 y.F[a] = 0.0

@@ -49,7 +49,8 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
         name = joints.names[int(np.argmin(np.where(held, y.lam[np.minimum(row, len(y.lam) - 1)], np.inf)))]
         return f"contact of {name!r} is lost: its reaction has fallen to 0 and it can only push"
     if code == FAIL_HIT:
-        name = joints.names[int(np.argmin(np.where(joints.dropped[row] == 2, out.gap, np.inf)))]
+        opened = (joints.hands_over != 0) & (joints.dropped[np.minimum(row, len(y.lam) - 1)] == 2)
+        name = joints.names[int(np.argmin(np.where(opened, out.gap, np.inf)))]
         return f"contact of {name!r} is made again, and impacts are not computed"
     if code == FAIL_SINGULAR:
         names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t[0]), y.q, y.v))

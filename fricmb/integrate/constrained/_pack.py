@@ -143,11 +143,14 @@ def _pack(problem: Problem) -> Mech:
     for j in np.flatnonzero(m.joints.port >= 0):
         port_joint[m.joints.port[j]] = j
     solid = np.ascontiguousarray
+    normal = solid(contacts.normal, np.int8)
+    if (rows == 0).any():  # what presses and rubs without holding opens as a contact with a normal-force law does
+        normal = np.where((port_joint >= 0) & (rows[port_joint] == 0), NORMAL_LAW, normal).astype(np.int8)
     port = Port(
         port_joint, solid(contacts.row, np.int64), softness(problem, m, port_joint), _table(m.slip),
         solid(contacts.w), solid(contacts.law, np.int8),
         solid(contacts.mu_s),
-        solid(contacts.mu_0), solid(contacts.z_start, np.int64), solid(contacts.normal, np.int8),
+        solid(contacts.mu_0), solid(contacts.z_start, np.int64), normal,
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
         _table(contacts.law_table), _table(contacts.normal_table),
     )  # fmt: skip
@@ -253,7 +256,7 @@ def _lengths(problem: Problem) -> _Lengths:
     directions = int(np.max(np.diff(problem.contacts.row), initial=1))
     slip = directions + 2
     n_x = int(np.max(2 * widths + rows, initial=8))
-    n_out = int(np.max(2 * rows + 3 * widths * rows + slip * widths * (widths + 1) + 8, initial=8))
+    n_out = int(np.max(2 * rows + 3 * widths * rows + slip * widths * (widths + 1) + widths + 8, initial=8))
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
     s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
     for templates in (problem.elements.table, problem.contacts.normal_table):

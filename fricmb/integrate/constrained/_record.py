@@ -76,7 +76,7 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
     for a in range(y.mode.shape[0]):
         out.mode[i, a] = y.mode[a]
     for j in range(mech.joint.port.shape[0]):
-        out.opened[i, j] = 1 if mech.joint.dropped[mech.joint.row[j]] == 2 else 0
+        out.opened[i, j] = 1 if mech.joint.hands_over[j] and mech.joint.dropped[mech.joint.row[j]] == 2 else 0
     out.used[0] = i + 1
 
 

@@ -182,5 +182,5 @@ def add_load(
     for i in range(m):
         add(mech.order, L.A1, row, first + joint.row[j] + i, value * k.out[at + i])
     if full:
-        for a in range(n_x):
+        for a in range(2 * n_x):  # by positions, then by velocities
             add_form(mech, k, L, row, joint.table, joint.table.x_start[j] + a, value * k.out[at + m + a], mech.address)

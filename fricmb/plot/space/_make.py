@@ -52,9 +52,9 @@ LINES = 16
 
 def _directions(part: Any) -> Floats | None:
     """Directions of space (d, 3) that a friction force has; None where it is none at a point."""
-    from fricmb.space import OnPlane, WheelRail
+    from fricmb.space import OnPlane, Pad, WheelRail
 
-    if isinstance(part, OnPlane | WheelRail):
+    if isinstance(part, OnPlane | WheelRail | Pad):
         return np.asarray(part.frame()[:2])
     if isinstance(part, Contact):
         along = np.zeros((len(part.directions()), 3))
@@ -196,7 +196,7 @@ class _Making:
     # ---- joints, contacts, springs
 
     def _joint(self, joint: Any) -> None:
-        from fricmb.space import InCylinder, OnPlane, Rod, WheelRail
+        from fricmb.space import InCylinder, OnPlane, Pad, Rod, WheelRail
 
         sketch = self.sketch
         if isinstance(joint, Rod):
@@ -215,6 +215,8 @@ class _Making:
             sketch.rails.append(np.array([float(c) for c in value_of(joint.through)]) + np.outer(ends, along))
         elif isinstance(joint, InCylinder):
             at = self._tube(joint)
+        elif isinstance(joint, Pad):
+            at = self._pressed(joint)
         elif not getattr(joint.a, "letters", None):
             return
         else:
@@ -236,6 +238,13 @@ class _Making:
             foot = start + radius * (np.cos(angle) * u + np.sin(angle) * w)
             self.sketch.rails.append(foot + np.outer(ends, e))
         return np.asarray(place + own * outward / np.linalg.norm(outward, axis=0))
+
+    def _pressed(self, pad: Any) -> Floats:
+        """Where a pad touches (3, n); its spring, from the face outward."""
+        place, normal = np.array([float(c) for c in value_of(pad.at)]), pad.direction("normal")
+        away = place + AWAY * self.extent * normal
+        self.sketch.links.append(SpaceLink(kind="spring", a=(FIXED, place), b=(FIXED, away)))
+        return np.repeat(place[:, None], self.n, axis=1)
 
     def _lowest(self, joint: Any) -> Floats:
         """Where a body touches a plane (3, n)."""
