@@ -22,7 +22,7 @@ AHEAD = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2)
 
 def blame(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
     """What of the scene has no finite value at t or at once behind it, as the end of a sentence; "" where all have."""
-    state = trajectory.sample(np.array([t]))
+    state = trajectory.motion(np.array([t]))
     if not np.isfinite(state.q).all():
         return ""
     values = dict(zip(mechanics.names.dofs, state.q[:, 0].tolist(), strict=True))
@@ -40,7 +40,7 @@ def blame(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
 
 def undefined(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
     """Why a joint has no meaning where the run has come to; "" where all have."""
-    q = trajectory.sample(np.array([t])).q[:, 0]
+    q = trajectory.motion(np.array([t])).q[:, 0]
     if not np.isfinite(q).all():
         return ""
     values = dict(zip(mechanics.names.dofs, q.tolist(), strict=True))

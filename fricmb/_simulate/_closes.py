@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import take
-from fricmb.integrate.trajectory import Samples
+from fricmb.integrate.trajectory import MotionSamples
 from fricmb.solution import Solution
 from fricmb.solution._run import Record
 
@@ -85,7 +85,7 @@ def _of_a_step(sol: Solution, chosen: slice) -> float:
     return 0.5 * (F * h) ** 2 / mass if mass > 0.0 else 0.0
 
 
-def _part(sol: Solution, chosen: slice) -> tuple[Samples, Ints | None]:
+def _part(sol: Solution, chosen: slice) -> tuple[MotionSamples, Ints | None]:
     record = sol.record
     return take(record.samples, chosen), None if record.piece is None else record.piece[chosen]
 
@@ -94,4 +94,5 @@ def _terms(sol: Solution, chosen: slice) -> tuple[Floats, ...]:
     """Kinetic and potential energy, losses by friction and damping, and input, at some of the times."""
     samples, piece = _part(sol, chosen)
     kinetic, potential = sol.run.energies(Record(samples=samples, piece=piece, moving=sol.record.moving))
-    return kinetic, potential, samples.friction_loss.sum(axis=0), samples.damping_loss, samples.input
+    spent = take(sol.accounts, chosen)
+    return kinetic, potential, spent.friction_loss.sum(axis=0), spent.damping_loss, spent.input

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from fricmb._simulate._members import Idle, Member
-from fricmb.integrate import OPEN, STICK, Samples, Start, Trajectory, Transitions
+from fricmb.integrate import OPEN, STICK, MotionSamples, Samples, Start, Trajectory, Transitions
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import KeptTrajectory, add_counters, take
 from fricmb.scene import Contact
@@ -104,20 +104,35 @@ class JoinedRun(Trajectory):
     def rows(self) -> Samples:
         """Values at the rows; at a transition first the left, then the right-hand values."""
         t = self.t
-        return self._assemble(t, [_at_rows(run, t) for _, run in self.runs])
+        return self._complete(t, [_at_rows(run.rows(), run.sample, t, Samples) for _, run in self.runs])
+
+    def row_motion(self) -> MotionSamples:
+        """As :meth:`rows`, without energies."""
+        t = self.t
+        return self._assemble(t, [_at_rows(run.row_motion(), run.motion, t, MotionSamples) for _, run in self.runs])
 
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order; the right-hand value at a transition."""
-        return self._assemble(t, [run.sample(t) for _, run in self.runs])
+        return self._complete(t, [run.sample(t) for _, run in self.runs])
 
-    def motion(self, t: Floats) -> Samples:
+    def motion(self, t: Floats) -> MotionSamples:
         """As :meth:`sample`, without energies."""
         return self._assemble(t, [run.motion(t) for _, run in self.runs])
 
-    def _assemble(self, t: Floats, parts: Sequence[Samples]) -> Samples:
+    def _complete(self, t: Floats, parts: Sequence[Samples]) -> Samples:
+        loss = np.zeros((self._shape[1], t.size))
+        for place, part in zip(self._places, parts, strict=True):
+            loss[place.contacts] = part.friction_loss
+        return Samples(
+            **vars(self._assemble(t, parts)), friction_loss=loss,
+            damping_loss=np.sum([part.damping_loss for part in parts], axis=0),
+            input=np.sum([part.input for part in parts], axis=0),
+        )  # fmt: skip
+
+    def _assemble(self, t: Floats, parts: Sequence[MotionSamples]) -> MotionSamples:
         n, n_c, m, _ = self._shape
         n_t = t.size
-        found = Samples(
+        found = MotionSamples(
             t=t,
             q=_constant(self._start.q, n_t),
             v=np.zeros((n, n_t)),
@@ -125,15 +140,11 @@ class JoinedRun(Trajectory):
             F=np.zeros((m, n_t)), g=np.zeros((m, n_t)),
             N=_constant(self._pressed, n_t),
             mode=np.full((n_c, n_t), STICK, dtype=np.int8),
-            friction_loss=np.zeros((n_c, n_t)), damping_loss=np.zeros(n_t), input=np.zeros(n_t),
         )  # fmt: skip
         for place, part in zip(self._places, parts, strict=True):
             found.q[place.dofs], found.v[place.dofs], found.z[place.states] = part.q, part.v, part.z
             found.F[place.rows], found.g[place.rows] = part.F, part.g
             found.N[place.contacts], found.mode[place.contacts] = part.N, part.mode
-            found.friction_loss[place.contacts] = part.friction_loss
-            found.damping_loss[:] += part.damping_loss
-            found.input[:] += part.input
         if self._idle is not None:
             self._idle.fill(found)
         return found
@@ -157,7 +168,7 @@ class JoinedRun(Trajectory):
         for (_, run), place in zip(self.runs, self._places, strict=True):
             end = run.end
             if end.t != t_end:  # stopped by the failure of another
-                last = run.sample(np.array([t_end]))
+                last = run.motion(np.array([t_end]))
                 end = Start(t=t_end, q=last.q[:, 0], v=last.v[:, 0], z=last.z[:, 0])
             q[place.dofs], v[place.dofs], z[place.states] = end.q, end.v, end.z
             if end.mode is not None and end.direction is not None:
@@ -219,19 +230,21 @@ def _common_times(times: Sequence[Floats], t_end: float, width: int) -> tuple[Fl
     return np.repeat(every, often), thinned
 
 
-def _at_rows(run: Trajectory, t: Floats) -> Samples:
-    """Values at the joined rows: of the run's own rows where it has them, in their order; else between them."""
-    own = run.rows()
+_Samples = TypeVar("_Samples", bound=MotionSamples)
+
+
+def _at_rows(own: _Samples, between: Callable[[Floats], _Samples], t: Floats, kind: type[_Samples]) -> _Samples:
+    """Values at the joined rows, as ``kind``: of a run's own rows where it has them, in their order; else between."""
     if own.t.size == t.size and bool((own.t == t).all()):
         return own
-    found = run.sample(t)
+    found = between(t)
     first = np.searchsorted(own.t, t, side="left")
     count = np.searchsorted(own.t, t, side="right") - first
     again = np.arange(t.size) - np.searchsorted(t, t, side="left")
     mine = np.flatnonzero(count > 0)
     rows: Ints = first[mine] + np.minimum(again[mine], count[mine] - 1)
     held = take(own, rows)
-    for name in ("q", "v", "z", "F", "g", "N", "mode", "friction_loss", "damping_loss", "input"):
+    for name in (f.name for f in fields(kind) if f.name != "t"):
         getattr(found, name)[..., mine] = getattr(held, name)
     return found
 

@@ -13,7 +13,7 @@ from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of, row_scale
 from fricmb.errors import SceneError, unknown_name
-from fricmb.integrate import Samples, Start, Trajectory
+from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
 from fricmb.scene import Scene, SpaceBody
@@ -97,15 +97,17 @@ class SceneMechanics:
         built = [member.system.problem.omega for member in self.members if "system" in vars(member)]
         return max((float(omega.max(initial=0.0)) for omega in built), default=0.0)
 
-    def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
+    def kinetic(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Kinetic energy (n_t,)."""
         return self._sum(samples, moving, lambda system, part: system.kinetic(part))
 
-    def potential(self, samples: Samples, moving: Ints | None = None) -> Floats:
+    def potential(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
         return self._sum(samples, moving, lambda system, part: system.potential(part))
 
-    def _sum(self, samples: Samples, moving: Ints | None, energy: Callable[[System, Samples], Floats]) -> Floats:
+    def _sum(
+        self, samples: MotionSamples, moving: Ints | None, energy: Callable[[System, MotionSamples], Floats]
+    ) -> Floats:
         if self.whole is not None:
             return energy(self.whole.system, samples)
         total = np.zeros(samples.t.size)
@@ -116,13 +118,13 @@ class SceneMechanics:
                 total += energy(member.system, member.place.part(samples))
         return total
 
-    def reaction(self, joint: str, samples: Samples) -> Floats:
+    def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t); UnknownNameError for a name that is none."""
         if self.whole is None:
             raise unknown_name("joint", joint, ())
         return self.whole.system.reaction(joint, samples)
 
-    def reactions(self, samples: Samples) -> dict[str, Floats]:
+    def reactions(self, samples: MotionSamples) -> dict[str, Floats]:
         """Reactions of all joints by name."""
         return {} if self.whole is None or not self.placed.is_mechanism else self.whole.system.reactions(samples)
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fricmb.integrate import Samples, Start
+from fricmb.integrate import MotionSamples, Start
 from fricmb.integrate.problem import Codes, Floats, Ints
 from fricmb.plan import Island, Plan, Selection
 from fricmb.scene import Contact, Joint, Scene
@@ -26,13 +26,12 @@ class Place:
     rows: Ints
     states: Ints
 
-    def part(self, samples: Samples) -> Samples:
-        """The member's share of samples of the whole; energies of the whole."""
-        return Samples(
+    def part(self, samples: MotionSamples) -> MotionSamples:
+        """The member's share of samples of the whole."""
+        return MotionSamples(
             t=samples.t, q=samples.q[self.dofs], v=samples.v[self.dofs], z=samples.z[self.states],
             F=samples.F[self.rows], g=samples.g[self.rows], N=samples.N[self.contacts],
-            mode=samples.mode[self.contacts], friction_loss=samples.friction_loss[self.contacts],
-            damping_loss=samples.damping_loss, input=samples.input,
+            mode=samples.mode[self.contacts],
         )  # fmt: skip
 
     def start(self, whole: Start) -> Start:
@@ -74,7 +73,7 @@ class Member:
         """Its arrays, built when it is run."""
         return build(self.scene, self.selection)
 
-    def keeps_still(self, samples: Samples) -> bool:
+    def keeps_still(self, samples: MotionSamples) -> bool:
         """Whether it rests at all the samples' times."""
         place = self.place.dofs
         return self.island is not None and self.island.rests(samples.q[place], samples.v[place])
@@ -147,7 +146,7 @@ class Idle:
     system: System
     place: Place
 
-    def fill(self, samples: Samples) -> None:
+    def fill(self, samples: MotionSamples) -> None:
         """Relative velocities at the samples' times, for the motion they hold; no force, open."""
         from fricmb.integrate import OPEN
 

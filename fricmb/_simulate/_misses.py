@@ -71,7 +71,7 @@ def _in_band(problem: Problem, run: Trajectory, k: int, t: float, back: float) -
     contacts = problem.contacts
     rows = slice(contacts.row[k], contacts.row[k + 1])
     at = t - back + 0.1 * back * np.array([-1.0, 0.0, 1.0])
-    seen = run.sample(np.maximum(at, run.t[0]))
+    seen = run.motion(np.maximum(at, run.t[0]))
     W = contacts.W[:, rows]
     D = W.T @ np.linalg.solve(problem.linear.M, W)
     rate = (seen.g[rows, 2] - seen.g[rows, 0]) / (0.2 * back)
@@ -90,12 +90,12 @@ def _passes(run: Trajectory, near: float) -> Iterator[str]:
         if not contacts.mu_s[k] > contacts.mu_0[k] * (1.0 + 1e-9):
             continue
         rows = slice(contacts.row[k], contacts.row[k + 1])
-        seen = run.rows()
+        seen = run.row_motion()
         r, slips = np.hypot(*seen.g[rows]), seen.mode[k] == SLIP
         top = float(r.max(initial=0.0))
 
         def speed(t: Floats, rows: slice = rows) -> Floats:
-            return np.asarray(np.hypot(*run.sample(t).g[rows]))
+            return np.asarray(np.hypot(*run.motion(t).g[rows]))
 
         i = _minima(r, slips, 0.05 * top)
         t, least = _lowest(speed, seen.t[i - 1], seen.t[i + 1])
@@ -119,7 +119,7 @@ def _passes(run: Trajectory, near: float) -> Iterator[str]:
 
 def _caught(run: Trajectory, k: int, r: Floats, top: float) -> list[float]:
     """When a slip ended in stick by a force above mu_k N though its path was no straight line."""
-    problem, seen = run.problem, run.rows()
+    problem, seen = run.problem, run.row_motion()
     contacts, events = problem.contacts, run.transitions
     rows = slice(contacts.row[k], contacts.row[k + 1])
     times = []

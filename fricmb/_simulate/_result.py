@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -15,7 +14,7 @@ from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
 from fricmb._simulate._misses import miss_notes
 from fricmb.errors import IntegrationError
-from fricmb.integrate import Samples, Trajectory
+from fricmb.integrate import MotionSamples, Trajectory
 from fricmb.integrate.problem import LAW_COEFFICIENT, Floats
 from fricmb.solution import Piece, Run, Solution, Stats
 
@@ -50,7 +49,7 @@ def make_solution(
     if failure is None:
         try:
             sol = _solution(mechanics, trajectory, stats, None, span.t_eval)
-            sol.stats = replace(sol.stats, wall_s=time.perf_counter() - begin)
+            sol.take_time(time.perf_counter() - begin)
             return sol
         except _Unsound as unsound:
             t, reason, end = unsound.t, unsound.reason, unsound.end
@@ -70,13 +69,21 @@ def _solution(
     """The solution up to ``t_end`` (None: all of it), or _Unsound."""
     run = Run((Piece(trajectory, mechanics.origin, mechanics, t_end),))
     try:
-        sol = Solution(names=mechanics.names, run=run, stats=stats, times=times)
+        sol = Solution(names=mechanics.names, run=run, stats=stats, times=times, find_notes=find_notes)
     except IntegrationError as error:
         raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
     check_friction(mechanics, trajectory, sol.record.samples, stats.rtol or 0.0)
-    notes = (*stats.notes, *ledger_note(sol, stats.rtol), *miss_notes(sol, trajectory, stats.rtol))
-    sol.stats = replace(stats, notes=notes)
     return sol
+
+
+def find_notes(sol: Solution) -> tuple[str, ...]:
+    """What a look at the whole run finds: asked for when notes are read, since it may take longer than the run."""
+    (piece,), rtol = sol.run.pieces, sol.stats.rtol
+    try:
+        notes = ledger_note(sol, rtol)
+    except IntegrationError as error:
+        notes = (f"energies are beyond what numbers hold: {error.reason}",)
+    return (*notes, *miss_notes(sol, piece.trajectory, rtol))
 
 
 def _sound_part(
@@ -119,7 +126,7 @@ class _Unsound(Exception):
         self.end = end
 
 
-def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: Samples, rtol: float) -> None:
+def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: MotionSamples, rtol: float) -> None:
     """Refuse friction that drives, which is what a coefficient does that turns negative.
 
     The built-in integrators stop there by themselves; this is for others.  Between steps slip that has only begun may
@@ -131,7 +138,7 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: S
     if not varies.any() or samples.t.size == 0:
         return
 
-    def power(samples: Samples) -> Floats:
+    def power(samples: MotionSamples) -> Floats:
         return np.asarray(np.add.reduceat(samples.F * samples.g, row[:-1], axis=0))
 
     given = power(samples)
@@ -145,7 +152,7 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: S
     t = float(samples.t[i])
     sound = _step_before(trajectory, t)
     while sound is not None and sound < (middle := 0.5 * (sound + t)) < t:
-        if (power(trajectory.sample(np.array([middle]))) > limit).any():
+        if (power(trajectory.motion(np.array([middle]))) > limit).any():
             t = middle
         else:
             sound = middle

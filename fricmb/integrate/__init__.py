@@ -24,6 +24,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
             "Start",
             "Templates",
         ],
-        "trajectory": ["Counters", "Samples", "Trajectory", "Transitions"],
+        "trajectory": ["Counters", "MotionSamples", "Samples", "Trajectory", "Transitions"],
     },
 )

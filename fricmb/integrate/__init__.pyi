@@ -15,6 +15,7 @@ from fricmb.integrate.problem import Templates as Templates
 from fricmb.integrate.select import choose as choose
 from fricmb.integrate.select import integrators as integrators
 from fricmb.integrate.trajectory import Counters as Counters
+from fricmb.integrate.trajectory import MotionSamples as MotionSamples
 from fricmb.integrate.trajectory import Samples as Samples
 from fricmb.integrate.trajectory import Trajectory as Trajectory
 from fricmb.integrate.trajectory import Transitions as Transitions

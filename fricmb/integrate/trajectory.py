@@ -10,12 +10,11 @@ from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
 
 
 @dataclass(frozen=True, kw_only=True)
-class Samples:
-    """Everything a run knows at given times; time is the last axis.
+class MotionSamples:
+    """Motion and forces at given times; time is the last axis.
 
     ``q``, ``v`` (n, n_t), ``z`` (n_z, n_t), ``F`` and ``g`` (m, n_t) force on the contact's first end and relative
-    velocity, ``N`` (n_c, n_t), ``mode`` (n_c, n_t) int8, ``friction_loss`` (n_c, n_t), ``damping_loss`` and ``input``
-    (n_t,): energies cumulated from the start of the run.
+    velocity, ``N`` (n_c, n_t), ``mode`` (n_c, n_t) int8.
     """
 
     t: Floats
@@ -26,6 +25,15 @@ class Samples:
     g: Floats
     N: Floats
     mode: Codes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Samples(MotionSamples):
+    """Everything a run knows at given times: motion, forces, and energies cumulated from the start of the run.
+
+    ``friction_loss`` (n_c, n_t), ``damping_loss`` and ``input`` (n_t,).
+    """
+
     friction_loss: Floats
     damping_loss: Floats
     input: Floats
@@ -107,9 +115,13 @@ class Trajectory(ABC):
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order; the right-hand value at a transition."""
 
-    def motion(self, t: Floats) -> Samples:
-        """As :meth:`sample`; energies may be left 0 where they cost as much as the motion."""
+    def motion(self, t: Floats) -> MotionSamples:
+        """As :meth:`sample`; a run whose energies cost something leaves them out."""
         return self.sample(t)
+
+    def row_motion(self) -> MotionSamples:
+        """As :meth:`rows`; a run whose energies cost something leaves them out."""
+        return self.rows()
 
     def attach(self, problem: Problem) -> None:
         """Take the problem again after unpickling.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ def derive(sol: Any, asked: tuple[str, ...]) -> None:
     tangents = sol.run.__dict__.setdefault("_tangents", {})
     if asked not in tangents:
         tangents[asked] = Tangent(sol, asked)
-        sol.stats = replace(sol.stats, notes=tuple(dict.fromkeys((*sol.stats.notes, *tangents[asked].notes))))
+        sol.add_notes(tangents[asked].notes)
     tangent = tangents[asked]
     t = sol.t
     twice = np.zeros(t.size, dtype=bool)

@@ -7,13 +7,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.integrate import Samples
 from fricmb.integrate.problem import Codes, Floats
-from fricmb.solution._recorded import Recorded, row_of
+from fricmb.solution._ledger import Ledger
+from fricmb.solution._recorded import row_of
 from fricmb.solution._rest import resting
 
 
-class ContactSignals(Recorded):
+class ContactSignals(Ledger):
     """Forces, modes and states of contacts, reactions of joints, shares of time."""
 
     def force(self, contact: str) -> Floats:
@@ -76,16 +76,12 @@ class ContactSignals(Recorded):
         length = self.t_end - self.t_start
         return float(np.diff(self.rest_spans(contact)).sum() / length) if length > 0.0 else 0.0
 
-    @property
-    def _rows(self) -> Samples:
-        return (self.record if self.has_rows else self.run.rows()).samples
-
     @cached_property
     def _rows_of_modes(self) -> tuple[Codes, Floats]:
-        samples = self._rows
+        samples = (self.record if self.has_rows else self.run.row_motion()).samples
         return samples.mode[:, :-1], np.diff(samples.t)
 
     @cached_property
     def _resting(self) -> tuple[Floats, NDArray[np.bool_]]:
-        samples = self._rows
+        samples = self.accounts if self.has_rows else self.run.rows().samples
         return samples.t, resting(samples, self.names.row)

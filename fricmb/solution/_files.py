@@ -129,7 +129,7 @@ def _run_of(sol: Solution) -> tuple[dict[str, Any], str]:
 
 def _arrays(sol: Solution) -> dict[str, Any]:
     names, record, energy = sol.names, sol.record, sol.energy
-    arrays = {f.name: getattr(record.samples, f.name) for f in fields(Samples)}
+    arrays = {f.name: getattr(sol.accounts, f.name) for f in fields(Samples)}
     arrays["F"], arrays["g"] = arrays["F"] * names.row_scale, arrays["g"] / names.row_scale
     if record.piece is not None:
         arrays["piece"] = record.piece

@@ -4,25 +4,41 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from fricmb.integrate import Samples
 from fricmb.integrate.problem import Floats
 from fricmb.solution._energy import Energy, Reference
-from fricmb.solution._recorded import Recorded
+from fricmb.solution._recorded import Recorded, finite
 from fricmb.solution._run import Record
 
 
 class Ledger(Recorded):
-    """Kinetic and potential energy, losses and input."""
+    """Kinetic and potential energy, losses and input; integrated from the dense output when they are asked for."""
 
     @cached_property
     def energy(self) -> Energy:
-        """The energy ledger at the solution's times."""
-        return self._ledger(self.record, None if self.has_rows else self._reference, self._energies)
+        """The energy ledger at the solution's times.
 
-    def _ledger(
-        self, record: Record, reference: Reference | None, energies: tuple[Floats, Floats] | None = None
-    ) -> Energy:
-        kinetic, potential = self.run.energies(record) if energies is None else energies
-        samples = record.samples
+        Raises
+        ------
+        IntegrationError
+            Where an energy is beyond what numbers hold.
+        """
+        energies = self.run.energies(self.record) if self._energies is None else self._energies
+        return self._ledger(energies, self.accounts, None if self.has_rows else self._reference)
+
+    @cached_property
+    def accounts(self) -> Samples:
+        """What the run says at the solution's times, energies since its start included."""
+        here = self.record.samples
+        if isinstance(here, Samples):
+            return here
+        run = self.run
+        found = finite(run.rows() if self.has_rows else run.sample(here.t)).samples
+        spent = {name: getattr(found, name) for name in ("friction_loss", "damping_loss", "input")}
+        return Samples(**vars(here), **spent)  # the motion is kept once
+
+    def _ledger(self, energies: tuple[Floats, Floats], samples: Samples, reference: Reference | None) -> Energy:
+        kinetic, potential = energies
         return Energy(
             kinetic=kinetic,
             potential=potential,
@@ -37,4 +53,8 @@ class Ledger(Recorded):
     def _reference(self) -> Reference:
         if self.has_rows:
             return self.energy.reference
-        return self._ledger(self.run.rows(), None).reference
+        run = self.run
+        if run.reference is None:  # of all solutions that see the run at other times
+            rows: Record[Samples] = run.rows()
+            run.reference = self._ledger(run.energies(rows), rows.samples, None).reference
+        return run.reference

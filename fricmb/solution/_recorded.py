@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from fricmb.errors import IntegrationError, SceneError, unknown_name
-from fricmb.integrate import Start
+from fricmb.integrate import MotionSamples, Start
 from fricmb.integrate.problem import Floats
 from fricmb.solution._derivatives import Derivatives
 from fricmb.solution._events import Events
@@ -17,15 +19,21 @@ from fricmb.solution._stats import Stats
 from fricmb.solution._stored import Stored
 from fricmb.values import Units
 
+_Samples = TypeVar("_Samples", bound=MotionSamples)
+
 
 class Recorded:
-    """Times and motion of a run; :class:`Solution` is made of it."""
+    """Times and motion of a run; :class:`Solution` is made of it.
+
+    ``find_notes(sol)``: further sentences for the notes, found when these are first read; a function of a module.
+    """
 
     def __init__(
-        self, *, names: Names, run: Run, stats: Stats, events: Events | None = None, times: Floats | None = None
-    ) -> None:
+        self, *, names: Names, run: Run, stats: Stats, events: Events | None = None, times: Floats | None = None,
+        find_notes: Callable[[Any], tuple[str, ...]] | None = None,
+    ) -> None:  # fmt: skip
         self.names = names
-        self.stats = stats
+        self._stats, self._find_notes = stats, find_notes
         self._run: Run | Stored = run
         self._events = events
         self._span = run.t_start, run.t_end
@@ -34,7 +42,30 @@ class Recorded:
         self._units: Units | None = None
         self._asked: tuple[str, ...] = ()
         self._derivatives: Derivatives | None = None
-        self.record = finite(run.rows() if times is None else run.sample(times))
+        self.record: Record[MotionSamples] = finite(run.row_motion() if times is None else run.motion(times))
+
+    @property
+    def stats(self) -> Stats:
+        """How the run was made, and what it cost.  Reading its notes may integrate energies."""
+        return self._stats if self._find_notes is None else self._stats.until_read(self._notes)
+
+    @stats.setter
+    def stats(self, stats: Stats) -> None:
+        self._stats, self._find_notes = stats, None
+
+    def take_time(self, wall_s: float) -> None:
+        """Say what the whole call took."""
+        self._stats = replace(self._stats, wall_s=wall_s)
+
+    def add_notes(self, notes: tuple[str, ...]) -> None:
+        """Further notes that are known already."""
+        self._stats = replace(self._stats, notes=tuple(dict.fromkeys((*self._stats.notes, *notes))))
+
+    def _notes(self) -> tuple[str, ...]:
+        if self._find_notes is not None:
+            self._stats = replace(self._stats, notes=(*self._stats.notes, *self._find_notes(self)))
+            self._find_notes = None
+        return self._stats.notes
 
     @property
     def t(self) -> Floats:
@@ -106,7 +137,7 @@ class Recorded:
         At a transition the right-hand value.  Raises SceneError for a time outside the run.
         """
         run = self.run
-        samples = finite(run.sample(run.inside(t))).samples
+        samples = finite(run.motion(run.inside(t))).samples
         state = np.concatenate((samples.q, samples.v))
         return state[:, 0] if np.ndim(t) == 0 else state
 
@@ -141,7 +172,7 @@ def row_of(values: Floats, index: int) -> Floats:
     return signal
 
 
-def finite(record: Record) -> Record:
+def finite(record: Record[_Samples]) -> Record[_Samples]:
     """The record, or IntegrationError where a value in it is not finite."""
     samples = record.samples
     if is_finite(samples, record.moving):

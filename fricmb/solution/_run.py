@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.errors import FricmbError, SceneError
-from fricmb.integrate import Samples, Start, Trajectory
+from fricmb.integrate import MotionSamples, Samples, Start, Trajectory
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import concatenate, take
+from fricmb.solution._energy import Reference
 
 Flags = NDArray[np.bool_]
+_Samples = TypeVar("_Samples", bound=MotionSamples)
+_Known = TypeVar("_Known", bound=MotionSamples, covariant=True)
 #: A time this far outside a run, relative to the run's times, is its end: accumulated steps of a t_eval.
 ROUND_OFF = 1e-10
 
@@ -32,16 +35,16 @@ class Mechanics(Protocol):
     def fastest(self) -> float:
         """Largest angular frequency of what was run."""
 
-    def kinetic(self, samples: Samples, moving: Ints | None = None) -> Floats:
+    def kinetic(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Kinetic energy (n_t,); ``moving``: degrees of freedom that do not rest throughout, if known."""
 
-    def potential(self, samples: Samples, moving: Ints | None = None) -> Floats:
+    def potential(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_u, n_t)."""
 
-    def reaction(self, joint: str, samples: Samples) -> Floats:
+    def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t)."""
 
 
@@ -96,7 +99,7 @@ class Piece:
         try:
             mechanics = self.origin.build(self.origin.scene, **self.origin.options)
             mechanics.attach(self._trajectory)
-            ends = self._trajectory.sample(np.array([self.t_start, self.t_end]))
+            ends = self._trajectory.motion(np.array([self.t_start, self.t_end]))
             first, last = self._trajectory.ends
             if not (is_finite(ends) and first <= self.t_start <= self.t_end <= last):
                 raise ValueError("its ends are not those of a run")
@@ -118,7 +121,13 @@ class Piece:
 
     def rows(self) -> Samples:
         """Values at the accepted steps."""
-        rows = self.trajectory.rows()
+        return self._cut(self.trajectory.rows())
+
+    def row_motion(self) -> MotionSamples:
+        """The same without energies, where these cost something."""
+        return self._cut(self.trajectory.row_motion())
+
+    def _cut(self, rows: _Samples) -> _Samples:
         if self.is_whole:
             return rows
         return take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
@@ -128,13 +137,13 @@ class Piece:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Record:
+class Record(Generic[_Known]):
     """Samples, and for each time the number of the piece it is from (None: there is one piece).
 
     ``moving``: degrees of freedom that move; None: all may.
     """
 
-    samples: Samples
+    samples: _Known
     piece: Ints | None = None
     moving: Ints | None = None
 
@@ -148,6 +157,8 @@ class Run:
 
     def __init__(self, pieces: tuple[Piece, ...]) -> None:
         self.pieces = pieces
+        #: What energies are measured against, once somebody has asked.
+        self.reference: Reference | None = None
 
     @property
     def t_start(self) -> float:
@@ -170,35 +181,51 @@ class Run:
         last = self.pieces[-1]
         if last.is_whole:
             return last.trajectory.end
-        samples = last.trajectory.sample(np.array([last.t_end]))
+        samples = last.trajectory.motion(np.array([last.t_end]))
         return Start(t=last.t_end, q=samples.q[:, 0], v=samples.v[:, 0], z=samples.z[:, 0])
 
     def inside(self, t: Any) -> Floats:
         """Times of the user as an array within the run; SceneError for a time outside by more than round-off."""
         return times_inside(t, self.t_start, self.t_end)
 
-    def rows(self) -> Record:
+    def rows(self) -> Record[Samples]:
         """Accepted steps of all pieces; the time where two meet is there twice, like a transition."""
         if len(self.pieces) == 1:
             return Record(samples=self.pieces[0].rows(), moving=self.pieces[0].trajectory.moving)
-        parts = [self._add(k, piece.rows()) for k, piece in enumerate(self.pieces)]
-        return Record(
-            samples=concatenate(parts), piece=np.repeat(np.arange(len(parts)), [part.t.size for part in parts])
-        )
+        return _in_line([self._add(k, piece.rows()) for k, piece in enumerate(self.pieces)], Samples)
 
-    def sample(self, t: Floats) -> Record:
+    def row_motion(self) -> Record[MotionSamples]:
+        """The same without energies, where these cost something."""
+        if len(self.pieces) == 1:
+            return Record(samples=self.pieces[0].row_motion(), moving=self.pieces[0].trajectory.moving)
+        return _in_line([piece.row_motion() for piece in self.pieces], MotionSamples)
+
+    def sample(self, t: Floats) -> Record[Samples]:
         """Values at times within the run, in any order; right-hand values where two pieces meet."""
         if len(self.pieces) == 1:
             trajectory = self.pieces[0].trajectory
             return Record(samples=trajectory.sample(t), moving=trajectory.moving)
+        return self._by_piece(t, lambda k, t: self._add(k, self.pieces[k].trajectory.sample(t)), Samples)
+
+    def motion(self, t: Floats) -> Record[MotionSamples]:
+        """The same without energies, where these cost something."""
+        if len(self.pieces) == 1:
+            trajectory = self.pieces[0].trajectory
+            return Record(samples=trajectory.motion(t), moving=trajectory.moving)
+        return self._by_piece(t, lambda k, t: self.pieces[k].trajectory.motion(t), MotionSamples)
+
+    def _by_piece(
+        self, t: Floats, sampled: Callable[[int, Floats], _Samples], kind: type[_Samples]
+    ) -> Record[_Samples]:
+        """What ``sampled`` says of the times of each piece, in the order of the times."""
         piece = np.searchsorted([p.t_start for p in self.pieces[1:]], t, side="right").astype(np.int64)
         order = np.argsort(piece, kind="stable")
-        parts = [self._add(k, self.pieces[k].trajectory.sample(t[piece == k])) for k in np.unique(piece)]
+        parts = [sampled(int(k), t[piece == k]) for k in np.unique(piece)]
         back = np.empty_like(order)
         back[order] = np.arange(order.size)
-        return Record(samples=take(concatenate(parts), back), piece=piece)
+        return Record(samples=take(concatenate(parts, kind), back), piece=piece)
 
-    def energies(self, record: Record) -> tuple[Floats, Floats]:
+    def energies(self, record: Record[MotionSamples]) -> tuple[Floats, Floats]:
         """Kinetic and potential energy (n_t,)."""
         samples, piece = record.samples, record.piece
         if piece is None:
@@ -211,7 +238,7 @@ class Run:
             kinetic[mine], potential[mine] = mechanics.kinetic(part), mechanics.potential(part)
         return kinetic, potential
 
-    def reaction(self, joint: str, record: Record) -> Floats:
+    def reaction(self, joint: str, record: Record[MotionSamples]) -> Floats:
         """Reactions of a joint (rows, n_t)."""
         samples, piece = record.samples, record.piece
         if piece is None:
@@ -259,7 +286,13 @@ class Run:
         return before
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"pieces": self.pieces}
+        return {"pieces": self.pieces, "reference": self.reference}
+
+
+def _in_line(parts: list[_Samples], kind: type[_Samples]) -> Record[_Samples]:
+    """Rows of pieces one after the other."""
+    numbers = np.repeat(np.arange(len(parts)), [part.t.size for part in parts])
+    return Record(samples=concatenate(parts, kind), piece=numbers)
 
 
 def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Floats:
@@ -282,17 +315,17 @@ def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Float
     return times.clip(t_start, t_end)
 
 
-def is_finite(samples: Samples, moving: Ints | None = None) -> bool:
+def is_finite(samples: MotionSamples, moving: Ints | None = None) -> bool:
     """Whether every number is finite; of degrees of freedom those that move (None: all)."""
     if moving is not None:
         samples = replace(samples, q=samples.q[moving], v=samples.v[moving])
-    return all(bool(np.isfinite(getattr(samples, f.name)).all()) for f in fields(Samples) if f.name != "mode")
+    return all(bool(np.isfinite(getattr(samples, f.name)).all()) for f in fields(samples) if f.name != "mode")
 
 
-def first_bad(samples: Samples) -> int:
+def first_bad(samples: MotionSamples) -> int:
     """Number of the first time at which a value is not finite; the number of times if all are."""
     bad = np.zeros(samples.t.size, dtype=bool)
-    for f in fields(Samples):
+    for f in fields(samples):
         if f.name != "mode":
             bad |= ~np.isfinite(getattr(samples, f.name)).reshape(-1, samples.t.size).all(axis=0)
     return int(np.argmax(bad)) if bad.any() else samples.t.size

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from fricmb.integrate import Samples
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._contact_signals import ContactSignals
 from fricmb.solution._derivatives import Derivatives
 from fricmb.solution._differentiated import Differentiated
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Events
-from fricmb.solution._ledger import Ledger
 from fricmb.solution._names import Names
 from fricmb.solution._run import Record
 from fricmb.solution._stats import Stats
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fricmb.plot import SolutionPlots
 
 
-class Solution(ContactSignals, Differentiated, Ledger):
+class Solution(ContactSignals, Differentiated):
     """What a run found: motion, contacts, transitions, energies, and the cost of it.
 
     Made by :func:`fricmb.simulate`.  Time is the last axis of every array; units are those of the scene.
@@ -50,7 +50,8 @@ class Solution(ContactSignals, Differentiated, Ledger):
         """
         run = self.run
         other = Solution(names=self.names, run=run, stats=self.stats, events=self.events, times=run.inside(t))
-        other.__dict__["_reference"] = self._reference
+        if "_reference" in self.__dict__:
+            other.__dict__["_reference"] = self._reference
         other._units = self._units
         other._asked = self._asked
         return other
@@ -161,7 +162,7 @@ def restore(
     names: Names,
     stats: Stats,
     events: Events,
-    record: Record,
+    record: Record[Samples],
     span: tuple[float, float],
     has_rows: bool,
     energies: tuple[Floats, Floats],

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +32,8 @@ class Stats:
         Seconds spent compiling kernels or loading compiled ones from the disk, and seconds altogether (which include
         the former).
     notes : tuple of str
-        What a careful reader of the result should know.
+        What a careful reader of the result should know.  Looked for when they are first read; until then the counters
+        of a solution hold on to it.
     islands : tuple of IslandStats
         Where islands were run on their own: each of those that were.
     rtol : float or None
@@ -49,10 +51,32 @@ class Stats:
     n_lu: int = 0
     compile_s: float = 0.0
     wall_s: float = 0.0
-    notes: tuple[str, ...] = ()
+    # (of no default, so that __getattr__ is asked for those that have not been looked for)
+    notes: tuple[str, ...] = field(default_factory=tuple)
     islands: tuple[IslandStats, ...] = ()
     rtol: float | None = None
     atol: tuple[float, ...] | None = None
+
+    def until_read(self, find: Callable[[], tuple[str, ...]]) -> Stats:
+        """The same, whose notes are what ``find()`` returns when they are first read."""
+        known = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "notes"}
+        later = Stats(**known)
+        del later.__dict__["notes"]
+        later.__dict__["_find"] = find
+        return later
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            find = self.__dict__.get("_find") if name == "notes" else None
+            if find is None:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            self.__dict__["notes"] = notes = find()
+            del self.__dict__["_find"]
+            return notes
+
+        def __getstate__(self) -> dict[str, Any]:
+            return {f.name: getattr(self, f.name) for f in fields(self)}
 
     @classmethod
     def total(cls, parts: list[Stats]) -> Stats:

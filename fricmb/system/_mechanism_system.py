@@ -10,7 +10,7 @@ import numpy as np
 from fricmb.errors import unknown_name
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import OPEN, Floats, Start
-from fricmb.integrate.trajectory import Samples
+from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._evaluate import _each
 from fricmb.system._system import System
 from fricmb.system._tables import Row
@@ -37,25 +37,25 @@ class MechanismSystem(System):
         """Degrees of freedom, and the points fixed in bodies behind them."""
         return self.problem.n + self.mechanism.n_places
 
-    def kinetic(self, samples: Samples) -> Floats:
+    def kinetic(self, samples: MotionSamples) -> Floats:
         """Kinetic energy (n_t,)."""
         M, v = self.mechanism.M, samples.v
         energy: Floats = 0.5 * (M.value @ (v[M.row] * v[M.column]))
         return energy
 
-    def potential(self, samples: Samples) -> Floats:
+    def potential(self, samples: MotionSamples) -> Floats:
         """Stored energy (n_t,), weight included."""
         return super().potential(self._extended(samples))
 
-    def potentials(self, samples: Samples) -> dict[str, Floats]:
+    def potentials(self, samples: MotionSamples) -> dict[str, Floats]:
         """Stored energy by part."""
         return super().potentials(self._extended(samples))
 
-    def _extended(self, samples: Samples) -> Samples:
+    def _extended(self, samples: MotionSamples) -> MotionSamples:
         p, rate = place_motions(self.mechanism, samples.q, samples.v)
         return replace(samples, q=np.concatenate([samples.q, p]), v=np.concatenate([samples.v, rate]))
 
-    def reaction(self, joint: str, samples: Samples) -> Floats:
+    def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Multipliers of a joint (m, n_t) at states with their friction modes."""
         joints = self.mechanism.joints
         holds = np.diff(joints.row) > 0
@@ -64,7 +64,7 @@ class MechanismSystem(System):
             raise unknown_name("joint", joint, known)
         return self.reactions(samples)[joint]
 
-    def reactions(self, samples: Samples) -> dict[str, Floats]:
+    def reactions(self, samples: MotionSamples) -> dict[str, Floats]:
         """The same of every joint by name, and of the inner constraints of bodies by theirs."""
         from fricmb.integrate.constrained._assemble import away
         from fricmb.integrate.constrained._trajectory import complete_open
@@ -85,7 +85,7 @@ class MechanismSystem(System):
         lam = self._least_norm(samples, found[3])
         return {name: lam[a:b] for name, (a, b) in zip(joints.names, pairwise(joints.row), strict=True)}
 
-    def _directions(self, samples: Samples) -> Floats:
+    def _directions(self, samples: MotionSamples) -> Floats:
         """Unit vectors of slip (m_p, n_t): against friction, or along the slip velocity where there is none."""
         row = self.problem.contacts.row
         n = np.zeros_like(samples.F)
@@ -96,7 +96,7 @@ class MechanismSystem(System):
             n[first:last] = against / np.where(size > 0.0, size, 1.0)
         return n
 
-    def _least_norm(self, samples: Samples, lam: Floats) -> Floats:
+    def _least_norm(self, samples: MotionSamples, lam: Floats) -> Floats:
         """Without what redundant constraints may push against one another."""
         if not self.mechanism.joints.dropped.any():
             return lam

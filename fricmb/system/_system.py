@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Problem, SparseLinear, Start, Templates
-from fricmb.integrate.trajectory import Samples
+from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._evaluate import arguments, evaluate
 from fricmb.system._lined import LinedStores
@@ -71,16 +71,16 @@ class System:
         found = [signals.breakpoints, *(s.instants(t_start, t_end) for s in self.switches)]
         return replace(self.problem, signals=replace(signals, breakpoints=np.unique(np.concatenate(found))))
 
-    def reaction(self, joint: str, samples: Samples) -> Floats:
+    def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t); there is none without joints."""
         raise unknown_name("joint", joint, ())
 
-    def reactions(self, samples: Samples) -> dict[str, Floats]:
+    def reactions(self, samples: MotionSamples) -> dict[str, Floats]:
         """Reactions of all joints by name."""
         return {}
 
     # -- energies -----------------------------------------------------------------------------------------------
-    def kinetic(self, samples: Samples) -> Floats:
+    def kinetic(self, samples: MotionSamples) -> Floats:
         """Kinetic energy (n_t,)."""
         masses, v = self._masses, samples.v
         if masses is not None:
@@ -88,7 +88,7 @@ class System:
             return energy
         return np.asarray(0.5 * np.einsum("it,it->t", v, self.problem.linear.M @ v))
 
-    def potential(self, samples: Samples) -> Floats:
+    def potential(self, samples: MotionSamples) -> Floats:
         """Stored energy (n_t,): springs, normal-force laws, and forces that are constant or linear in coordinates."""
         total = self._linear.energy(samples.q, self.signals(samples.t)[0])
         if (
@@ -118,11 +118,11 @@ class System:
         """Number of coordinates that stores depend on."""
         return self.problem.n
 
-    def potentials(self, samples: Samples) -> dict[str, Floats]:
+    def potentials(self, samples: MotionSamples) -> dict[str, Floats]:
         """Stored energy of every element and of every contact with a normal-force law, by name."""
         return dict(self._each_potential(samples))
 
-    def _each_potential(self, samples: Samples, *, linear: bool = True) -> Iterator[tuple[str, Floats]]:
+    def _each_potential(self, samples: MotionSamples, *, linear: bool = True) -> Iterator[tuple[str, Floats]]:
         u = self.signals(samples.t)
         contacts = self.problem.contacts
         pressed = np.flatnonzero(contacts.normal == NORMAL_LAW)

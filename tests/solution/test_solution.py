@@ -1,10 +1,11 @@
 import pickle
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from fricmb.errors import FricmbError, IntegrationError, SceneError
+from fricmb.integrate import MotionSamples
 
 ENDS = np.pi * np.arange(1, 6)
 
@@ -160,3 +161,20 @@ def test_table(sol):
     ]  # fmt: skip
     assert frame.index.name == "t"
     np.testing.assert_array_equal(frame["mass.x.velocity"], sol.v[0])
+
+
+def test_energies_beyond_what_numbers_hold_are_refused_when_asked_for(make):
+    class Huge(type(make().run.pieces[0]._trajectory)):
+        def rows(self):
+            samples = super().rows()
+            samples.friction_loss[0, -1] = np.inf
+            return samples
+
+        def row_motion(self):
+            held = vars(super().rows())
+            return MotionSamples(**{f.name: held[f.name] for f in fields(MotionSamples)})
+
+    sol = make(trajectory=Huge(0.0, 20.0))
+    assert np.isfinite(sol.q).all()
+    with pytest.raises(IntegrationError, match="not finite at t = 20"):
+        _ = sol.energy

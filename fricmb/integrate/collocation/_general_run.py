@@ -95,7 +95,9 @@ class ExactRun(RowTrajectory):
         super().__init__(problem, chunks, transitions, counters, end, failure)
         self._nodes, self._exact_up_to = exact
 
-    def _fill(self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2) -> None:
+    def _fill(
+        self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
+    ) -> None:
         packed, problem = packed_of(self.problem), self.problem
         exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)

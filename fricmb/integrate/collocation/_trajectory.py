@@ -12,7 +12,7 @@ from fricmb.integrate.collocation._prepare import Rows, linear_part, model, run_
 from fricmb.integrate.collocation._run import Run
 from fricmb.integrate.collocation._sample import locate, sample_rows
 from fricmb.integrate.problem import Floats, Ints, Problem, Start
-from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 
 class SingleRun(Trajectory):
@@ -77,30 +77,30 @@ class SingleRun(Trajectory):
 
     def rows(self) -> Samples:
         """Values at the rows."""
-        if self._n_rows == 0:
-            return self._at_rest()
-        row, tau, t = self._row_times
-        return self._samples(row, tau, t)
+        return self._at_rest() if self._n_rows == 0 else self._samples(*self._row_times)
+
+    def row_motion(self) -> MotionSamples:
+        """Values at the rows, without energies."""
+        return self._at_rest() if self._n_rows == 0 else self._motion(*self._row_times)[0]
 
     def sample(self, t: Floats) -> Samples:
         """Values at any times within the run."""
-        return self._sampled(t, energies=True)
+        return self._at_rest(t) if self._n_rows == 0 else self._samples(*self._located(t))
 
-    def motion(self, t: Floats) -> Samples:
-        """Values at any times within the run, energies being 0."""
-        return self._sampled(t, energies=False)
+    def motion(self, t: Floats) -> MotionSamples:
+        """Values at any times within the run, without energies."""
+        return self._at_rest(t) if self._n_rows == 0 else self._motion(*self._located(t))[0]
 
-    def _sampled(self, t: Floats, *, energies: bool) -> Samples:
+    def _located(self, t: Floats) -> tuple[Ints, Floats, Floats]:
+        """Row of each time, time since its start, and the time."""
         t = np.ascontiguousarray(t, dtype=float)
-        if self._n_rows == 0:
-            return self._at_rest(t)
         row, tau = np.empty(len(t), dtype=np.int64), np.empty(len(t))
         locate(self._run(), self._n_rows, t, row, tau)
-        return self._samples(row, tau, t, energies=energies)
+        return row, tau, t
 
     def _at_rest(self, t: Floats | None = None) -> Samples:
         """The state of a run of no length."""
-        times = np.array([self.end.t]) if t is None else t
+        times = np.array([self.end.t]) if t is None else np.ascontiguousarray(t, dtype=float)
         k, problem = len(times), self.problem
         wide = partial(np.repeat, repeats=k, axis=1)
         g = problem.contacts.W.T @ self.end.v - problem.contacts.w
@@ -151,10 +151,16 @@ class SingleRun(Trajectory):
         self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), found[:, :k]]), axis=1)
         return self._totals[:, row] + found[:, k:]
 
-    def _samples(self, row: Ints, tau: Floats, t: Floats, *, energies: bool = True) -> Samples:
+    def _motion(self, row: Ints, tau: Floats, t: Floats) -> tuple[MotionSamples, Floats]:
+        """Motion, and the loss to friction, which comes with it."""
         q, v, F, g, mode, loss = self._states(row, tau, t)
-        damping, supply = self._energies(row, tau) if energies else np.zeros((2, len(t)))
-        return Samples(
+        found = MotionSamples(
             t=t, q=q, v=v, z=np.empty((0, len(t))), F=F, g=g, N=np.full((1, len(t)), self.problem.contacts.N[0]),
-            mode=mode.astype(np.int8)[None], friction_loss=loss[None], damping_loss=damping, input=supply,
+            mode=mode.astype(np.int8)[None],
         )  # fmt: skip
+        return found, loss
+
+    def _samples(self, row: Ints, tau: Floats, t: Floats) -> Samples:
+        motion, loss = self._motion(row, tau, t)
+        damping, supply = self._energies(row, tau)
+        return Samples(**vars(motion), friction_loss=loss[None], damping_loss=damping, input=supply)

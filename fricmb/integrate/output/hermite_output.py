@@ -244,7 +244,8 @@ def sample_rows(
 ) -> None:  # fmt: skip
     """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
 
-    ``side``: a time in the interval between breakpoints that each belongs to; ``part``: room for the rows of a step.
+    ``side``: a time in the interval between breakpoints that each belongs to; ``part``: room for the rows of a step,
+    of no length where energies are not asked for.
     """
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
     at_F = 1 + 3 * n + 2 * nz
@@ -255,9 +256,10 @@ def sample_rows(
         left = values[k]
         set_window_around(stops, s, side[j])
         if t[j] > left[0] and k + 1 < values.shape[0] and values[k + 1, 0] > left[0]:
-            if ends_of_step(values, kind, k, ends):
-                open_step(packed, s, y, values, ends, modes, part, sizes, pivots, address)
-            work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots, address)
+            if part.shape[0] > 0:
+                if ends_of_step(values, kind, k, ends):
+                    open_step(packed, s, y, values, ends, modes, part, sizes, pivots, address)
+                work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots, address)
             complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots, address)
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])

@@ -16,7 +16,7 @@ from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Ints, Problem, Start
-from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 #: Rows as they were collected: values (n_r, width) as in Rows, kind (n_r,), mode (n_r, n_c).
 Chunk = tuple[Floats, Codes, Codes2]
@@ -76,14 +76,25 @@ class RowTrajectory(Trajectory):
 
     def rows(self) -> Samples:
         """Values at the accepted steps, as they were found."""
-        return self._sample(self.t, self._steps)
+        return self._complete(*self._sampled(self.t, self._steps))
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
-        t = np.ascontiguousarray(t, dtype=float)
-        return self._sample(t, np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0))
+        return self._complete(*self._inside(t))
 
-    def _sample(self, t: Floats, index: Ints) -> Samples:
+    def motion(self, t: Floats) -> MotionSamples:
+        """Dense output without energies, for which powers are integrated anew."""
+        return self._inside(t, energies=False)[0]
+
+    def _inside(self, t: Floats, energies: bool = True) -> tuple[MotionSamples, Floats2]:
+        t = np.ascontiguousarray(t, dtype=float)
+        return self._sampled(t, np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0), energies)
+
+    def _complete(self, motion: MotionSamples, work: Floats2) -> Samples:
+        return Samples(**vars(motion), friction_loss=work[:-2], damping_loss=work[-2], input=work[-1])
+
+    def _sampled(self, t: Floats, index: Ints, energies: bool = True) -> tuple[MotionSamples, Floats2]:
+        """Motion within the rows ``index``, and the energies (n_c+2, n_t)."""
         problem = self.problem
         n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
         out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
@@ -91,13 +102,10 @@ class RowTrajectory(Trajectory):
         start = Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz))
         index = index.astype(np.int64)
         side = np.where(self._arriving[index] & (t <= self._times[index]), np.nextafter(t, -np.inf), self._times[index])
-        self._fill(state(problem, start), index, t, side, out, modes)
-        ends = np.cumsum([1, n, n, nz, m, nc, m, nc, 1, 1])
-        _, q, v, z, F, N, g, friction, damping, supply = np.split(np.ascontiguousarray(out.T), ends[:-1])
-        return Samples(
-            t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T), friction_loss=friction,
-            damping_loss=damping[0], input=supply[0],
-        )  # fmt: skip
+        self._fill(state(problem, start), index, t, side, out, modes, energies)
+        ends = np.cumsum([1, n, n, nz, m, nc, m, nc + 2])
+        _, q, v, z, F, N, g, work = np.split(np.ascontiguousarray(out.T), ends[:-1])
+        return MotionSamples(t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T)), work
 
     @cached_property
     def _arriving(self) -> NDArray[np.bool_]:
@@ -108,15 +116,17 @@ class RowTrajectory(Trajectory):
         passed = np.maximum.accumulate(np.where(self._kind == AFTER, row, -1))
         return passed < first
 
-    def _fill(self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2) -> None:
+    def _fill(
+        self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
+    ) -> None:
         """Rows of values and modes at times within the rows ``index``; ``y`` is room for a state.
 
-        ``side``: a time on the side of a breakpoint on which each is.
+        ``side``: a time on the side of a breakpoint on which each is; ``energies``: whether they are needed.
         """
         packed, problem = packed_of(self.problem), self.problem
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         rows = int(np.diff(self._steps).max(initial=1)) + 1
-        part = np.zeros((rows, 2, problem.n_c + 2))
+        part = np.zeros((rows if energies else 0, 2, problem.n_c + 2))
         sample_rows(
             packed, scratch(problem), y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side, part,
             out, modes, sizes, pivots, addresses("complete"),

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.trajectory import Counters, SampledTrajectory, Samples, Trajectory, Transitions
+from fricmb.integrate.trajectory import (
+    Counters,
+    MotionSamples,
+    SampledTrajectory,
+    Samples,
+    Trajectory,
+    Transitions,
+)
+
+_Samples = TypeVar("_Samples", bound=MotionSamples)
 
 #: Bytes of rows that a run keeps for its dense output where the times that are asked for are known.
 MEMORY = 6.4e7
@@ -93,7 +102,7 @@ def run_kept(
     )
     end, failure = parts[-1].end, parts[-1].failure
     return KeptTrajectory(
-        problem, concatenate(kept), transitions, add_counters([p.counters for p in parts]), end, failure
+        problem, concatenate(kept, Samples), transitions, add_counters([p.counters for p in parts]), end, failure
     )
 
 
@@ -138,18 +147,16 @@ def add_counters(counters: list[Counters]) -> Counters:
     return Counters(**{name: sum(getattr(part, name) for part in counters) for name in names}, notes=notes)
 
 
-def take(samples: Samples, columns: Any) -> Samples:
+def take(samples: _Samples, columns: Any) -> _Samples:
     """A part of the times."""
-    return Samples(**{f.name: getattr(samples, f.name)[..., columns] for f in fields(Samples)})
+    return type(samples)(**{f.name: getattr(samples, f.name)[..., columns] for f in fields(samples)})
 
 
-def concatenate(parts: list[Samples]) -> Samples:
-    """One after the other."""
-    if len(parts) == 1:
+def concatenate(parts: list[_Samples], kind: type[_Samples]) -> _Samples:
+    """One after the other: what ``kind`` holds of them."""
+    if len(parts) == 1 and type(parts[0]) is kind:
         return parts[0]
-    return Samples(
-        **{f.name: np.concatenate([getattr(part, f.name) for part in parts], axis=-1) for f in fields(Samples)}
-    )
+    return kind(**{f.name: np.concatenate([getattr(part, f.name) for part in parts], axis=-1) for f in fields(kind)})
 
 
 def _light(part: Trajectory) -> Trajectory:

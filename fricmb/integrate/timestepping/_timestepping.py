@@ -120,7 +120,8 @@ class TimeStepping(Integrator):
         chunks: list[dict[str, Any]] = []
         held = 0
         code = FULL
-        while code == FULL and (memory is None or held < memory) and ended() is None:
+        # once at least: a run that was ended before its first step has its start
+        while code == FULL and (not chunks or ((memory is None or held < memory) and ended() is None)):
             code = watched(drive, run)
             chunks.append(_emptied(run))
             held += 8 * width * len(chunks[-1]["row_t"])
