@@ -126,6 +126,11 @@ def law_terms(
         mu = sympy.Function(f"mu_{contact.name}")(_norm(velocity))
         limit = sympy.Function(f"mu_{contact.name}")(0)
         return mu, limit, _opposing(mu, normal, velocity), {}
+    if law.kind == "smooth" and law.compiled_force(len(velocity)) is not None:
+        names = [subscript(*_named(law, label, contact.name, letters)) for label in law.state_labels(letters)]
+        given = (*velocity, normal, *names)
+        force = tuple(sympy.Function(f"F_{contact.name}_{label}")(*given) for label in letters)
+        return None, None, force, {name: sympy.Function(f"rate_{name}")(*given) for name in names}
     stand = symbolic(law)
     replacement = collector.parameters(contact, law, f"{field}.")
     if law.kind == "smooth":

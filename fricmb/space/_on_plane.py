@@ -10,6 +10,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
+from fricmb.laws import FrictionLaw
 from fricmb.scene._expressions import check_expression
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._one_sided import OneSided
@@ -20,6 +21,7 @@ from fricmb.space._directors import RigidBody
 from fricmb.space._joint import SpaceJoint
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
+from fricmb.space._turning import KINDS, kind_of, turning_forms, turning_rows
 from fricmb.values import is_expression, value_of
 
 #: A disc lies flat where the sine of its angle with the plane is no more than this.
@@ -54,6 +56,10 @@ class OnPlane(OneSided, SpaceJoint):
         A point of the plane; default: the origin.
     radius : float
         Of the edge or the tip; that of a ball is its own.
+    patch : float, optional
+        Radius of the patch by which the body touches, for laws of sliding and spinning (``Contensou``,
+        ``ContensouPade``): a third direction "spin" is the speed of the patch's rim, radius times the angular velocity
+        about the normal; its force is the moment over the radius.  Left out: the body touches at a point.
     turning : number or SymPy expression in ``fm.t``
         Angular velocity at which the plane turns about its normal in ``through``: a turntable.
     push_only : bool
@@ -63,7 +69,7 @@ class OnPlane(OneSided, SpaceJoint):
         error where the body meets the plane again (impacts are not computed).  A scene that starts with the body
         above the plane, or leaving it, starts open.
     friction : FrictionLaw, optional
-        In two directions; normal force: magnitude of the reaction.
+        In two directions, with a patch in three; normal force: magnitude of the reaction.
 
     Raises
     ------
@@ -87,15 +93,28 @@ class OnPlane(OneSided, SpaceJoint):
     """
 
     only_relative: ClassVar[bool] = False
-    slip_rows: ClassVar[int] = 2
     directions: ClassVar[tuple[str, ...]] = ("normal",)
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "normal", "through")
     _: KW_ONLY
     normal: Any
     through: Any = (0.0, 0.0, 0.0)
     radius: Any = None
+    patch: Any = None
     turning: Any = 0.0
     shape: str | None = None
+
+    @property
+    def slip_rows(self) -> int:  # type: ignore[override]
+        """Two directions of the plane, and with a patch its spin."""
+        return 2 if self.patch is None else 3
+
+    def _check_directions(self, law: FrictionLaw) -> None:
+        if self.slip_rows == 3 and 3 not in law.dimensions:
+            self._refuse("friction", law, "a law of sliding and spinning, as fm.laws.Contensou, where there is a patch")
+        if self.slip_rows == 2 and law.dimensions == (3,):
+            raise SceneError(f"{self._label()}: patch must be given, the radius that spins, for the law {law!r}")
+        if self.slip_rows == 2:
+            super()._check_directions(law)
 
     def _check_own(self) -> None:
         if self.b is not GROUND:
@@ -106,6 +125,10 @@ class OnPlane(OneSided, SpaceJoint):
             self._refuse("shape", self.shape, f"left out (it is {found!r}, from a)")
         self._set("shape", found)
         self._set("radius", self._radius(found))
+        if self.patch is not None:
+            self._set("patch", self._number("patch", self.patch, above=0.0))
+            if self.friction is None:
+                self._refuse("patch", self.patch, "left out where there is no friction")
         self._set("turning", check_expression(self, "turning", self.turning, motions=False))
 
     def _takes_expression(self, field: str) -> bool:
@@ -140,7 +163,8 @@ class OnPlane(OneSided, SpaceJoint):
     def labels(self) -> tuple[str, ...]:
         """Letters where the plane's directions are along axes, "1" and "2" where they are not."""
         rows = self.frame()[:2]
-        return tuple("xyz"[int(np.argmax(row))] if row.max() == 1.0 else str(i + 1) for i, row in enumerate(rows))
+        found = ("xyz"[int(np.argmax(row))] if row.max() == 1.0 else str(i + 1) for i, row in enumerate(rows))
+        return (*found, *(("spin",) if self.patch is not None else ()))
 
     def frame(self) -> Floats:
         """Directions 1 and 2 of the plane, and its normal, as rows (3, 3)."""
@@ -151,7 +175,8 @@ class OnPlane(OneSided, SpaceJoint):
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """The point, seen from the plane's own; then axis and spin of a rotor.
 
-        Of a ball its lowest point, and how far its surface has turned: its radius is in the forms.
+        Of a ball its lowest point, and how far its surface has turned: its radius is in the forms; with a patch also
+        how far it has turned about the normal.
         """
         start = (float(c) for c in value_of(self.through))
         place = [self.a.motion(c) - LinearForm((), s) for c, s in zip("xyz", start, strict=True)]
@@ -159,9 +184,14 @@ class OnPlane(OneSided, SpaceJoint):
         owner = self.a.owner
         if isinstance(owner, Ball):
             radius = float(value_of(owner.radius))
-            return x, y, z - LinearForm((), radius), *(form * radius for form in self.seen(owner.spins()))
+            turns = self.seen(owner.spins())
+            spin = () if self.patch is None else turns[2:]
+            return x, y, z - LinearForm((), radius), *(form * radius for form in turns), *spin
         if isinstance(owner, Rotor):
             return x, y, z, *self.seen(owner.axis_forms()), owner.spin_form()
+        if self.patch is not None:  # a point of a rigid body, which spins
+            axes = turning_forms(owner)
+            return x, y, z, *(form for i in (0, 3, 6) for form in self.seen(axes[i : i + 3]))
         return x, y, z
 
     def drives(self) -> tuple[Any, ...]:
@@ -186,9 +216,22 @@ class OnPlane(OneSided, SpaceJoint):
         elif self.shape != "point":
             c = self._lowest(x)
             first, second = ([*row, *self._turn_factors(x, c, i)] for i, row in enumerate((first, second)))
-        if len(x) > len(first):  # a turntable moves under the point, across the way to it
-            first, second = [*first, x[1] + c[1]], [*second, -x[0] - c[0]]
-        return tuple(first), tuple(second)
+        spin = self._spins(x)
+        own = max(len(first), len(spin))
+        if len(x) > own:  # a turntable moves under the point, across the way to it
+            rest = [0] * (own - len(first))
+            first, second = [*first, *rest, x[1] + c[1]], [*second, *rest, -x[0] - c[0]]
+            spin = [*spin, -self.patch] if spin else spin
+        return (tuple(first), tuple(second), *((tuple(spin),) if spin else ()))
+
+    def _spins(self, x: tuple[Any, ...]) -> list[Any]:
+        """Factors of the speed of the patch's rim; without a patch none."""
+        if self.patch is None:
+            return []
+        if self.shape == "ball":
+            return [*(0,) * 6, self.patch]
+        kind = kind_of(self, "a")
+        return [0, 0, 0, *(self.patch * factor for factor in turning_rows(kind, x[3 : 3 + KINDS[kind]])[2])]
 
     def undefined(self, values: Mapping[str, float]) -> str:
         """A disc that lies flat."""

@@ -40,7 +40,7 @@ def space_sketch_of_run(sol: Solution, times: Floats) -> SpaceSketch:
         touch.mode = seen.mode(touch.name)
         directions = _directions(sol.scene[touch.name])
         if directions is not None:
-            force = directions.T @ seen.force(touch.name)
+            force = directions.T @ seen.force(touch.name)[: len(directions)]  # a moment is no arrow
             limit = static_limit(seen, touch.name)
             most = float((np.linalg.norm(force, axis=0) if limit is None else limit).max(initial=0.0))
             touch.force = force / (most or 1.0)
