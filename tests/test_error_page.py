@@ -51,12 +51,12 @@ def raised(path):
 
 def reasons():
     """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
-    from fricmb.integrate.constrained import _messages
+    from fricmb.integrate.constrained import failure_text
     from fricmb.integrate.methods.attempt_step import FAILURES
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
-    for function in (_messages.failure_text, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
+    for function in (failure_text.failure_text, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
             text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
             if text and text.strip("."):

@@ -151,7 +151,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
 
 def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     """The problem with constraints marked that follow from others; friction needs reactions that are determined."""
-    from fricmb.integrate.constrained._independent import redundancy
+    from fricmb.integrate.constrained.redundancy import redundancy
 
     groups = _with_bodies(scene, topology(scene, problem.mechanism.joints.names).groups) if problem.mechanism else ()
     found = redundancy(problem, start, groups)

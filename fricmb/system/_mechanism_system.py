@@ -66,8 +66,8 @@ class MechanismSystem(System):
 
     def reactions(self, samples: MotionSamples) -> dict[str, Floats]:
         """The same of every joint by name, and of the inner constraints of bodies by theirs."""
-        from fricmb.integrate.constrained._assemble import away
-        from fricmb.integrate.constrained._trajectory import complete_open
+        from fricmb.integrate.constrained.consistent_start import away
+        from fricmb.integrate.constrained.step_trajectory import complete_open
 
         joints, rows = self.mechanism.joints, self.problem.m
         count, m = samples.t.size, self.mechanism.n_rows
@@ -100,8 +100,8 @@ class MechanismSystem(System):
         """Without what redundant constraints may push against one another."""
         if not self.mechanism.joints.dropped.any():
             return lam
-        from fricmb.integrate.constrained._independent import RANK
-        from fricmb.integrate.constrained._least import constraints_at
+        from fricmb.integrate.constrained.least_change import constraints_at
+        from fricmb.integrate.constrained.redundancy import RANK
 
         found = np.empty_like(lam)
         for i, t in enumerate(samples.t.tolist()):

@@ -5,7 +5,7 @@ import pytest
 
 import fricmb as fm
 from fricmb.bench._andrews import END, angles
-from fricmb.integrate.constrained import _run
+from fricmb.integrate.constrained import run
 
 # Test Set for IVP Solvers (Mazzia, Magherini 2008), problem caraxis, t = 3
 CAR_AXIS = [
@@ -17,7 +17,7 @@ CAR_AXIS = [
 @pytest.fixture
 def alone(monkeypatch):
     """Never leave the run to the one-step method because that gets on faster."""
-    monkeypatch.setattr(_run, "COST", 1e9)
+    monkeypatch.setattr(run, "COST", 1e9)
 
 
 @pytest.mark.parametrize(("rtol", "tolerance"), [(1e-4, 1e-2), (1e-6, 1e-4), (1e-8, 1e-6)])

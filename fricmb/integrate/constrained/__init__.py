@@ -1,5 +1,5 @@
 """Integrators of mechanisms: constraints on position, velocity and acceleration held at every step."""
 
-from fricmb.integrate.constrained._run import MULTISTEP_STAGES, run_mechanism, stages_for
+from fricmb.integrate.constrained.run import MULTISTEP_STAGES, run_mechanism, stages_for
 
 __all__ = ["MULTISTEP_STAGES", "run_mechanism", "stages_for"]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.constrained._field import call_joint, forces, move
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._project import project_positions, project_velocities
-from fricmb.integrate.constrained._slip import magnitude, plane
-from fricmb.integrate.constrained._state import Instant, State, react
+from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.forces import call_joint, forces, move
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.projection import project_positions, project_velocities
+from fricmb.integrate.constrained.slip_rows import magnitude, plane
 from fricmb.integrate.problem import SLIP, STICK, Codes2, Floats, Floats2, Ints
 
 

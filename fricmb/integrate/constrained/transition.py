@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._accept import TURNS, Watch, least_singular, margins
-from fricmb.integrate.constrained._codes import (
+from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix, react
+from fricmb.integrate.constrained.forces import move
+from fricmb.integrate.constrained.mode_decision import ARRIVES, FOUND, LENT, RESTED, SEVERAL, SLIPS_ON, decide
+from fricmb.integrate.constrained.outcomes import (
     DONE,
     FAIL_HIT,
     FAIL_LOST,
@@ -14,14 +16,12 @@ from fricmb.integrate.constrained._codes import (
     FAIL_PROJECT,
     FAIL_SEVERAL,
 )
-from fricmb.integrate.constrained._decide import ARRIVES, FOUND, LENT, RESTED, SEVERAL, SLIPS_ON, decide
-from fricmb.integrate.constrained._field import move
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._project import EPS, project_velocities
-from fricmb.integrate.constrained._record import Record, copy_state, record_event
-from fricmb.integrate.constrained._slip import lack, magnitude, plane
-from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix, react
-from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.projection import EPS, project_velocities
+from fricmb.integrate.constrained.radau_step import Control
+from fricmb.integrate.constrained.recorder import Record, copy_state, record_event
+from fricmb.integrate.constrained.slip_rows import lack, magnitude, plane
+from fricmb.integrate.constrained.watch import TURNS, Watch, least_singular, margins
 from fricmb.integrate.problem import (
     EVENT_CLOSE,
     EVENT_OPEN,

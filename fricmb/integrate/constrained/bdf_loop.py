@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.constrained._accept import Watch
-from fricmb.integrate.constrained._advance import arrive, is_there, radau_step
-from fricmb.integrate.constrained._change import next_stop, set_window
-from fricmb.integrate.constrained._codes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
-from fricmb.integrate.constrained._multistep import multistep
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._past import Past, start_past
-from fricmb.integrate.constrained._record import Record, crowded
-from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import Instant, State
-from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.constrained.accelerations import Instant, State
+from fricmb.integrate.constrained.attempt_step import arrive, is_there, radau_step
+from fricmb.integrate.constrained.bdf_history import Past, start_past
+from fricmb.integrate.constrained.bdf_step import multistep
+from fricmb.integrate.constrained.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.radau_step import Control
+from fricmb.integrate.constrained.recorder import Record, crowded
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.transition import next_stop, set_window
+from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes
 from fricmb.integrate.run.stop import stopped
 

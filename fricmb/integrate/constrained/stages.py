@@ -17,18 +17,18 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained._band import (
+from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.band_lapack import (
     factor_complex,
     factor_real,
     solve_complex_band,
     solve_real_band,
 )
-from fricmb.integrate.constrained._field import forces, move, pull_back
-from fricmb.integrate.constrained._friction import add_friction, friction_residual
-from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass, add_structure
-from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
-from fricmb.integrate.constrained._state import State
-from fricmb.integrate.constrained._turns import Turns, correct_turns, spread_of_stages, turns_of
+from fricmb.integrate.constrained.forces import forces, move, pull_back
+from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
+from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
+from fricmb.integrate.constrained.problem_structs import Mech, Moving, mech_of, mechanism_of
+from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
 from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Pivots, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.tableau import Complexes2, Tableau

@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._accept import Watch, least_singular, margins
-from fricmb.integrate.constrained._change import change_modes
-from fricmb.integrate.constrained._codes import (
+from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix
+from fricmb.integrate.constrained.event_location import (
+    dips,
+    last_unique,
+    locate_trigger,
+    nears_singular,
+    step_to_singular,
+    violated,
+)
+from fricmb.integrate.constrained.load_kinks import find_kinks
+from fricmb.integrate.constrained.outcomes import (
     ACCEPTED,
     CHANGED,
     DONE,
@@ -15,21 +23,13 @@ from fricmb.integrate.constrained._codes import (
     FAIL_STEP,
     REJECTED,
 )
-from fricmb.integrate.constrained._kinks import find_kinks
-from fricmb.integrate.constrained._locate import (
-    dips,
-    last_unique,
-    locate_trigger,
-    nears_singular,
-    step_to_singular,
-    violated,
-)
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._project import EPS
-from fricmb.integrate.constrained._record import Record, copy_state, record_step
-from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
-from fricmb.integrate.constrained._step import Control, end_step, error_of, remember, try_step
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.projection import EPS
+from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
+from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.transition import change_modes
+from fricmb.integrate.constrained.watch import Watch, least_singular, margins
 from fricmb.integrate.problem import Codes, Ints
 
 #: A step ends a try at this part of the span.

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained._field import call_joint, directions, friction_at, slope_at
-from fricmb.integrate.constrained._pack import Mech, Moving, Order
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, slope_at
+from fricmb.integrate.constrained.problem_structs import Mech, Moving, Order
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Ints

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._accept import Watch, gaps, least_singular, margins, triggers
-from fricmb.integrate.constrained._field import move
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._project import EPS
-from fricmb.integrate.constrained._record import copy_state
-from fricmb.integrate.constrained._slip import lack
-from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import NONE, Instant, State, instant_matrix
-from fricmb.integrate.constrained._step import Control, end_step, try_step
+from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix
+from fricmb.integrate.constrained.forces import move
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.projection import EPS
+from fricmb.integrate.constrained.radau_step import Control, end_step, try_step
+from fricmb.integrate.constrained.recorder import copy_state
+from fricmb.integrate.constrained.slip_rows import lack
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.watch import Watch, gaps, least_singular, margins, triggers
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, Ints
 from fricmb.integrate.step.crossing import first_below
 

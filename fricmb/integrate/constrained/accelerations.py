@@ -10,8 +10,8 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained._band import factor_real, solve_real_band
-from fricmb.integrate.constrained._field import (
+from fricmb.integrate.constrained.band_lapack import factor_real, solve_real_band
+from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
     directions,
@@ -21,10 +21,10 @@ from fricmb.integrate.constrained._field import (
     pull_back,
     slope_at,
 )
-from fricmb.integrate.constrained._friction import add_friction, friction_residual
-from fricmb.integrate.constrained._matrix import Layers, add, add_contacts, add_joints, add_mass
-from fricmb.integrate.constrained._pack import Mech, Moving, mech_of, mechanism_of
-from fricmb.integrate.constrained._slip import add_stick
+from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
+from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass
+from fricmb.integrate.constrained.problem_structs import Mech, Moving, mech_of, mechanism_of
+from fricmb.integrate.constrained.slip_rows import add_stick
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
 from fricmb.integrate.run.stop import stopped

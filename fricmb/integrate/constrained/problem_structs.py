@@ -10,9 +10,9 @@ from fricmb.integrate.compile.block import block_address
 from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_STEPS, PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained._band import band_addresses, band_sizes
-from fricmb.integrate.constrained._loops import softness
-from fricmb.integrate.constrained._pattern import ordering
+from fricmb.integrate.constrained.band_lapack import band_addresses, band_sizes
+from fricmb.integrate.constrained.loop_softness import softness
+from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Spread, Table, _table
@@ -74,7 +74,7 @@ class Port(NamedTuple):
     """Friction: port c has the rows ``row[c]:row[c+1]``, one a direction of slip.
 
     ``joint`` (n_c,) the joint it belongs to or -1; ``slip`` of the others two forms a row, coordinate and velocity.
-    ``soft`` (n_c,) softness of a port that sticks, beside that of its bodies (see ``_loops``).
+    ``soft`` (n_c,) softness of a port that sticks, beside that of its bodies (see ``loop_softness``).
     """
 
     joint: Ints
@@ -198,7 +198,7 @@ def _places(m: Mechanism) -> Place:
 
 def _blocks() -> tuple[str, ...]:
     """Names of this package's blocks, their modules imported."""
-    from fricmb.integrate.constrained import _drive  # noqa: F401  (its import makes the blocks known)
+    from fricmb.integrate.constrained import time_loop  # noqa: F401  (its import makes the blocks known)
 
     return MECHANISM + MECHANISM_STEPS
 
@@ -216,7 +216,7 @@ class Moving(NamedTuple):
     ``s`` the scratch with X; ``grad``, ``hess`` derivatives of the places, ``grad_rate`` the rates of ``grad``; ``ddy``
     (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
     ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
-    their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``_friction``);
+    their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``friction_rows``);
     ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
     ``borne`` (1,) the largest force so far.
     """

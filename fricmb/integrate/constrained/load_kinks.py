@@ -7,11 +7,11 @@ one of them changes its sign.  A formula of high order has its order on either s
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._accept import Watch
-from fricmb.integrate.constrained._field import call_joint, directions, friction_at, load_place
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import State
+from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import SLIP, Floats
 
 #: Directions of the reactions in which slopes of a load are compared.

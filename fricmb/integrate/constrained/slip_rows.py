@@ -7,9 +7,9 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained._field import call_joint, directions, friction_at, load_place, slope_at
-from fricmb.integrate.constrained._matrix import Layers, add, add_form, add_row
-from fricmb.integrate.constrained._pack import Mech, Moving
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, slope_at
+from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.model.law_values import break_away
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints

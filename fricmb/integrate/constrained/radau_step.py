@@ -9,13 +9,13 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained._field import forces, move
-from fricmb.integrate.constrained._near import choose_forms, prepare_turns
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._project import project_positions, project_velocities
-from fricmb.integrate.constrained._slip import aim, keep_held
-from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
-from fricmb.integrate.constrained._state import Instant, State, powers, react
+from fricmb.integrate.constrained.accelerations import Instant, State, powers, react
+from fricmb.integrate.constrained.forces import forces, move
+from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.projection import project_positions, project_velocities
+from fricmb.integrate.constrained.slip_rows import aim, keep_held
+from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
-from fricmb.integrate.constrained._sample import instants
-from fricmb.integrate.constrained._state import instant_of, state_of
+from fricmb.integrate.constrained.accelerations import instant_of, state_of
+from fricmb.integrate.constrained.instants import instants
+from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of, moving_of
 from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions

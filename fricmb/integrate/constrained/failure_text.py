@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained._codes import (
+from fricmb.integrate.constrained.outcomes import (
     FAIL_HIT,
     FAIL_LOST,
     FAIL_MARGIN,
@@ -16,8 +16,8 @@ from fricmb.integrate.constrained._codes import (
     FAIL_SINGULAR,
     FAIL_STEP,
 )
-from fricmb.integrate.constrained._independent import singular_joints
-from fricmb.integrate.constrained._pack import mechanism_of
+from fricmb.integrate.constrained.problem_structs import mechanism_of
+from fricmb.integrate.constrained.redundancy import singular_joints
 from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem
 
 

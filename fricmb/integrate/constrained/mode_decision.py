@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._slip import (
+from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.slip_rows import (
     SETTING_OUT,
     aim,
     lack,
@@ -16,12 +17,11 @@ from fricmb.integrate.constrained._slip import (
     spare,
     stick_limit,
 )
-from fricmb.integrate.constrained._state import Instant, State, react
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
-#: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT: see _change.
+#: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT: see transition.
 SLIPS_ON, ARRIVES, RESTED, LENT = 0, 1, 2, 3
 #: Up to this many ports at rest every combination is tried where the search by release fails.
 ENUMERATED = 6

@@ -8,9 +8,9 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained._pack import mechanism_of
-from fricmb.integrate.constrained._stages import Stages, stages_of
-from fricmb.integrate.constrained._state import State, state_of
+from fricmb.integrate.constrained.accelerations import State, state_of
+from fricmb.integrate.constrained.problem_structs import mechanism_of
+from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.methods.backward_differences import rescale
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, Start

@@ -7,19 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained._accept import watch_of
-from fricmb.integrate.constrained._assemble import away, consistent_start
-from fricmb.integrate.constrained._codes import DONE, FULL
-from fricmb.integrate.constrained._drive import begin, drive
-from fricmb.integrate.constrained._least import names_of_rows
-from fricmb.integrate.constrained._messages import failure_text, held_notes
-from fricmb.integrate.constrained._pack import add_blocks, masses, mech_of, mechanism_of, moving_of
-from fricmb.integrate.constrained._past import past_of
-from fricmb.integrate.constrained._record import Record, record_of
-from fricmb.integrate.constrained._stages import stages_of
-from fricmb.integrate.constrained._state import State, instant_of, state_of
-from fricmb.integrate.constrained._step import control_of
-from fricmb.integrate.constrained._trajectory import StepTrajectory, complete_at, nodes_of, with_open
+from fricmb.integrate.constrained.accelerations import State, instant_of, state_of
+from fricmb.integrate.constrained.bdf_history import past_of
+from fricmb.integrate.constrained.consistent_start import away, consistent_start
+from fricmb.integrate.constrained.failure_text import failure_text, held_notes
+from fricmb.integrate.constrained.least_change import names_of_rows
+from fricmb.integrate.constrained.outcomes import DONE, FULL
+from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained.radau_step import control_of
+from fricmb.integrate.constrained.recorder import Record, record_of
+from fricmb.integrate.constrained.stages import stages_of
+from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
+from fricmb.integrate.constrained.time_loop import begin, drive
+from fricmb.integrate.constrained.watch import watch_of
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Problem, Start
@@ -119,7 +119,7 @@ COST = 3.3
 
 def _bdf_loop(problem: Problem, start: Start, t_end: float, stages: int, rooms: tuple[Any, ...]) -> Callable[[], int]:
     """The loop that takes BDF steps; its blocks are compiled for those who ask for it."""
-    from fricmb.integrate.constrained._bdf import drive_bdf
+    from fricmb.integrate.constrained.bdf_loop import drive_bdf
 
     add_blocks("multistep")
     past = past_of(problem, start, t_end - start.t, COST * stages / 5)

@@ -9,11 +9,11 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained._band import spread_of_pivots
-from fricmb.integrate.constrained._field import call_joint, directions, friction_at, load_place, move
-from fricmb.integrate.constrained._pack import Mech, Moving, mechanism_of
-from fricmb.integrate.constrained._slip import lack, slip_speed, spare
-from fricmb.integrate.constrained._state import ALL, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.accelerations import ALL, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.band_lapack import spread_of_pivots
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, move
+from fricmb.integrate.constrained.problem_structs import Mech, Moving, mechanism_of
+from fricmb.integrate.constrained.slip_rows import lack, slip_speed, spare
 from fricmb.integrate.model.law_values import coefficient
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Floats2, Ints, Problem
 
@@ -27,7 +27,7 @@ class Watch(NamedTuple):
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
     stages of a step, ``where`` (1,) the part of the step at which only the polynomial through these is below 0, else 1;
     ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
-    there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,): see ``_kinks``; ``size`` (3,) running
+    there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,): see ``load_kinks``; ``size`` (3,) running
     maxima of slip velocity, force and position.
     """
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.constrained._field import forces, move
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._state import NONE, STUCK, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.accelerations import NONE, STUCK, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.forces import forces, move
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.problem import STICK, Ints
 
 #: Corrections of positions at most: after a step one or two are needed.

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.constrained._accept import TURNS, Watch, least_singular, margins, pivots_of, triggers
-from fricmb.integrate.constrained._advance import arrive, grow, is_there, radau_step
-from fricmb.integrate.constrained._change import let_go, next_stop, set_window
-from fricmb.integrate.constrained._codes import (
+from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.attempt_step import arrive, grow, is_there, radau_step
+from fricmb.integrate.constrained.load_kinks import mark_bends
+from fricmb.integrate.constrained.mode_decision import FOUND, SEVERAL, SLIPS_ON, decide, mark_rest
+from fricmb.integrate.constrained.outcomes import (
     DONE,
     FAIL_LOST,
     FAIL_MARGIN,
@@ -15,14 +16,13 @@ from fricmb.integrate.constrained._codes import (
     FAIL_SINGULAR,
     FULL,
 )
-from fricmb.integrate.constrained._decide import FOUND, SEVERAL, SLIPS_ON, decide, mark_rest
-from fricmb.integrate.constrained._kinks import mark_bends
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._project import project_velocities
-from fricmb.integrate.constrained._record import Record, crowded
-from fricmb.integrate.constrained._stages import Stages
-from fricmb.integrate.constrained._state import Instant, State, react
-from fricmb.integrate.constrained._step import Control
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.projection import project_velocities
+from fricmb.integrate.constrained.radau_step import Control
+from fricmb.integrate.constrained.recorder import Record, crowded
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.transition import let_go, next_stop, set_window
+from fricmb.integrate.constrained.watch import TURNS, Watch, least_singular, margins, pivots_of, triggers
 from fricmb.integrate.problem import SLIP, Codes
 from fricmb.integrate.run.stop import stopped
 

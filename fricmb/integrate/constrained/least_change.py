@@ -12,8 +12,8 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse import bmat, csr_matrix, eye
 from scipy.sparse.linalg import splu
 
-from fricmb.integrate.constrained._pack import mech_of, mechanism_of, moving_of
-from fricmb.integrate.constrained._sample import constraints
+from fricmb.integrate.constrained.instants import constraints
+from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of, moving_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate.constrained._assemble import closed, consistent_start, listed
-from fricmb.integrate.constrained._least import Least, constraints_at, names_of_rows, unit_rows
-from fricmb.integrate.constrained._pack import masses, mechanism_of
+from fricmb.integrate.constrained.consistent_start import closed, consistent_start, listed
+from fricmb.integrate.constrained.least_change import Least, constraints_at, names_of_rows, unit_rows
+from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem, Start
 

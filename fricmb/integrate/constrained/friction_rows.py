@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._matrix import Layers, add
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._plane import add_along, add_found, plane_residual
-from fricmb.integrate.constrained._slip import SETTING_OUT, add_load, add_slip, add_stick, magnitude
+from fricmb.integrate.constrained.jacobian_layers import Layers, add
+from fricmb.integrate.constrained.plane_slip import add_along, add_found, plane_residual
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick, magnitude
 from fricmb.integrate.model.law_values import coefficient, smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats, Ints
 

@@ -10,18 +10,18 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._accept import Watch, margins
-from fricmb.integrate.constrained._advance import grow, near_singular
-from fricmb.integrate.constrained._codes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
-from fricmb.integrate.constrained._kinks import find_kinks
-from fricmb.integrate.constrained._locate import nears_singular, violated
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._past import Past, put, rescale
-from fricmb.integrate.constrained._record import Record, copy_state, record_step
-from fricmb.integrate.constrained._slip import aim, keep_held
-from fricmb.integrate.constrained._stages import Stages, factor_stages, iterate_stages, linearise
-from fricmb.integrate.constrained._state import Instant, State
-from fricmb.integrate.constrained._step import Control, measure, settle
+from fricmb.integrate.constrained.accelerations import Instant, State
+from fricmb.integrate.constrained.attempt_step import grow, near_singular
+from fricmb.integrate.constrained.bdf_history import Past, put, rescale
+from fricmb.integrate.constrained.event_location import nears_singular, violated
+from fricmb.integrate.constrained.load_kinks import find_kinks
+from fricmb.integrate.constrained.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.radau_step import Control, measure, settle
+from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
+from fricmb.integrate.constrained.slip_rows import aim, keep_held
+from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained.watch import Watch, margins
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.methods.bdf_step import GROWTH, ladder, predict
 from fricmb.integrate.problem import Floats, Ints

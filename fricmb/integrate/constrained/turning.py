@@ -1,6 +1,6 @@
 """Slip in several directions near rest: how the direction follows the force differs from stage to stage.
 
-The rows of ``_friction`` in the form that finds the direction have the derivative ``r_i / |F_i|`` by a turn of the
+The rows of ``friction_rows`` in the form that finds the direction have the derivative ``r_i / |F_i|`` by a turn of the
 force at stage i, r the slip speed; of three directions two such rows.  Near rest r changes by as much as it is, so that
 Newton's method with the one Jacobian of all stages would not converge.  Its changes are corrected by what the few
 derivatives differ by (Woodbury).
@@ -15,7 +15,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained._pack import Mech
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
 
 #: A contact faster than what this many steps of its acceleration bring has a direction of its own.

@@ -12,9 +12,9 @@ row is free for the size of the force.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained._matrix import Layers, add
-from fricmb.integrate.constrained._pack import Mech, Moving
-from fricmb.integrate.constrained._slip import SETTING_OUT, add_load, add_slip, magnitude, slip_speed
+from fricmb.integrate.constrained.jacobian_layers import Layers, add
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, magnitude, slip_speed
 from fricmb.integrate.model.law_values import coefficient
 from fricmb.integrate.problem import Codes, Floats, Ints
 
