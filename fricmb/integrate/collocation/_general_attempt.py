@@ -14,8 +14,9 @@ from fricmb.integrate.collocation._general_ports import exact_ports
 from fricmb.integrate.collocation._layout import NODE, TABLEAU, VECTORS
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, slip_speed
+from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, STICK, Ints
 from fricmb.integrate.step.contact_newton import solve_ports
@@ -73,7 +74,7 @@ def guess_ports(packed: Packed, y: State, one: OneStep, h: float) -> None:
             row0 = packed.ports.row[k]
             w.N[i, k] = y.N[k]
             one.N[i, k] = y.N[k]
-            w.r[i, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            w.r[i, k] = magnitude(packed.ports.row, k, y.g)
             for a in range(row0, packed.ports.row[k + 1]):
                 w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
                 w.n[i, a] = y.n[a]

@@ -12,8 +12,9 @@ from fricmb.integrate.collocation._general_dense import gains_at, input_series, 
 from fricmb.integrate.collocation._layout import DAMP, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, complete, slip_speed
+from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, powers, set_state, set_time
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Ints
@@ -84,8 +85,6 @@ def search_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
     top = widest(acc.v)
     worst = 0.0
     for k in range(y.mode.shape[0]):
-        row0 = packed.ports.row[k]
-        d = packed.ports.row[k + 1] - row0
         if packed.ports.var[k] >= 0:
             for j in range(n_s):
                 one.margin[j] = one.N[j, k]
@@ -95,13 +94,13 @@ def search_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
         if y.mode[k] == SLIP:
             for j in range(n_s):
                 one.margin[j] = w.r[j, k]
-            worst = max(worst, rough(one, slip_speed(y.g, row0, d), max(1e-9 * acc.r[k], 1e-11 * top)))
+            worst = max(worst, rough(one, magnitude(packed.ports.row, k, y.g), max(1e-9 * acc.r[k], 1e-11 * top)))
         elif y.mode[k] == STICK:
             for j in range(n_s):
-                one.margin[j] = slip_speed(w.F[j], row0, d) ** 2
+                one.margin[j] = magnitude(packed.ports.row, k, w.F[j]) ** 2
             limit = abs(packed.ports.mu_s[k]) * y.N[k]
-            noise = 100.0 * force_noise(packed, y, k, h) * max(limit, slip_speed(y.F, row0, d))
-            worst = max(worst, rough(one, slip_speed(y.F, row0, d) ** 2, limit * limit + noise))
+            noise = 100.0 * force_noise(packed, y, k, h) * max(limit, magnitude(packed.ports.row, k, y.F))
+            worst = max(worst, rough(one, magnitude(packed.ports.row, k, y.F) ** 2, limit * limit + noise))
     return worst
 
 
@@ -197,8 +196,7 @@ def scales_of_step(packed: Packed, y: State, end: State, one: OneStep, acc: Accu
         for a in range(y.z.shape[0]):
             acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
         for k in range(y.mode.shape[0]):
-            row0 = packed.ports.row[k]
-            acc.r[k] = max(acc.r[k], slip_speed(one.w.g[j], row0, packed.ports.row[k + 1] - row0))
+            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, one.w.g[j]))
 
 
 @kernel

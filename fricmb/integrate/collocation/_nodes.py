@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from fricmb.integrate.problem import Floats
-from fricmb.integrate.step.tableau import Complexes, radau
+from fricmb.integrate.problem import Complexes, Floats
+from fricmb.integrate.step.tableau import radau
 
 #: Moments kept; enough for w h up to 8 (and the three extra orders of the end weights).
 TERMS = 48

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
-from fricmb.integrate.step.tableau import Complexes3
+from fricmb.integrate.problem import Complexes3, Floats, Floats2, Floats3, Floats4, Ints
 
 Ints2 = Ints
 

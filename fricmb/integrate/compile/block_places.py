@@ -99,5 +99,7 @@ FURTHER = (
     "coupled_change",
     "coupled_settle",
     "coupled_pay",
+    "dgbtrf",
+    "dgbtrs",
 )
 PLACES = LAPACK + CORE + FURTHER

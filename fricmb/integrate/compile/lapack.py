@@ -16,8 +16,8 @@ from fricmb.integrate.compile.parallel_compile import shared_addresses
 from fricmb.integrate.problem import Floats
 
 #: Routines that came later and stand at the end of the table; their places.
-LATER = ("dgetrf", "dgetrs", "zgbtrf", "zgbtrs")
-FACTOR, SOLVE, BAND_FACTOR, BAND_SOLVE = (PLACES.index(name) for name in LATER)
+LATER = ("dgetrf", "dgetrs", "zgbtrf", "zgbtrs", "dgbtrf", "dgbtrs")
+FACTOR, SOLVE, BAND_FACTOR, BAND_SOLVE, REAL_BAND_FACTOR, REAL_BAND_SOLVE = (PLACES.index(name) for name in LATER)
 
 
 @lru_cache(maxsize=8)

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained.band_lapack import factor_real, solve_real_band
 from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
@@ -172,8 +172,8 @@ def instant_residual(mech: Mech, k: Moving, w: Instant, y: State, address: Ints)
 
 
 @block
-def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, address: Ints) -> int:
-    """Factor the matrix of the instant.
+def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, address: Ints) -> bool:
+    """Factor the matrix of the instant; False where it is singular.
 
     ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
     """
@@ -199,7 +199,7 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, a
         add(order, w.L.A1, size - nz + i, size - nz + i, 1.0)
     for i in range(w.ab.shape[0]):
         w.ab[i] = w.L.A0[i] + w.L.A1[i]
-    return factor_real(order.address, order.sizes, w.pivots, w.ab)
+    return factor_band(w.ab, w.pivots, order.sizes, mech.address)
 
 
 @kernel
@@ -208,7 +208,7 @@ def solve_instant(mech: Mech, w: Instant) -> None:
     place = mech.order.place
     for i in range(place.shape[0]):
         w.x[place[i]] = w.r[i]
-    solve_real_band(mech.order.address, mech.order.sizes, w.pivots, w.ab, w.x)
+    solve_band(w.ab, w.pivots, mech.order.sizes, w.x, mech.address)
     for i in range(place.shape[0]):
         w.r[i] = w.x[place[i]]
 
@@ -257,7 +257,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         instant_residual(mech, k, w, y, mech.address)
         for i in range(nz):
             w.r[n + m + n_c + i] = 0.0
-        if not (factored and n_c == 0) and instant_matrix(mech, k, w, y, ALL, mech.address) != 0:
+        if not (factored and n_c == 0) and not instant_matrix(mech, k, w, y, ALL, mech.address):
             return False
         solve_instant(mech, w)
         change, size, inertia = 0.0, size0, 0.0

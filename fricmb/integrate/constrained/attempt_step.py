@@ -4,38 +4,25 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix
-from fricmb.integrate.constrained.event_location import (
-    dips,
-    last_unique,
-    locate_trigger,
-    nears_singular,
-    step_to_singular,
-    violated,
-)
+from fricmb.integrate.constrained.accelerations import Instant, State
+from fricmb.integrate.constrained.event_functions import violated
+from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
 from fricmb.integrate.constrained.load_kinks import find_kinks
-from fricmb.integrate.constrained.outcomes import (
-    ACCEPTED,
-    CHANGED,
-    DONE,
-    FAIL_MARGIN,
-    FAIL_SINGULAR,
-    FAIL_STEP,
-    REJECTED,
-)
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
-from fricmb.integrate.constrained.projection import EPS
 from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
+from fricmb.integrate.constrained.singular_position import dips, near_singular, nears_singular, step_to_singular
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.transition import change_modes
-from fricmb.integrate.constrained.watch import Watch, least_singular, margins
+from fricmb.integrate.constrained.uniqueness import margins
+from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes, Ints
+from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
+from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
 #: A step ends a try at this part of the span.
 SMALLEST = 1e-14
-#: A least singular value this small beside what it was: the constraints are as good as dependent.
-SINGULAR = 1e-9
 
 
 @kernel
@@ -55,12 +42,6 @@ def grow(c: Control, out: Watch, y: State) -> None:
 
 
 @kernel
-def is_there(y: State, stop: float) -> bool:
-    """Whether a time to step to is reached to round-off."""
-    return bool(stop - y.t[0] <= 20.0 * EPS * max(abs(y.t[0]), abs(stop)))
-
-
-@kernel
 def arrive(
     mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes,
     stop: float,
@@ -75,16 +56,6 @@ def arrive(
     return CHANGED if code == DONE else code
 
 
-@kernel
-def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: float) -> bool:
-    """Whether the constraints are as good as dependent at y, which has just been completed by a step h."""
-    out.sigma[2] = out.sigma[0]
-    out.sigma[3] = h
-    # without friction the factors of the projection are those of the instant
-    if y.F.shape[0] > 0 and instant_matrix(mech, k, w, y, NONE, mech.address) != 0:
-        return True
-    out.sigma[0] = least_singular(mech, w, out, 1)
-    return bool(out.sigma[0] < SINGULAR * out.sigma[1])
 
 
 @block
@@ -125,7 +96,7 @@ def radau_step(
         c.counts[1] += 1
         c.h[0] = 0.4 * h
         return REJECTED
-    factor = 0.85 * max(error, 1e-12) ** (-1.0 / (s + 1))
+    factor = step_factor(error, s + 1, ONE_STEP_SAFETY)
     if error > 1.0:
         c.counts[1] += 1
         c.h[0] = h * max(0.2, factor)

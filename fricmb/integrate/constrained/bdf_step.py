@@ -8,23 +8,41 @@ order).
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State
-from fricmb.integrate.constrained.attempt_step import grow, near_singular
-from fricmb.integrate.constrained.bdf_history import Past, put, rescale
-from fricmb.integrate.constrained.event_location import nears_singular, violated
+from fricmb.integrate.constrained.attempt_step import grow
+from fricmb.integrate.constrained.bdf_history import Formula, put
+from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.load_kinks import find_kinks
-from fricmb.integrate.constrained.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control, measure, settle
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
+from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
 from fricmb.integrate.constrained.slip_rows import aim, keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
-from fricmb.integrate.constrained.watch import Watch, margins
+from fricmb.integrate.constrained.uniqueness import margins
+from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.methods.backward_differences import (
+    EQUAL,
+    GROWTH,
+    ORDER,
+    REJECTIONS,
+    SINCE,
+    Differences,
+    best_order,
+    bring_forward,
+    change_order,
+    count_step,
+    predict,
+    rescale,
+)
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
-from fricmb.integrate.methods.bdf_step import GROWTH, ladder, predict
 from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
+from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
 
 #: Newton stops at this part of the error that a step may make.
 NEWTON = 0.03
@@ -43,17 +61,17 @@ def take(values: Floats, y: State, rate: Floats) -> None:
 
 
 @kernel
-def share_of(c: Control, past: Past) -> float:
+def share_of(c: Control, past: Differences) -> float:
     """What of the error this step may make: in proportion to its length, but for the few short steps of a start."""
     return float(max(c.rtol[0] * min(1.0, max(past.h[0] * past.unit[0], 0.01)), 4e-15))
 
 
 @kernel
-def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past: Past) -> bool:
+def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past: Differences, formula: Formula) -> bool:
     """Solve the step's equations from the prediction; ``end`` serves as the point of the Jacobian."""
-    one, base = past.one, past.base
+    one, base = formula.one, formula.base
     h = past.h[0]
-    beta_h = h / past.gamma[past.status[0]]
+    beta_h = h / past.gamma[past.status[ORDER]]
     n = y.q.shape[0]
     copy_state(y, base, mech.address)
     for i in range(n):
@@ -68,7 +86,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     for _ in range(2):
         copy_state(y, end, mech.address)
         take(past.guess, end, end.rate)
-        fresh = past.made[0] != beta_h
+        fresh = formula.made[0] != beta_h
         if fresh:
             end.t[0] = y.t[0] + h
             k.form[:] = 0
@@ -76,9 +94,9 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
             c.counts[3] += 1
             c.counts[4] += 1
             if not factor_stages(mech, one, beta_h, mech.address):
-                past.made[0] = 0.0
+                formula.made[0] = 0.0
                 return False
-            past.made[0] = beta_h
+            formula.made[0] = beta_h
         for i in range(n):
             one.V[0, i] = end.v[i]
         for part, target in ((end.lam, one.lam[0]), (end.F, one.F[0]), (end.z, one.Z[0])):
@@ -88,7 +106,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         used = iterate_stages(mech, k, base, one, beta_h, accuracy, y.mode, mech.address)
         c.counts[2] += max(used, 1)
         if used == 0 or one.found[0] > SLOW:
-            past.made[0] = 0.0
+            formula.made[0] = 0.0
         if used > 0:
             return True
         if fresh:
@@ -97,7 +115,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
 
 
 @kernel
-def scaled(y: State, c: Control, past: Past, error: Floats, weight: float) -> float:
+def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Floats, weight: float) -> float:
     """Largest of weight * error by signal against rtol and the share of it that this step may use.
 
     Positions count against the way that the run has gone: they may lie anywhere.
@@ -106,59 +124,45 @@ def scaled(y: State, c: Control, past: Past, error: Floats, weight: float) -> fl
     worst = 0.0
     share = share_of(c, past)
     for i in range(n):
-        size = max(past.reach[i], abs(past.new[i] - past.origin[i]), past.h[0] * past.one.scale[i], 1e-290)
-        worst = max(worst, abs(error[n + i]) / past.one.scale[i], abs(error[i]) / size)
+        size = max(formula.reach[i], abs(past.new[i] - formula.origin[i]), past.h[0] * formula.one.scale[i], 1e-290)
+        worst = max(worst, abs(error[n + i]) / formula.one.scale[i], abs(error[i]) / size)
     for i in range(y.z.shape[0]):
         worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), 1e-290))
     return float(weight * worst / share)
 
 
 @kernel
-def update(past: Past) -> None:
+def update(past: Differences, formula: Formula) -> None:
     """Bring the differences to the end of the step, whose correction is ``d``."""
-    k = past.status[0]
     for i in range(past.D.shape[1]):
-        past.D[k + 2, i] = past.d[i] - past.D[k + 1, i]
-        past.D[k + 1, i] = past.d[i]
-        for j in range(k, -1, -1):
-            past.D[j, i] += past.D[j + 1, i]
-    past.status[1] += 1
-    past.status[3] = 0
-    past.status[6] += 1
-    past.good[0] = past.h[0]
-    for i in range(past.reach.shape[0]):
-        past.reach[i] = max(past.reach[i], abs(past.D[0, i] - past.origin[i]))
+        bring_forward(past, i, 0)
+    count_step(past)
+    for i in range(formula.reach.shape[0]):
+        formula.reach[i] = max(formula.reach[i], abs(past.D[0, i] - formula.origin[i]))
 
 
 @kernel
-def select_order(y: State, c: Control, past: Past, error: float) -> None:
+def select_order(y: State, c: Control, past: Differences, formula: Formula, error: float) -> None:
     """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder."""
-    k = past.status[0]
-    if past.status[1] <= k:
+    k = past.status[ORDER]
+    if past.status[EQUAL] <= k:
         return
-    best_k = k
-    best = 0.9 * max(error, 1e-16) ** (-1.0 / k)
+    lower = higher = np.inf
     if k > 1:
-        factor = 0.9 * max(scaled(y, c, past, past.D[k], 1.0 / k), 1e-16) ** (-1.0 / (k - 1))
-        if factor > best:
-            best_k, best = k - 1, factor
+        lower = scaled(y, c, past, formula, past.D[k], 1.0 / k)
     if k < MAX_ORDER:
-        factor = 0.9 * max(scaled(y, c, past, past.D[k + 2], 1.0 / (k + 2)), 1e-16) ** (-1.0 / (k + 1))
-        if factor > best:
-            best_k, best = k + 1, factor
-    step = ladder(min(best, GROWTH))
-    if best_k != k or step > 1.3 or step < 1.0:
-        past.status[0] = best_k
-        rescale(past, step)  # type: ignore[arg-type]
+        higher = scaled(y, c, past, formula, past.D[k + 2], 1.0 / (k + 2))
+    best_k, best = best_order(k, lower, error, higher)
+    change_order(past, best_k, ladder(min(best, GROWTH), BDF_RUNGS))
 
 
 @kernel
-def inside(y: State, st: Stages, c: Control, past: Past) -> None:
+def inside(y: State, st: Stages, c: Control, past: Differences) -> None:
     """Values of the formula's polynomial over the step at the nodes of the one-step method, as if it had stepped.
 
     With s = x - 1 in steps back from the end:  y(x) = sum_j D_j s (s+1) ... (s+j-1) / j!.
     """
-    k = past.status[0]
+    k = past.status[ORDER]
     for l in range(st.tab.c.shape[0]):
         s = st.tab.c[l] - 1.0
         i = 0
@@ -176,23 +180,23 @@ def inside(y: State, st: Stages, c: Control, past: Past) -> None:
 @block
 def multistep(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, rec: Record,
-    past: Past, left: float, address: Ints,
+    past: Differences, formula: Formula, left: float, address: Ints,
 ) -> int:  # fmt: skip
     """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), HANDOVER, or FAIL_SINGULAR.
 
     A step at whose end, or inside which, a mode changes or friction is no longer unique is left to the one-step method.
     """
-    h, order = past.h[0], past.status[0]
-    if h > left or past.status[3] > (3 if past.status[6] > 0 else 8) or nears_singular(out, h):
+    h, order = past.h[0], past.status[ORDER]
+    if h > left or past.status[REJECTIONS] > (3 if past.status[SINCE] > 0 else 8) or nears_singular(out, h):
         return HANDOVER
-    predict(past)  # type: ignore[arg-type]
-    if not solve_formula(mech, k, y, end, c, past):
-        past.status[3] += 2
+    predict(past)
+    if not solve_formula(mech, k, y, end, c, past, formula):
+        past.status[REJECTIONS] += 2
         c.counts[1] += 1
-        rescale(past, 0.5)  # type: ignore[arg-type]
-        past.made[0] = 0.0
+        rescale(past, 0.5)
+        formula.made[0] = 0.0
         return REJECTED
-    one = past.one
+    one = formula.one
     copy_state(y, end, mech.address)
     end.t[0] = y.t[0] + h
     for part, target in ((one.Q[0], end.q), (one.V[0], end.v), (one.acc, end.a), (one.Z[0], end.z)):
@@ -207,17 +211,17 @@ def multistep(
     put(end, end.rate, past.new)
     for i in range(past.d.shape[0]):
         past.d[i] = past.new[i] - past.guess[i]
-    error = scaled(y, c, past, past.d, 1.0 / (order + 1))
+    error = scaled(y, c, past, formula, past.d, 1.0 / (order + 1))
     if not error <= 1.0:
-        past.status[3] += 1
+        past.status[REJECTIONS] += 1
         c.counts[1] += 1
         if not error < 1e300:
             return HANDOVER
         # at the start nothing is known of the step but that of the other method
-        least = 0.2 if past.status[6] > 0 else 1e-4
-        rescale(past, ladder(max(least, 0.9 * error ** (-1.0 / order))))  # type: ignore[arg-type]
+        least = 0.2 if past.status[SINCE] > 0 else 1e-4
+        rescale(past, ladder(max(least, step_factor(error, order, BDF_SAFETY)), BDF_RUNGS))
         return REJECTED
-    update(past)
+    update(past, formula)
     inside(y, st, c, past)
     find_kinks(mech, k, y, st, out)
     unique = margins(mech, k, w, end, out, False, mech.address) > 0.0
@@ -233,5 +237,5 @@ def multistep(
     grow(c, out, y)
     if near_singular(mech, k, w, y, out, h):
         return FAIL_SINGULAR
-    select_order(y, c, past, error)
+    select_order(y, c, past, formula, error)
     return ACCEPTED

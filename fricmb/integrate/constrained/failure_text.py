@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.outcomes import (
+from fricmb.integrate.constrained.problem_structs import mechanism_of
+from fricmb.integrate.constrained.redundancy import singular_joints
+from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem
+from fricmb.integrate.run.outcomes import (
     FAIL_HIT,
     FAIL_LOST,
     FAIL_MARGIN,
-    FAIL_NONE,
+    FAIL_MODES,
     FAIL_PROJECT,
     FAIL_SEVERAL,
     FAIL_SINGULAR,
     FAIL_STEP,
 )
-from fricmb.integrate.constrained.problem_structs import mechanism_of
-from fricmb.integrate.constrained.redundancy import singular_joints
-from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem
 
 
 def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
@@ -32,14 +32,14 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
             f"the friction of {together} together has no single solution: a principal minor of 1 + mu dN/dF over them"
             f" is {float(out.together[0]):.3g}, and all have to be positive (jamming: each presses on the other)"
         )
-    if code == FAIL_MARGIN or (code in (FAIL_STEP, FAIL_NONE) and least < 0.02):
+    if code == FAIL_MARGIN or (code in (FAIL_STEP, FAIL_MODES) and least < 0.02):
         return (
             f"the friction of {names[port]!r} has no single solution: 1 + mu dN/dF has fallen to {least:.3g} and has"
             " to be positive (the reaction grows with the friction that it causes faster than friction sheds it:"
             " Painleve, jamming)"
         )
     at_rest, stuck = _at_rest(problem, y, out), _stuck(problem, y)
-    if code == FAIL_NONE:
+    if code == FAIL_MODES:
         return f"no combination of stick and slip satisfies friction and reactions together{at_rest}"
     if code == FAIL_SEVERAL:
         return f"several combinations of stick and slip satisfy friction and reactions together{at_rest}"

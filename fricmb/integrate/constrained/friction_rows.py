@@ -7,8 +7,8 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.jacobian_layers import Layers, add
 from fricmb.integrate.constrained.plane_slip import add_along, add_found, plane_residual
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
-from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick, magnitude
-from fricmb.integrate.model.law_values import coefficient, smooth_force
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick
+from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats, Ints
 
 
@@ -47,7 +47,7 @@ def friction_residual(
             for a in range(first, first + d):
                 r[r0 + a] = F[a]
         elif d == 1:
-            mu, _, _ = coefficient(port, port.laws, c, k.s, n[first] * g[first], load)  # type: ignore[arg-type]
+            mu, _, _ = coefficient(port, port.laws, c, k.s, n[first] * g[first], load)
             r[r0 + first] = F[first] + n[first] * mu * load
         else:
             plane_residual(mech, k, c, mode, n, F, g, rate, load, r, r0, full)
@@ -74,7 +74,7 @@ def add_friction(
                 add(order, L.A1, row + a, row + a, 1.0)
         elif last - first == 1:
             add(order, L.A1, row, row, 1.0)
-            mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, n[first] * g[first], load)  # type: ignore[arg-type]
+            mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, n[first] * g[first], load)
             if full and by_speed != 0.0:
                 add_slip(mech, k, c, 0, lam, L, row, by_speed * load, full, mech.address)
             if N[c] > 0.0 or port.joint[c] >= 0:

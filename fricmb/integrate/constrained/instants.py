@@ -7,7 +7,8 @@ from fricmb.integrate.constrained.accelerations import Instant, State, react
 from fricmb.integrate.constrained.forces import call_joint, forces, move
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
-from fricmb.integrate.constrained.slip_rows import magnitude, plane
+from fricmb.integrate.constrained.slip_rows import plane
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import SLIP, STICK, Codes2, Floats, Floats2, Ints
 
 

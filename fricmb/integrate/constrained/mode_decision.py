@@ -6,22 +6,14 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State, react
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
-from fricmb.integrate.constrained.slip_rows import (
-    SETTING_OUT,
-    aim,
-    lack,
-    lightness,
-    magnitude,
-    plane,
-    slip_speed,
-    spare,
-    stick_limit,
-)
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, aim, lack, lightness, plane, slip_speed, spare
+from fricmb.integrate.model.law_values import magnitude, stick_limit
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
-#: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT: see transition.
+#: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT to rest while
+#: round-off of its slip is taken away (``transition``).
 SLIPS_ON, ARRIVES, RESTED, LENT = 0, 1, 2, 3
 #: Up to this many ports at rest every combination is tried where the search by release fails.
 ENUMERATED = 6
@@ -37,7 +29,8 @@ STEPS_OUT = 6
 def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
     """By how much port c contradicts its mode (0: not at all); y is complete."""
     if y.mode[c] == STICK:
-        limit, force = stick_limit(mech, k, c, y.N), magnitude(mech.port.row, c, y.F)
+        limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
+        force = magnitude(mech.port.row, c, y.F)
         over = -spare(mech, k, c, y.F, y.N, k.borne[0])
         return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
     against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne[0])

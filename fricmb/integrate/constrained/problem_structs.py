@@ -6,17 +6,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block_address
 from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_STEPS, PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained.band_lapack import band_addresses, band_sizes
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Spread, Table, _table
-from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
+from fricmb.integrate.problem import NORMAL_CONSTANT, Codes, Floats, Ints, Pivots, Problem
 from fricmb.integrate.run.problem_cache import kept
 
 
@@ -94,11 +94,10 @@ class Port(NamedTuple):
 
 
 class Order(NamedTuple):
-    """Place of every unknown [v, lam, F, z] in the banded matrices; sizes and addresses for LAPACK."""
+    """Place of every unknown [v, lam, F, z] in the banded matrices, and their sizes for LAPACK."""
 
     place: Ints
     sizes: Pivots
-    address: Ints
 
 
 class Mech(NamedTuple):
@@ -163,7 +162,7 @@ def _pack(problem: Problem) -> Mech:
     size = m.n + int(rows.sum()) + problem.m + problem.n_z
     return room(Mech(
         linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread,
-        Order(order, band_sizes(size, half), band_addresses()),
+        Order(order, band_sizes(size, half)),
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), addresses(*_blocks()),
     ))  # fmt: skip
 
@@ -287,16 +286,3 @@ def moving_of(problem: Problem) -> Moving:
         np.zeros(problem.n_c), np.ones(1), np.zeros(1),
     ))  # fmt: skip
 
-
-__all__ = [
-    "NORMAL_LAW",
-    "Joint",
-    "Mech",
-    "Moving",
-    "Port",
-    "add_blocks",
-    "masses",
-    "mech_of",
-    "mechanism_of",
-    "moving_of",
-]

@@ -7,10 +7,10 @@ from fricmb.integrate.constrained.accelerations import NONE, STUCK, Instant, Sta
 from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.problem import STICK, Ints
+from fricmb.integrate.run.breakpoints import EPS
 
 #: Corrections of positions at most: after a step one or two are needed.
 CORRECTIONS = 6
-EPS = 2.220446049250313e-16
 
 
 @block
@@ -21,7 +21,7 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints
     for i in range(CORRECTIONS):
         move(mech, k, y.t[0], y.q, y.v, mech.address)
         forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
-        if i == 0 and instant_matrix(mech, k, w, y, NONE, mech.address) != 0:
+        if i == 0 and not instant_matrix(mech, k, w, y, NONE, mech.address):
             return False
         for j in range(w.r.shape[0]):
             w.r[j] = 0.0
@@ -47,7 +47,7 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
     row = mech.port.row
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
-    if not (factored and not stuck) and instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address) != 0:
+    if not (factored and not stuck) and not instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address):
         return False
     for _ in range(2):
         for j in range(w.r.shape[0]):

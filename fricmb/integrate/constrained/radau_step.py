@@ -67,7 +67,7 @@ def measure(c: Control, y: State, h: float, scale: Floats) -> None:
 
 
 @kernel
-def predict(c: Control, y: State, st: Stages, h: float) -> None:
+def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
     """Start values of the stages: the polynomial of the step before, or constant accelerations and forces."""
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
     tab = st.tab
@@ -150,7 +150,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
         c.made[0] = h
         prepare_turns(mech, st)
     measure(c, y, h, st.scale)
-    predict(c, y, st, h)
+    predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
     used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), y.mode, mech.address)

@@ -81,16 +81,6 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
 
 
 @kernel
-def record_event(out: Record, t: float, contact: int, kind: int) -> None:
-    """Add a transition."""
-    i = out.used[1]
-    out.event[i, 0] = t
-    out.event[i, 1] = contact
-    out.event[i, 2] = kind
-    out.used[1] = i + 1
-
-
-@kernel
 def crowded(out: Record, n_c: int) -> bool:
     """Whether another step and its transitions might not find room."""
     return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + n_c + 2 > out.event.shape[0])

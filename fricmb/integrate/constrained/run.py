@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from fricmb.integrate.constrained.accelerations import State, instant_of, state_of
-from fricmb.integrate.constrained.bdf_history import past_of
+from fricmb.integrate.constrained.bdf_history import formula_of, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
-from fricmb.integrate.constrained.outcomes import DONE, FULL
 from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of, moving_of
 from fricmb.integrate.constrained.radau_step import control_of
-from fricmb.integrate.constrained.recorder import Record, record_of
+from fricmb.integrate.constrained.recorder import record_of
 from fricmb.integrate.constrained.stages import stages_of
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.watch import watch_of
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.methods.backward_differences import differences
 from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.run.chunks import Chunks, counters, end_of
+from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.tableau import radau
-from fricmb.integrate.trajectory import Counters, Transitions
 
 CHUNK = 1024
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
@@ -76,9 +78,9 @@ def run_mechanism(
     small = 1e-12 * max(float(np.abs(v).max(initial=0.0)), reach)
     if np.abs(v).max(initial=0.0) <= small:
         y.v[:] = 0.0  # round-off of a start at rest
-    chunks: list[tuple[Any, ...]] = []
     rooms = (mech, k, w, y, end, before, st, control, out, record, part)
-    go_on = _bdf_loop(problem, start, t_end, stages, rooms) if multistep else lambda: drive(*rooms)
+    go_on = _bdf_loop(problem, start, t_end, stages, rooms) if multistep else partial(drive, *rooms)
+    chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
     code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
     if code == DONE:
         out.size[0] = max(float(out.size[0]), reach)
@@ -88,26 +90,16 @@ def run_mechanism(
             control.floor_v[:] = np.maximum(floor, to_come)
             out.size[0] = max(float(out.size[0]), to_come)
         control.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
-        code = FULL
-    while code == FULL and ended() is None:
-        code = watched(go_on)
-        chunks.append(_taken(record))
-        if progress is not None:
-            progress(float(y.t[0]))
-        if code == FULL and memory is not None and sum(x.nbytes for chunk in chunks for x in chunk) > memory:
-            code = DONE
-    chunks.append(_taken(record))
-    steps = [np.concatenate(x) for x in zip(*chunks, strict=True)]
-    span, values, force, mode, opened, after, event = steps
-    failure = None if code == DONE else ended() or failure_text(code, problem, y, out)
+        code = chunks.fill(go_on, y.t, memory, progress)
+    chunks.take()
+    values, span, force, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
+    failure = None if code == DONE else ended() or (None if code == FULL else failure_text(code, problem, y, out))
+    if chunks.broken:
+        failure = failure or FAILURES[FAIL_INFINITE]
     notes = (*notes, *held_notes(problem, span[:, 0], mode, opened))
-    done, rejected, rhs, jac, lu = (int(x) for x in control.counts[:5])
-    final = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
     return StepTrajectory(
-        whole, span, values, force, mode, opened, after,
-        Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int)),
-        Counters(n_steps=done, n_rejected=rejected, n_rhs=rhs, n_jac=jac, n_lu=lu, notes=notes),
-        final, failure, nodes_of(stages),
+        whole, span, values, force, mode, opened, after, chunks.transitions(), counters(control.counts, notes),
+        end_of(y), failure, nodes_of(stages),
     )  # fmt: skip
 
 
@@ -122,18 +114,9 @@ def _bdf_loop(problem: Problem, start: Start, t_end: float, stages: int, rooms: 
     from fricmb.integrate.constrained.bdf_loop import drive_bdf
 
     add_blocks("multistep")
-    past = past_of(problem, start, t_end - start.t, COST * stages / 5)
-    together = (*rooms, past)
-    return lambda: drive_bdf(*together)
-
-
-def _taken(record: Record) -> tuple[Any, ...]:
-    """Empty the room for steps."""
-    i, e = (int(x) for x in record.used)
-    parts = (record.span, record.values, record.force, record.mode, record.opened, record.after)
-    taken = (*(np.array(x[:i]) for x in parts), record.event[:e].copy())
-    record.used[:] = 0
-    return taken
+    past = differences(signals(problem), t_end - start.t, COST * stages / 5)
+    together = (*rooms, past, formula_of(problem, start))
+    return partial(drive_bdf, *together)
 
 
 #: Forces of inertia that are nothing but the round-off of others.

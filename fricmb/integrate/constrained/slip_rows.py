@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
@@ -11,7 +9,7 @@ from fricmb.integrate.constrained.forces import call_joint, directions, friction
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.model.forces import gather
-from fricmb.integrate.model.law_values import break_away
+from fricmb.integrate.model.law_values import cone_margin, magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
@@ -22,16 +20,6 @@ SETTING_OUT = 3
 def plane(mech: Mech, c: int) -> bool:
     """Whether port c slips in two or three directions under a set-valued law."""
     return bool(mech.port.row[c + 1] - mech.port.row[c] >= 2 and mech.port.law[c] != LAW_SMOOTH)
-
-
-@kernel
-def magnitude(row: Ints, c: int, x: Floats) -> float:
-    """Length of a vector over the directions of port c."""
-    first = row[c]
-    if row[c + 1] - first == 1:
-        return float(abs(x[first]))
-    size = np.hypot(x[first], x[first + 1])
-    return float(size if row[c + 1] - first == 2 else np.hypot(size, x[first + 2]))
 
 
 @kernel
@@ -47,13 +35,6 @@ def slip_speed(row: Ints, c: int, n: Floats, F: Floats, x: Floats) -> float:
     return float(-along / size if size > 0.0 else along)
 
 
-@kernel
-def stick_limit(mech: Mech, k: Moving, c: int, N: Floats) -> float:
-    """Force up to which port c sticks."""
-    load = max(N[c], 0.0)
-    return float(break_away(mech.port, mech.port.laws, c, k.s, load) * load)  # type: ignore[arg-type]
-
-
 #: Loads below this part of the largest force: friction under them moves nothing, and is not known better than that.
 LIGHT = 1e-10
 
@@ -67,7 +48,7 @@ def lack(load: float, largest: float) -> float:
 @kernel
 def spare(mech: Mech, k: Moving, c: int, F: Floats, N: Floats, largest: float) -> float:
     """Force that port c could still bear while it sticks; of one almost without load only what tells beside others."""
-    left = stick_limit(mech, k, c, N) - magnitude(mech.port.row, c, F)
+    left = cone_margin(mech.port, mech.port.laws, c, k.s, F, max(N[c], 0.0))
     return float(left + LIGHT * largest * lack(N[c], largest))
 
 

@@ -14,24 +14,19 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.accelerations import State
-from fricmb.integrate.constrained.band_lapack import (
-    factor_complex,
-    factor_real,
-    solve_complex_band,
-    solve_real_band,
-)
 from fricmb.integrate.constrained.forces import forces, move, pull_back
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
 from fricmb.integrate.constrained.problem_structs import Mech, Moving, mech_of, mechanism_of
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
-from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Pivots, Problem
+from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Pivots, Problem
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.step.tableau import Complexes2, Tableau
+from fricmb.integrate.step.tableau import Tableau
 
 
 class Stages(NamedTuple):
@@ -110,7 +105,7 @@ def factor_stages(mech: Mech, st: Stages, h: float, address: Ints) -> bool:
             up, down = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real
             for j in range(st.real.shape[0]):
                 st.real[j] = up * L.A0[j] + L.A1[j] + down * L.A2[j]
-            if factor_real(order.address, order.sizes, pivots, st.real) != 0:
+            if not factor_band(st.real, pivots, order.sizes, mech.address):
                 return False
         else:
             shift = h * tab.lam[i]
@@ -118,7 +113,7 @@ def factor_stages(mech: Mech, st: Stages, h: float, address: Ints) -> bool:
             pair = st.pairs[i]
             for j in range(st.real.shape[0]):
                 pair[j] = inverse * L.A0[j] + L.A1[j] + shift * L.A2[j]
-            if factor_complex(order.address, order.sizes, pivots, pair) != 0:
+            if not factor_band(pair, pivots, order.sizes, mech.address):
                 return False
     return True
 
@@ -169,7 +164,7 @@ def newton_change(mech: Mech, st: Stages, address: Ints) -> None:
                 for j in range(s):
                     value += tab.Tinv[i, j].real * st.R[j, a]
                 st.x[order.place[a]] = value
-            solve_real_band(order.address, order.sizes, pivots, st.real, st.x)
+            solve_band(st.real, pivots, order.sizes, st.x, mech.address)
             for a in range(size):
                 st.w[i, a] = st.x[order.place[a]]
             continue
@@ -181,7 +176,7 @@ def newton_change(mech: Mech, st: Stages, address: Ints) -> None:
             for j in range(s):
                 value_c += tab.Tinv[i, j] * st.R[j, a]
             w[order.place[a]] = value_c
-        solve_complex_band(order.address, order.sizes, pivots, pair, w)
+        solve_band(pair, pivots, order.sizes, w, mech.address)
     for j in range(s):
         for a in range(size):
             value = 0.0

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
+from fricmb.integrate.compile.band import spread_of_pivots
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.constrained.accelerations import Instant, State, react
-from fricmb.integrate.constrained.attempt_step import arrive, grow, is_there, radau_step
+from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
+from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
 from fricmb.integrate.constrained.mode_decision import FOUND, SEVERAL, SLIPS_ON, decide, mark_rest
-from fricmb.integrate.constrained.outcomes import (
-    DONE,
-    FAIL_LOST,
-    FAIL_MARGIN,
-    FAIL_NONE,
-    FAIL_SEVERAL,
-    FAIL_SINGULAR,
-    FULL,
-)
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, crowded
+from fricmb.integrate.constrained.singular_position import TURNS, least_singular
 from fricmb.integrate.constrained.stages import Stages
-from fricmb.integrate.constrained.transition import let_go, next_stop, set_window
-from fricmb.integrate.constrained.watch import TURNS, Watch, least_singular, margins, pivots_of, triggers
+from fricmb.integrate.constrained.transition import let_go
+from fricmb.integrate.constrained.uniqueness import margins
+from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import SLIP, Codes
+from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
+from fricmb.integrate.run.outcomes import DONE, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_SEVERAL, FAIL_SINGULAR, FULL
 from fricmb.integrate.run.stop import stopped
 
 
@@ -33,10 +30,10 @@ def begin(
     small: float,
 ) -> int:  # fmt: skip
     """Modes, forces and accelerations at the start."""
-    set_window(k, c, y.t[0] + 4e-16 * abs(y.t[0]) + 1e-300)
+    set_window(c, k.s.window, y.t[0] + 4e-16 * abs(y.t[0]) + 1e-300)
     if not project_velocities(mech, k, w, y, False, False, mech.address):
         return FAIL_SINGULAR
-    if pivots_of(mech, w) < 1e-14:
+    if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
         return FAIL_SINGULAR
     out.sigma[1] = least_singular(mech, w, out, TURNS)
     mark_rest(mech, y, small, part)
@@ -48,10 +45,10 @@ def begin(
     if code != FOUND:
         if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
             return FAIL_MARGIN
-        return FAIL_SEVERAL if code == SEVERAL else FAIL_NONE
+        return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     # what sticks moves by nothing, not by the round-off of velocities that have been given or projected
     if not (project_velocities(mech, k, w, y, False, True, mech.address) and react(mech, k, w, y, False, mech.address)):
-        return FAIL_NONE
+        return FAIL_MODES
     grow(c, out, y)
     if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
         return FAIL_MARGIN
@@ -70,7 +67,7 @@ def begin(
         mark_rest(mech, y, small, part)
         code = decide(mech, k, w, y, part, -1, mech.address)
         if code != FOUND:
-            return FAIL_SEVERAL if code == SEVERAL else FAIL_NONE
+            return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     return DONE
 
 
@@ -80,12 +77,12 @@ def drive(
     rec: Record, part: Codes,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until the room for steps is used up."""
-    set_window(k, c, y.t[0])
+    set_window(c, k.s.window, y.t[0])
     while True:
         if stopped() or crowded(rec, y.mode.shape[0]):
             return FULL
         stop = next_stop(c, y.t[0])
-        if is_there(y, stop):
+        if reached(y.t[0], stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
             if code == DONE and stop >= c.span[1]:
                 return DONE

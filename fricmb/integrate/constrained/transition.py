@@ -7,57 +7,19 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix, react
 from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.mode_decision import ARRIVES, FOUND, LENT, RESTED, SEVERAL, SLIPS_ON, decide
-from fricmb.integrate.constrained.outcomes import (
-    DONE,
-    FAIL_HIT,
-    FAIL_LOST,
-    FAIL_MARGIN,
-    FAIL_NONE,
-    FAIL_PROJECT,
-    FAIL_SEVERAL,
-)
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
-from fricmb.integrate.constrained.projection import EPS, project_velocities
+from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
-from fricmb.integrate.constrained.recorder import Record, copy_state, record_event
-from fricmb.integrate.constrained.slip_rows import lack, magnitude, plane
-from fricmb.integrate.constrained.watch import TURNS, Watch, least_singular, margins
-from fricmb.integrate.problem import (
-    EVENT_CLOSE,
-    EVENT_OPEN,
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    OPEN,
-    SLIP,
-    STICK,
-    Codes,
-    Ints,
-)
-
-
-@kernel
-def next_stop(c: Control, t: float) -> float:
-    """The next time that has to be stepped to exactly; sees to it that functions of time are taken from inside."""
-    stop = c.span[1]
-    for i in range(c.stops.shape[0]):
-        if c.stops[i] > t + 4.0 * EPS * abs(t) and c.stops[i] < stop:
-            stop = c.stops[i]
-    return float(stop)
-
-
-@kernel
-def set_window(k: Moving, c: Control, t: float) -> None:
-    """Evaluate functions of time inside the present interval between breakpoints."""
-    low, high = -1e300, 1e300
-    for i in range(c.stops.shape[0]):
-        edge = c.stops[i]
-        if edge <= t + 4.0 * EPS * abs(t):
-            low = max(low, edge + 2.0 * EPS * abs(edge) + 1e-300)
-        else:
-            high = min(high, edge - 2.0 * EPS * abs(edge) - 1e-300)
-    k.s.window[0] = low
-    k.s.window[1] = high
+from fricmb.integrate.constrained.recorder import Record, copy_state
+from fricmb.integrate.constrained.singular_position import TURNS, least_singular
+from fricmb.integrate.constrained.slip_rows import lack, plane
+from fricmb.integrate.constrained.uniqueness import margins
+from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.contact.event_location import record_changes
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Ints
+from fricmb.integrate.run.breakpoints import set_window
+from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL
 
 
 @kernel
@@ -125,7 +87,7 @@ def change_modes(
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
         if code != DONE:
             return code
-    set_window(k, c, y.t[0])
+    set_window(c, k.s.window, y.t[0])
     for i in range(n_c):
         part[i] = RESTED if y.mode[i] == STICK else SLIPS_ON
         # without load the direction of slip decides nothing: found anew it would be that of round-off
@@ -151,26 +113,12 @@ def change_modes(
             y.n[row[port]] = -y.n[row[port]]
     code = decide(mech, k, w, y, part, forced, mech.address)
     if code != FOUND:
-        return FAIL_SEVERAL if code == SEVERAL else FAIL_NONE
-    for i in range(n_c):
-        was, now = before.mode[i], y.mode[i]
-        kind = -1
-        if was == SLIP and now == STICK:
-            kind = EVENT_STICK
-        elif was == STICK and now == SLIP:
-            kind = EVENT_SLIP
-        elif was != OPEN and now == OPEN:
-            kind = EVENT_OPEN
-        elif was == OPEN and now != OPEN:
-            kind = EVENT_CLOSE
-        elif was == SLIP and now == SLIP and not plane(mech, i) and before.n[row[i]] != y.n[row[i]]:
-            kind = EVENT_REVERSAL
-        if kind >= 0:
-            record_event(rec, y.t[0], i, kind)
+        return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
+    record_changes(mech.port, y.t[0], y, before, rec)
     if not bring_to_rest(mech, k, w, y, part):
         return FAIL_PROJECT
     if not react(mech, k, w, y, False, mech.address):
-        return FAIL_NONE
+        return FAIL_MODES
     c.h[1] = 0.0
     c.made[0] = 0.0
     if margins(mech, k, w, y, out, True, mech.address) <= 0.0:

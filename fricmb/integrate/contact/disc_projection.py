@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, slip_speed
+from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.friction_discs import largest, least_energy, relative_acceleration, units
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Ports
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats
 
@@ -53,7 +54,7 @@ def release(ports: Ports, y: State, part: Codes, mode: Codes, F: Floats) -> bool
                 if rate > excess:
                     worst, excess = k, rate
                 continue
-            size = slip_speed(F, ports.row[k], ports.row[k + 1] - ports.row[k])
+            size = magnitude(ports.row, k, F)
             hold = ports.mu_s[k] * y.N[k]
             ratio = size / hold if hold > 0.0 else (2.0 if size > 0.0 else 0.0)
             if ratio > excess:
@@ -65,7 +66,7 @@ def release(ports: Ports, y: State, part: Codes, mode: Codes, F: Floats) -> bool
         mode[k] = OPEN
         if part[k] != 0:
             row0 = ports.row[k]
-            size = slip_speed(F, row0, ports.row[k + 1] - row0)
+            size = magnitude(ports.row, k, F)
             # on its cone and not accelerated it is held, but for one that has just been found to break away
             slips = free[k] and size >= (1.0 - 1e-9) * limit[k]
             slips = slips and (part[k] == 2 or slip_start(ports, y, F, k) > STARTS * largest(y.a0))

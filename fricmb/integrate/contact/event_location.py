@@ -13,9 +13,9 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
-from fricmb.integrate.model.accelerations import State, share_load, slip_speed
+from fricmb.integrate.model.accelerations import State, share_load
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.law_values import break_away, coefficient
+from fricmb.integrate.model.law_values import coefficient, magnitude, stick_limit
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import AFTER, BEFORE, Rows, record, record_event
 from fricmb.integrate.problem import (
@@ -32,12 +32,13 @@ from fricmb.integrate.problem import (
     Floats,
     Ints,
 )
+from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.room_protocols import Events, Laws, Modes
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.event_functions import find_trigger, margin
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
+from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 from fricmb.integrate.step.step_error import step_error
-
-EPS = 2.220446049250313e-16
 
 
 class Before(NamedTuple):
@@ -135,7 +136,6 @@ def locate(
     (inaccurate so far: close to landing this refines geometrically); -2 where nothing converges.
     """
     t_unit = EPS * max(abs(y.t[0]), h)
-    s_order = 1.0 / one.tab.c.shape[0]
     lo, hi = 0.0, h
     f_lo = np.nan
     f_hi = np.nan
@@ -160,7 +160,7 @@ def locate(
             continue
         error = step_error(packed, s, y, one, acc, step, address)
         if error > 1.0:
-            retry[0] = step * max(0.1, 0.85 * error**-s_order)
+            retry[0] = step * max(0.1, step_factor(error, one.tab.c.shape[0], ONE_STEP_SAFETY))
             return -1
         copy_state(y, end)
         if not finish(packed, s, end, one, acc, step, address):
@@ -228,33 +228,33 @@ def passes_by(packed: Packed, s: Scratch, y: State, end: State, acc: Accuracy, k
     whole = D[row0, row0] * D[row0 + 1, row0 + 1] - D[row0, row0 + 1] * D[row0 + 1, row0]
     hold0 = D[row0 + 1, row0 + 1] * b0 - D[row0, row0 + 1] * b1
     hold1 = D[row0, row0] * b1 - D[row0 + 1, row0] * b0
-    if np.hypot(hold0, hold1) <= break_away(packed.ports, packed.laws, k, s, N) * N * abs(whole):
+    if np.hypot(hold0, hold1) <= stick_limit(packed.ports, packed.laws, k, s, N) * abs(whole):
         return False
     beside = abs(n[row0] * b1 - n[row0 + 1] * b0) / max(np.hypot(b0, b1), 1e-290)
-    return bool(slip_speed(y.g, row0, 2) * beside > 0.01 * acc.rtol[0] * acc.r[k])
+    return bool(magnitude(packed.ports.row, k, y.g) * beside > 0.01 * acc.rtol[0] * acc.r[k])
 
 
 @kernel
-def turned(packed: Packed, k: int, mode: int, n: Floats, old: Floats) -> bool:
+def turned(ports: Laws, k: int, mode: int, n: Floats, old: Floats) -> bool:
     """Whether one-dimensional slip of contact k has changed its sense."""
-    row0 = packed.ports.row[k]
-    one = mode == SLIP and packed.ports.law[k] != LAW_SMOOTH and packed.ports.row[k + 1] - row0 == 1
+    row0 = ports.row[k]
+    one = mode == SLIP and ports.law[k] != LAW_SMOOTH and ports.row[k + 1] - row0 == 1
     return bool(one and n[row0] * old[row0] < 0.0)
 
 
 @kernel
-def record_changes(packed: Packed, y: State, old: Before, out: Rows) -> None:
-    """Record an event for every contact whose mode, or sense of one-dimensional slip, differs from ``old``."""
+def record_changes(ports: Laws, t: float, y: Modes, old: Modes, out: Events) -> None:
+    """Record an event at t for every contact whose mode, or sense of one-dimensional slip, differs from ``old``."""
     for c in range(y.mode.shape[0]):
         if y.mode[c] != old.mode[c]:
             if y.mode[c] == OPEN:
-                record_event(out, y.t[0], c, EVENT_OPEN)
+                record_event(out, t, c, EVENT_OPEN)
             elif old.mode[c] == OPEN:
-                record_event(out, y.t[0], c, EVENT_CLOSE)
+                record_event(out, t, c, EVENT_CLOSE)
             else:
-                record_event(out, y.t[0], c, EVENT_STICK if y.mode[c] == STICK else EVENT_SLIP)
-        elif turned(packed, c, y.mode[c], y.n, old.n):
-            record_event(out, y.t[0], c, EVENT_REVERSAL)
+                record_event(out, t, c, EVENT_STICK if y.mode[c] == STICK else EVENT_SLIP)
+        elif turned(ports, c, y.mode[c], y.n, old.n):
+            record_event(out, t, c, EVENT_REVERSAL)
 
 
 @kernel
@@ -262,8 +262,7 @@ def lands_now(packed: Packed, y: State, k: int, part: int) -> bool:
     """Whether a slip ends so soon that no step to its end can be told from none: 16 roundings of the time away."""
     if part != 0 or y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
         return False
-    row0 = packed.ports.row[k]
-    speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+    speed = magnitude(packed.ports.row, k, y.g)
     return bool(speed <= -16.0 * EPS * abs(y.t[0]) * slip_rate(packed, y, k))
 
 
@@ -276,7 +275,7 @@ def holds_nothing(packed: Packed, y: State, k: int) -> bool:
     top = 0.0
     for i in range(y.a.shape[0]):
         top = max(top, abs(y.a[i]))
-    held = packed.ports.D[row0, row0] * slip_speed(y.F, row0, packed.ports.row[k + 1] - row0)
+    held = packed.ports.D[row0, row0] * magnitude(packed.ports.row, k, y.F)
     return bool(held <= 1e-12 * top)
 
 
@@ -292,10 +291,10 @@ def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool
     most = 0.0
     for c in range(nc if load > 0.0 else 0):
         row0 = packed.ports.row[c]
-        most = max(most, slip_speed(y.way, row0, packed.ports.row[c + 1] - row0))
+        most = max(most, magnitude(packed.ports.row, c, y.way))
     for c in range(nc if most > 0.0 else 0):
         row0 = packed.ports.row[c]
-        speed = slip_speed(y.way, row0, packed.ports.row[c + 1] - row0)
+        speed = magnitude(packed.ports.row, c, y.way)
         if old.mode[c] == STICK and r.part[c] == 1 and speed > 1e-3 * most:
             r.part[c] = 2
             for a in range(row0, packed.ports.row[c + 1]):
@@ -328,7 +327,7 @@ def transition(
     mark_rest(packed, s, y, r, address)
     for c in range(y.mode.shape[0]):
         row0 = ports.row[c]
-        force = ports.D[row0, row0] * break_away(ports, packed.laws, c, s, y.N[c]) * y.N[c]
+        force = ports.D[row0, row0] * stick_limit(ports, packed.laws, c, s, y.N[c])
         if lands_now(packed, y, c, r.part[c]):
             r.part[c] = 1
         if c != k and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
@@ -339,7 +338,7 @@ def transition(
             pass
         elif old.mode[k] == STICK:
             r.part[k] = 2
-            size = slip_speed(y.F, ports.row[k], ports.row[k + 1] - ports.row[k])
+            size = magnitude(ports.row, k, y.F)
             for a in range(ports.row[k], ports.row[k + 1]):
                 y.n[a] = -y.F[a] / size
         else:
@@ -347,6 +346,6 @@ def transition(
     code = settle(packed, s, y, r, address)
     if code != 0:
         return code
-    record_changes(packed, y, old, out)
+    record_changes(ports, y.t[0], y, old, out)
     record(out, y, AFTER)
     return 0

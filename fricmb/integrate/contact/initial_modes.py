@@ -36,7 +36,7 @@ def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: boo
             old.n[a] = y.n[a]
     code = settle(packed, s, y, r, address)
     if given and code == 0:
-        record_changes(packed, y, old, out)
+        record_changes(packed.ports, y.t[0], y, old, out)
     record(out, y, AFTER)
     return code
 

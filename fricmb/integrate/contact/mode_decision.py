@@ -26,12 +26,11 @@ from fricmb.integrate.model.accelerations import (
     complete,
     kinematics,
     known_forces,
-    slip_speed,
     solve_response,
 )
 from fricmb.integrate.model.forces import Scratch, normal_force
 from fricmb.integrate.model.friction_discs import share
-from fricmb.integrate.model.law_values import break_away, coefficient
+from fricmb.integrate.model.law_values import break_away, coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed, Ports, Table
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.stop import stopped
@@ -117,7 +116,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         worst, back = find_wrong(y, r, held, least * big)
         if worst >= 0:
             row0 = ports.row[worst]
-            size = slip_speed(w.F[0], row0, ports.row[worst + 1] - row0)
+            size = magnitude(ports.row, worst, w.F[0])
             for a in range(row0, ports.row[worst + 1]):
                 y.n[a] = -w.F[0, a] / size
             r.mode[worst] = SLIP
@@ -148,9 +147,8 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
         share(ports, r.mode, held, w.F[0], y.way)
     worst, back, excess = -1, -1, 1.0 + MARGIN
     for k in range(r.mode.shape[0]):
-        row0 = ports.row[k]
         if r.mode[k] == STICK:
-            size = slip_speed(w.F[0], row0, ports.row[k + 1] - row0)
+            size = magnitude(ports.row, k, w.F[0])
             limit = ports.mu_s[k] * y.N[k]
             ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
             first = worst < 0 or r.rested[k] < r.rested[worst]
@@ -253,8 +251,7 @@ def find_held(packed: Packed, y: State, r: Rest) -> bool:
     """
     some = False
     for k in range(y.mode.shape[0]):
-        row0 = packed.ports.row[k]
-        speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        speed = magnitude(packed.ports.row, k, y.g)
         slips = r.part[k] == 0 and y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH
         if slips and speed <= 1e-13 * r.tol[k] + r.small[k]:
             r.part[k] = 1
@@ -304,7 +301,7 @@ def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> N
         r.part[k] = 0
         if packed.ports.law[k] == LAW_SMOOTH or y.mode[k] == OPEN:
             continue
-        speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        speed = magnitude(packed.ports.row, k, y.g)
         if y.mode[k] == STICK or speed <= 8e-16 * y.size[row0] + r.small[k]:
             r.part[k] = 1
         if y.mode[k] == STICK and speed > 1e-9 * y.size[row0] + 1e3 * r.small[k]:

@@ -9,7 +9,6 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.contact.event_location import (
-    EPS,
     Before,
     copy_state,
     locate,
@@ -19,27 +18,30 @@ from fricmb.integrate.contact.event_location import (
     transition,
 )
 from fricmb.integrate.contact.mode_decision import Rest
-from fricmb.integrate.model.accelerations import INFINITE, State, slip_speed
+from fricmb.integrate.model.accelerations import INFINITE, State
 from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import INSIDE, STEP, Rows, put, record
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints
+from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.outcomes import (
+    ACCEPTED,
+    CHANGED,
+    FAIL_CHATTER,
+    FAIL_INFINITE,
+    FAIL_LAW,
+    FAIL_MODES,
+    FAIL_REDUNDANT,
+    FAIL_STEP,
+    REJECTED,
+)
 from fricmb.integrate.step.event_functions import find_trigger
 from fricmb.integrate.step.exact_structure import CAP, rung_below
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, ladder, update_scales
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, update_scales
+from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
 from fricmb.integrate.step.step_error import step_error
 
-#: What a step or a loop of steps ends with: an accepted or rejected step, a transition gone through, or why not.
-ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
-FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW, FAIL_INFINITE = range(5, 11)
-FAILURES = {
-    FAIL_STEP: "the step size fell below round-off: the equations of the step could not be solved to tolerance",
-    FAIL_MODES: "no consistent set of stick and slip was found for contacts at rest",
-    FAIL_REDUNDANT: "stuck contacts are redundant: their forces are not determined",
-    FAIL_LAW: "the coefficient of a friction law is negative at the slip speed reached: friction would drive",
-    FAIL_INFINITE: "forces or accelerations became infinite",
-    FAIL_CHATTER: "transitions pile up at one instant (chattering)",
-}
 #: Slip speed, relative to the velocities behind it, that is taken for none where no step can be taken.
 NEARLY = 1e-12
 #: Transitions at one instant after which that is done, too.
@@ -86,7 +88,7 @@ def advance(
     After ACCEPTED y is the end of the step and ``end`` its start (stages are in ``one``); after CHANGED y stands behind
     the transition.
     """
-    order = 1.0 / one.tab.c.shape[0]
+    order = one.tab.c.shape[0]
     t = y.t[0]
     # a hundred steps at least: where nothing moves, no error says how fast a load changes (with exact structure loads
     # are among what is collocated, and the error knows them)
@@ -98,7 +100,7 @@ def advance(
         h = one.exact.ladder[rung_below(h)]
     else:
         # steps of a ladder come again, and their factors with them
-        h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h)
+        h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h, ONE_STEP_RUNGS)
     # the shortest rung of the ladder of exact structure is no end of steps: what is asked for is
     if not min(h, clock.h[0]) > 8.0 * EPS * abs(t) + 1e-280:
         return end_round_off(packed, s, y, r, old, out, clock, address)
@@ -113,7 +115,7 @@ def advance(
     if not finish(packed, s, end, one, acc, h, address):
         return incomplete(end)
     k = find_trigger(packed, s, y, end, one, clock.found, address)
-    wanted = h * min(5.0, max(0.1, 0.85 * max(error, 1e-20) ** -order))
+    wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
     if one.exact.ladder.shape[0] > 0:
         wanted = min(wanted, one.exact.par[CAP])
     if k < 0 and error <= 1.0:
@@ -195,7 +197,7 @@ def end_round_off(
     for k in range(y.mode.shape[0]):
         if y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH:
             row0 = packed.ports.row[k]
-            speed = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            speed = magnitude(packed.ports.row, k, y.g)
             soon = -1e-9 * clock.usual[0] * slip_rate(packed, y, k)
             if speed <= max(soon, NEARLY * y.size[row0] + 1e3 * kept[k]):
                 found = True

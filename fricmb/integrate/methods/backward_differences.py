@@ -1,4 +1,4 @@
-"""The history of a BDF run: backward differences of positions, velocities, states and powers at equal steps."""
+"""The history of a BDF run: backward differences at equal steps, and when BDF and the one-step method take turns."""
 
 from __future__ import annotations
 
@@ -16,21 +16,23 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED
 from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.step_control import BDF_SAFETY, step_factor
+
+#: What ``status`` counts: the order; steps since it or the step changed; 1 where BDF is on; rejections in a row; steps
+#: of the one-step method to wait for before BDF is tried again; the last such wait; steps since its start; the last
+#: wait because it was the slower of the two.
+ORDER, EQUAL, ON, REJECTIONS, WAIT, WAITED, SINCE, SLOWER = range(8)
 
 
-class History(NamedTuple):
-    """Backward differences ``D`` (8, n_y) of y = [q, v, z, powers] at step ``h`` (1,).
+class Differences(NamedTuple):
+    """Backward differences ``D`` (8, n_y) of the n_y signals that a step predicts, at step ``h`` (1,).
 
-    ``status`` (8,): order, steps since the last change, whether BDF is on, rejections in a row, one-step steps to wait
-    for before it is tried again, the last wait, steps since its start, the last wait because it was the slower.
-    ``good`` (1,) last accepted step.  ``new``, ``guess``, ``lag``, ``d`` (n_y,) values, prediction, psi without it,
-    and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;
-    ``adams`` (7,) weights of an integral over the last step by backward differences (Adams-Moulton).  ``unit`` (1,)
-    allowed local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
-    ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` spectrum of the scene.
-    ``over`` (n_c+1,) how fast stuck forces came nearer to their limits in the last step, and its length; ``U``, ``E``,
-    ``column`` room for rescaling.
+    ``status`` (8,): see above.  ``good`` (1,) last accepted step.  ``new``, ``guess``, ``lag``, ``d`` (n_y,) values,
+    prediction, psi without it, and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;  ``unit`` (1,) allowed
+    local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
+    ``U``, ``E``, ``column`` room for rescaling.
     """
 
     D: Floats2
@@ -42,53 +44,141 @@ class History(NamedTuple):
     lag: Floats
     d: Floats
     gamma: Floats
-    adams: Floats
     unit: Floats
     cost: Floats
-    growth: Floats2
-    omega: Floats
-    decay: Floats
-    over: Floats
     U: Floats2
     E: Floats2
     column: Floats
 
 
-def history(problem: Problem, span: float, spectrum: tuple[Floats, Floats], cost: float) -> History:
-    """Room for the history of a run over ``span``; spectrum: frequencies and decay rates of the structure.
-
-    ``cost``: of a one-step step, in steps of BDF.
-    """
-    n_y = 2 * problem.n + problem.n_z + problem.n_c + 2
-    gamma = np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))])
-    adams = np.array([1.0, -1 / 2, -1 / 12, -1 / 24, -19 / 720, -3 / 160, -863 / 60480])
-    # a hundredth of the error is spent on a hundredth of the run, and the sum stays some 100 rtol
-    unit = np.array([100.0 / max(span, 1e-300)])
+def differences(n_y: int, span: float, cost: float) -> Differences:
+    """Room for the history of a run over ``span``; ``cost`` of a one-step step, in steps of BDF."""
+    signal, one = np.zeros(n_y), np.zeros(1)
+    square = np.zeros((MAX_ORDER + 1, MAX_ORDER + 1))
     return room(
-        History(
+        Differences(
             D=np.zeros((8, n_y)),
-            h=np.zeros(1),
+            h=one,
             status=np.zeros(8, np.int64),
-            good=np.zeros(1),
-            new=np.zeros(n_y),
-            guess=np.zeros(n_y),
-            lag=np.zeros(n_y),
-            d=np.zeros(n_y),
-            gamma=gamma,
-            adams=adams,
-            unit=unit,
+            good=one.copy(),
+            new=signal,
+            guess=signal.copy(),
+            lag=signal.copy(),
+            d=signal.copy(),
+            gamma=np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))]),
+            # a hundredth of the error is spent on a hundredth of the run, and the sum stays some 100 rtol
+            unit=np.array([100.0 / max(span, 1e-300)]),
             cost=np.array([cost]),
-            growth=growth_table(),
-            omega=np.ascontiguousarray(spectrum[0], dtype=float),
-            decay=np.ascontiguousarray(spectrum[1], dtype=float),
-            over=np.zeros(problem.n_c + 1),
-            U=np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
-            E=np.zeros((MAX_ORDER + 1, MAX_ORDER + 1)),
+            U=square,
+            E=square.copy(),
             column=np.zeros(8),
         )
     )
 
 
+#: Weights of an integral over the last step by backward differences (Adams-Moulton).
+ADAMS = (1.0, -1 / 2, -1 / 12, -1 / 24, -19 / 720, -3 / 160, -863 / 60480)
+#: Largest growth of a step: differences of old values are extrapolated, their round-off with them.
+GROWTH = 3.0
+
+
+class Guard(NamedTuple):
+    """What keeps BDF from growing on lightly damped oscillations, and from overlooking a transition.
+
+    ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` spectrum of the scene.
+    ``over`` (n_c+1,) how fast stuck forces came nearer to their limits in the last step, and its length.
+    """
+
+    growth: Floats2
+    omega: Floats
+    decay: Floats
+    over: Floats
+
+
+def guard_of(problem: Problem, spectrum: tuple[Floats, Floats]) -> Guard:
+    """Of a scene with frequencies and decay rates of the structure, ``spectrum``."""
+    omega, decay = (np.ascontiguousarray(x, dtype=float) for x in spectrum)
+    return room(Guard(growth_table(), omega, decay, np.zeros(problem.n_c + 1)))
+
+
+@kernel
+def predict(past: Differences) -> None:
+    """Prediction, and psi (into ``new``; ``lag``: psi without the prediction)."""
+    k = past.status[ORDER]
+    for i in range(past.guess.shape[0]):
+        guess = past.D[0, i]
+        psi = 0.0
+        for j in range(1, k + 1):
+            guess += past.D[j, i]
+            psi += past.gamma[j] * past.D[j, i]
+        past.guess[i] = guess
+        past.lag[i] = -psi / past.gamma[k]
+        past.new[i] = guess + past.lag[i]
+
+
+@kernel
+def bring_forward(past: Differences, i: int, last: int) -> None:
+    """Bring the differences of signal i, from the order down to ``last``, to the end of the step corrected by ``d``."""
+    k = past.status[ORDER]
+    past.D[k + 2, i] = past.d[i] - past.D[k + 1, i]
+    past.D[k + 1, i] = past.d[i]
+    for j in range(k, last - 1, -1):
+        past.D[j, i] += past.D[j + 1, i]
+
+
+@kernel
+def count_step(past: Differences) -> None:
+    """Count an accepted step."""
+    past.status[EQUAL] += 1
+    past.status[REJECTIONS] = 0
+    past.status[SINCE] += 1
+    past.good[0] = past.h[0]
+
+
+@kernel
+def begin_at(past: Differences, order: int, h: float) -> None:
+    """Begin with the differences of an order at step h."""
+    past.h[0] = h
+    past.status[ORDER] = order
+    past.status[ON] = 1
+    past.status[EQUAL] = past.status[REJECTIONS] = past.status[SINCE] = 0
+
+
+@kernel
+def hand_over(past: Differences) -> None:
+    """Leave the next steps to the one-step method; where BDF came to nothing it is not tried again at once."""
+    past.status[ON] = 0
+    past.status[WAITED] = min(50, 2 * past.status[WAITED] + 1) if past.status[SINCE] < 8 else 0
+    past.status[WAIT] = past.status[WAITED]
+    if past.status[SINCE] > 4 * PATIENCE:
+        past.status[SLOWER] = 0
+
+
+@kernel
+def is_slower(past: Differences, usual: float) -> bool:
+    """Whether the one-step method with steps ``usual`` gets on faster: the run is left to it, longer each time."""
+    if past.status[SINCE] <= PATIENCE or past.h[0] * past.cost[0] >= usual:
+        return False
+    past.status[ON] = 0
+    past.status[SLOWER] = min(2000, max(50, 4 * past.status[SLOWER]))
+    past.status[WAIT] = past.status[SLOWER]
+    return True
+
+
+@kernel
+def may_begin(past: Differences, code: int) -> bool:
+    """Whether BDF may begin after a step of the one-step method that ended with ``code``, or has to wait."""
+    if code == CHANGED and past.status[SLOWER] == 0:
+        past.status[WAIT] = 0
+    elif code == ACCEPTED and past.status[WAIT] > 0:
+        past.status[WAIT] -= 1
+    else:
+        return bool(code == ACCEPTED)
+    return False
+
+
+#: BDF steps after which the two methods are compared.
+PATIENCE = 16
 #: Structures of more degrees of freedom are not diagonalised for this.
 WHOLE = 256
 
@@ -113,27 +203,27 @@ def spectrum(problem: Problem, structure: Structure, K: Floats, C: Floats) -> tu
 
 
 @kernel
-def admissible(hist: History, k: int, h: float, left: float) -> bool:
+def admissible(guard: Guard, k: int, h: float, left: float) -> bool:
     """Whether round-off in every oscillation stays small under order k at step h for the rest of the run."""
     if k < 3:
         return True
-    for j in range(hist.omega.shape[0]):
-        x = hist.omega[j] * h / SPACING
+    for j in range(guard.omega.shape[0]):
+        x = guard.omega[j] * h / SPACING
         i = int(min(x, COLUMNS - 1.0))
-        growth = hist.growth[k, i]
+        growth = guard.growth[k, i]
         if i + 1 < COLUMNS:
-            growth += (x - i) * (hist.growth[k, i + 1] - growth)
-        if (growth / h - hist.decay[j]) * left > 2.0:
+            growth += (x - i) * (guard.growth[k, i + 1] - growth)
+        if (growth / h - guard.decay[j]) * left > 2.0:
             return False
     return True
 
 
 @kernel
-def rescale(hist: History, factor: float) -> None:
+def rescale(past: Differences, factor: float) -> None:
     """Differences for the step ``factor`` h (Byrne and Hindmarsh 1975; as in scipy's BDF, with its R(factor) R(1))."""
-    k = hist.status[0]
+    k = past.status[ORDER]
     for pass_ in range(2):
-        target = hist.U if pass_ == 0 else hist.E
+        target = past.U if pass_ == 0 else past.E
         c = factor if pass_ == 0 else 1.0
         for j in range(k + 1):
             target[0, j] = 1.0
@@ -141,25 +231,44 @@ def rescale(hist: History, factor: float) -> None:
             target[i, 0] = 0.0
             for j in range(1, k + 1):
                 target[i, j] = target[i - 1, j] * (i - 1 - c * j) / i
-    width = hist.D.shape[1]
+    width = past.D.shape[1]
     for y in range(width):
         for i in range(k + 1):
             value = 0.0
             for j in range(k + 1):
-                value += hist.U[j, i] * hist.D[j, y]
-            hist.column[i] = value
+                value += past.U[j, i] * past.D[j, y]
+            past.column[i] = value
         for i in range(k + 1):
             value = 0.0
             for j in range(k + 1):
-                value += hist.E[j, i] * hist.column[j]
-            hist.D[i, y] = value
-    hist.h[0] *= factor
-    hist.status[1] = 0
+                value += past.E[j, i] * past.column[j]
+            past.D[i, y] = value
+    past.h[0] *= factor
+    past.status[EQUAL] = 0
+
+
+@kernel
+def best_order(k: int, lower: float, error: float, higher: float) -> tuple[int, float]:
+    """Of orders k - 1, k, k + 1 with these errors (inf: not to be taken) the one that goes fastest, and by what."""
+    best_k, best = k, step_factor(error, k, BDF_SAFETY)
+    if k > 1 and step_factor(lower, k - 1, BDF_SAFETY) > best:
+        best_k, best = k - 1, step_factor(lower, k - 1, BDF_SAFETY)
+    if step_factor(higher, k + 1, BDF_SAFETY) > best:
+        best_k, best = k + 1, step_factor(higher, k + 1, BDF_SAFETY)
+    return best_k, best
+
+
+@kernel
+def change_order(past: Differences, order: int, step: float) -> None:
+    """Go on with an order, and the step times ``step`` where that is worth it."""
+    if order != past.status[ORDER] or step > 1.3 or step < 1.0:
+        past.status[ORDER] = order
+        rescale(past, step)
 
 
 @block
 def start_history(
-    packed: Packed, s: Scratch, before: State, y: State, one: OneStep, hist: History, h: float, address: Ints
+    packed: Packed, s: Scratch, before: State, y: State, one: OneStep, past: Differences, h: float, address: Ints
 ) -> None:
     """Differences of order up to 4 from the polynomial of the one-step step just done, from ``before`` to y."""
     tab, st, w = one.tab, one.st, one.w
@@ -170,8 +279,8 @@ def start_history(
     step = min(h, H / k)
     for j in range(k + 1):
         x = 1.0 - j * step / H
-        for i in range(hist.D.shape[1]):
-            hist.D[j, i] = 0.0
+        for i in range(past.D.shape[1]):
+            past.D[j, i] = 0.0
         for c in range(n_s + 1):
             weight = 0.0
             for p in range(n_s, -1, -1):
@@ -180,27 +289,22 @@ def start_history(
                 # ways from the end of the step, free of the round-off of large positions
                 for i_s in range(n_s):
                     part = st.hA[c - 1, i_s] if c > 0 else 0.0
-                    hist.D[j, i] += weight * (part - st.hA[n_s - 1, i_s]) * st.V[i_s, i]
-                hist.D[j, n + i] += weight * (before.v[i] if c == 0 else st.V[c - 1, i])
+                    past.D[j, i] += weight * (part - st.hA[n_s - 1, i_s]) * st.V[i_s, i]
+                past.D[j, n + i] += weight * (before.v[i] if c == 0 else st.V[c - 1, i])
             for i in range(nz):
-                hist.D[j, 2 * n + i] += weight * (before.z[i] if c == 0 else w.z[c - 1, i])
+                past.D[j, 2 * n + i] += weight * (before.z[i] if c == 0 else w.z[c - 1, i])
             for i in range(nr):
-                hist.D[j, 2 * n + nz + i] += weight * (before.rate[i] if c == 0 else one.power[c - 1, i])
+                past.D[j, 2 * n + nz + i] += weight * (before.rate[i] if c == 0 else one.power[c - 1, i])
     for i in range(n):
-        hist.D[0, i] = 0.0
-        hist.D[0, n + i] = y.v[i]
+        past.D[0, i] = 0.0
+        past.D[0, n + i] = y.v[i]
     for i in range(1, k + 1):
         for j in range(k, i - 1, -1):
-            for x in range(hist.D.shape[1]):
-                hist.D[j, x] = hist.D[j - 1, x] - hist.D[j, x]
+            for x in range(past.D.shape[1]):
+                past.D[j, x] = past.D[j - 1, x] - past.D[j, x]
     for j in range(k + 1, 8):
-        for i in range(hist.D.shape[1]):
-            hist.D[j, i] = 0.0
+        for i in range(past.D.shape[1]):
+            past.D[j, i] = 0.0
     for i in range(n):
-        hist.D[0, i] = y.q[i]
-    hist.h[0] = step
-    hist.status[0] = k
-    hist.status[1] = 0
-    hist.status[2] = 1
-    hist.status[3] = 0
-    hist.status[6] = 0
+        past.D[0, i] = y.q[i]
+    begin_at(past, k, step)

@@ -12,16 +12,31 @@ from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.contact.event_location import Before, slip_rate
 from fricmb.integrate.contact.mode_decision import Rest
 from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
-from fricmb.integrate.methods.attempt_step import ACCEPTED, CHANGED, FULL, Clock, advance
-from fricmb.integrate.methods.backward_differences import History, history, spectrum, start_history
-from fricmb.integrate.methods.bdf_step import HANDOVER, bdf_step, note_loads
+from fricmb.integrate.methods.attempt_step import Clock, advance
+from fricmb.integrate.methods.backward_differences import (
+    ON,
+    SLOWER,
+    WAIT,
+    Differences,
+    Guard,
+    differences,
+    guard_of,
+    hand_over,
+    is_slower,
+    may_begin,
+    spectrum,
+    start_history,
+)
+from fricmb.integrate.methods.bdf_step import bdf_step, note_loads
 from fricmb.integrate.methods.run_setup import Collector, accuracy, cost, one_step, run_loop, stages_for
-from fricmb.integrate.methods.time_loop import arrive, crowded, reached, set_window
+from fricmb.integrate.methods.time_loop import arrive, crowded
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints, Problem, Start
+from fricmb.integrate.run.breakpoints import reached, set_window
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, FULL, HANDOVER
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
 from fricmb.integrate.step.step_matrix import Factor, forget, jacobians
@@ -43,61 +58,40 @@ def calm(packed: Packed, y: State, h: float) -> bool:
     return True
 
 
-#: One-step steps to wait where BDF is not to be tried.
-NEVER = 1 << 60
-#: BDF steps after which the two methods are compared; first steps of the one-step method, in which its size settles.
-PATIENCE, SETTLE = 16, 8
-
-
-@kernel
-def give_up(hist: History) -> None:
-    """Leave the run to the one-step method, which gets on faster, for longer each time."""
-    hist.status[2] = 0
-    hist.status[7] = min(2000, max(50, 4 * hist.status[7]))
-    hist.status[4] = hist.status[7]
+#: One-step steps to wait where BDF is not to be tried; first steps of the one-step method, in which its size settles.
+NEVER, SETTLE = 1 << 60, 8
 
 
 @entry
 def drive_bdf(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy, hist: History,
-    r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
+    past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until the room for rows is used up."""
-    stop = set_window(clock, s, y.t[0])
+    stop = set_window(clock, s.window, y.t[0])
     while True:
         if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
         left = stop - y.t[0]
         if reached(y.t[0], stop):
             code = arrive(packed, s, y, r, old, out, clock, stop, address)
-            stop = set_window(clock, s, y.t[0])
+            stop = set_window(clock, s.window, y.t[0])
             one.last[1] = 0.0
-            hist.status[2] = 0
-        elif hist.status[2] == 1:
-            code = bdf_step(packed, s, y, end, multi, acc, hist, out, left, address)
-            if code == ACCEPTED and hist.status[6] > PATIENCE and hist.h[0] * hist.cost[0] < clock.usual[0]:
-                give_up(hist)
+            past.status[ON] = 0
+        elif past.status[ON] == 1:
+            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left, address)
+            if code == ACCEPTED and is_slower(past, clock.usual[0]):
                 clock.h[0] = clock.usual[0]
             if code == HANDOVER:
-                hist.status[2] = 0
-                clock.h[0] = max(clock.h[0], hist.h[0])
-                # where it came to nothing it is not tried again at once
-                hist.status[5] = min(50, 2 * hist.status[5] + 1) if hist.status[6] < 8 else 0
-                hist.status[4] = hist.status[5]
-                if hist.status[6] > 4 * PATIENCE:
-                    hist.status[7] = 0
-                code = ACCEPTED
+                clock.h[0] = max(clock.h[0], past.h[0])
+                hand_over(past)
         else:
             code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
             h = y.t[0] - end.t[0]
-            if code == CHANGED and hist.status[7] == 0:
-                hist.status[4] = 0
-            elif code == ACCEPTED and hist.status[4] > 0:
-                hist.status[4] -= 1
-            elif code == ACCEPTED and calm(packed, y, h):
-                usual = hist.good[0] if hist.good[0] > 0.0 else h
-                start_history(packed, s, end, y, one, hist, min(usual, 0.25 * h), address)
-                note_loads(packed, s, end, y, hist)
+            if may_begin(past, code) and calm(packed, y, h):
+                usual = past.good[0] if past.good[0] > 0.0 else h
+                start_history(packed, s, end, y, one, past, min(usual, 0.25 * h), address)
+                note_loads(packed, s, end, y, guard)
                 if packed.elements.address.shape[0] > 0:
                     forget(multi.fac)
         if code > CHANGED:
@@ -166,17 +160,19 @@ class Bdf(Integrator):
         code = run.begin()
         jacobian_at(run.packed, run.scratch, run.y, multi.fac)
         spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
-        hist = history(problem, t_end - start.t, spectral, cost(problem, stages) / cost(problem, 1))
-        hist.status[4], hist.status[7] = SETTLE, 1
+        signals = 2 * problem.n + problem.n_z + problem.n_c + 2
+        past = differences(signals, t_end - start.t, cost(problem, stages) / cost(problem, 1))
+        guard = guard_of(problem, spectral)
+        past.status[WAIT], past.status[SLOWER] = SETTLE, 1
         if np.any(problem.contacts.law == LAW_SMOOTH):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:
             # as many steps of Radau are far more accurate there
-            hist.status[4], hist.status[7] = NEVER, 1
+            past.status[WAIT] = NEVER
 
         def go_on(clock: Clock) -> int:
             return drive_bdf(
-                run.packed, run.scratch, run.y, run.end, one, multi, acc, hist, run.rest, run.old, run.rows, clock,
-                run.address,
+                run.packed, run.scratch, run.y, run.end, one, multi, acc, past, guard, run.rest, run.old,
+                run.rows, clock, run.address,
             )  # fmt: skip
 
         return run_loop(run, code, go_on, memory, progress)

@@ -21,11 +21,7 @@ from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.methods.bdf2_paper_step import Last, drive_paper
 from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step, run_loop
-from fricmb.integrate.problem import (
-    Floats,
-    Problem,
-    Start,
-)
+from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 from fricmb.integrate.trajectory import Trajectory
 

@@ -10,11 +10,11 @@ from typing import NamedTuple
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.contact.event_location import copy_state, turned
-from fricmb.integrate.methods.attempt_step import DONE, FAIL_LAW, FAIL_STEP, FULL, incomplete
+from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
-from fricmb.integrate.model.accelerations import State, complete, slip_speed
+from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
-from fricmb.integrate.model.law_values import break_away
+from fricmb.integrate.model.law_values import magnitude, stick_limit
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record, record_event
 from fricmb.integrate.problem import (
@@ -31,6 +31,7 @@ from fricmb.integrate.problem import (
     Floats,
     Ints,
 )
+from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances
 from fricmb.integrate.step.stages import solve_stages
@@ -91,7 +92,7 @@ def solve_with(
     for k in range(mode.shape[0]):
         row0 = packed.ports.row[k]
         w.N[0, k] = y.N[k]
-        w.r[0, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+        w.r[0, k] = magnitude(packed.ports.row, k, y.g)
         for a in range(row0, packed.ports.row[k + 1]):
             w.F[0, a] = y.F[a]
             w.g[0, a] = y.g[a]
@@ -119,8 +120,8 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
                 continue
         if ports.law[k] == LAW_SMOOTH or mode[k] != STICK:
             continue
-        size = slip_speed(w.F[0], row0, d)
-        if size > break_away(ports, packed.laws, k, s, w.N[0, k]) * w.N[0, k]:
+        size = magnitude(ports.row, k, w.F[0])
+        if size > stick_limit(ports, packed.laws, k, s, w.N[0, k]):
             mode[k] = SLIP
             changed = True
             for a in range(row0, row0 + d):
@@ -141,7 +142,7 @@ def note_changes(packed: Packed, y: State, last: Last, mode: Codes, n: Floats, t
                 kind = EVENT_OPEN
             elif was == OPEN:
                 kind = EVENT_CLOSE
-        elif turned(packed, k, now, n, last.n):
+        elif turned(packed.ports, k, now, n, last.n):
             kind = EVENT_REVERSAL
         if kind >= 0:
             record_event(out, t, k, kind)
@@ -212,8 +213,7 @@ def drive_paper(
             last.y[2 * n + i] = y.z[i]
         for k in range(y.mode.shape[0]):
             last.mode[k] = end.mode[k]
-            row0 = packed.ports.row[k]
-            acc.r[k] = max(acc.r[k], slip_speed(end.g, row0, packed.ports.row[k + 1] - row0))
+            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, end.g))
         for a in range(y.n.shape[0]):
             last.n[a] = end.n[a]
         last.h[0] = step

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -11,13 +12,15 @@ from fricmb.integrate.contact.event_location import Before
 from fricmb.integrate.contact.initial_modes import begin, natural_scales
 from fricmb.integrate.contact.mode_decision import rest
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.attempt_step import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL, Clock
+from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.model.accelerations import state
 from fricmb.integrate.model.forces import scratch
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.recorder import rows, widths
-from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
-from fricmb.integrate.problem import Floats2, Ints, Problem, Start
+from fricmb.integrate.output.row_trajectory import RowTrajectory
+from fricmb.integrate.problem import Ints, Problem, Start
+from fricmb.integrate.run.chunks import Chunks, counters, end_of
+from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.band_matrix import places_of
 from fricmb.integrate.step.contact_unknowns import port_state
@@ -26,7 +29,6 @@ from fricmb.integrate.step.radau_step import Accuracy, OneStep
 from fricmb.integrate.step.stages import stages
 from fricmb.integrate.step.step_matrix import factor
 from fricmb.integrate.step.tableau import Tableau
-from fricmb.integrate.trajectory import Counters, Transitions
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 3e7
@@ -87,9 +89,7 @@ class Collector:
         )
         self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
-        self.broken = False
-        self._chunks: list[Chunk] = []
-        self._events: list[Floats2] = []
+        self.chunks = Chunks(self.rows, "values", "kind", "mode")
 
     def begin(self) -> int:
         """Modes, forces and accelerations at the start; the first row.  Returns DONE or a code of failure."""
@@ -100,39 +100,18 @@ class Collector:
         code = watched(begin, *rooms, given, self.rows, self.address)
         return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]
 
-    def is_full(self, memory: float | None) -> bool:
-        """Whether the rows so far use up the memory (bytes) that they may."""
-        return memory is not None and sum(chunk[0].nbytes for chunk in self._chunks) >= memory
-
     def widen(self, columns: int) -> None:
         """Give rows further columns."""
-        self.rows = rows(self.problem, self.chunk, columns)
-
-    def collect(self) -> None:
-        """Empty the room for rows; from the first one that is not finite on they are left out."""
-        k, e = self.rows.used
-        found = np.isfinite(self.rows.values[:k]).all(axis=1)
-        if not self.broken:
-            self.broken = not found.all()
-            k = int(np.argmin(found)) if self.broken else k
-            self._chunks.append(
-                (self.rows.values[:k].copy(), self.rows.kind[:k].copy(), self.rows.mode[:k].copy())
-            )
-        self._events.append(self.rows.event[:e].copy())
-        self.rows.used[:] = 0
+        self.rows = self.chunks.room = rows(self.problem, self.chunk, columns)
 
     def trajectory(self, failure: str | None) -> RowTrajectory:
         """The run so far."""
-        if self.rows.used[0] or not self._chunks:
-            self.collect()
-        if self.broken:
+        if self.rows.used[0] or not self.chunks.parts:
+            self.chunks.take()
+        if self.chunks.broken:
             failure = failure or FAILURES[FAIL_INFINITE]
-        steps, rejected, rhs, jac, lu = (int(x) for x in self.counts[:5])
-        counters = Counters(n_steps=steps, n_rejected=rejected, n_rhs=rhs, n_jac=jac, n_lu=lu)
-        y, event = self.y, np.concatenate(self._events)
-        end = Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
-        transitions = Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
-        return self.made(self.problem, self._chunks, transitions, counters, end, failure)
+        found = self.chunks.transitions(), counters(self.counts), end_of(self.y), failure
+        return self.made(self.problem, self.chunks.parts, *found)
 
 
 def stages_for(problem: Problem, rtol: float, wanted: int | None) -> int:
@@ -159,13 +138,7 @@ def run_loop(
 ) -> RowTrajectory:  # fmt: skip
     """Let ``step`` fill the room for rows, again and again, until the end of the run, of memory, or a failure."""
     if code == DONE:
-        clock = clock_of(run)
-        code = FULL
-        while code == FULL and not run.is_full(memory) and ended() is None:
-            code = watched(step, clock)
-            run.collect()
-            if progress is not None:
-                progress(float(run.y.t[0]))
+        code = run.chunks.fill(partial(step, clock_of(run)), run.y.t, memory, progress)
     if code == DONE:
         return run.trajectory(None)
     return run.trajectory(ended() or (None if code == FULL else FAILURES[code]))

@@ -20,7 +20,7 @@ from fricmb.integrate.model.forces import (
     structure_force,
 )
 from fricmb.integrate.model.friction_discs import share
-from fricmb.integrate.model.law_values import break_away, coefficient, smooth_force
+from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force, stick_limit
 from fricmb.integrate.model.problem_structs import Packed, Ports
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
@@ -104,15 +104,6 @@ def kinematics(packed: Packed, s: Scratch, y: State) -> None:
 
 
 @kernel
-def slip_speed(g: Floats, row0: int, d: int) -> float:
-    """|g| of one contact, without overflow or underflow."""
-    if d == 1:
-        return float(abs(g[row0]))
-    speed = np.hypot(g[row0], g[row0 + 1])
-    return float(speed if d == 2 else np.hypot(speed, g[row0 + 2]))
-
-
-@kernel
 def known_forces(packed: Packed, s: Scratch, y: State) -> None:
     """Forces of slipping and smooth contacts (stuck ones 0), and relative accelerations a0 under them."""
     ports = packed.ports
@@ -131,7 +122,7 @@ def known_forces(packed: Packed, s: Scratch, y: State) -> None:
             for a in range(nz):
                 y.zd[z0 + a] = s.out[d + a]
         else:
-            r = slip_speed(y.g, row0, d)
+            r = magnitude(ports.row, k, y.g)
             mu = 0.0
             if y.mode[k] == SLIP:
                 mu = coefficient(ports, packed.laws, k, s, r, y.N[k])[0]
@@ -257,7 +248,7 @@ def hold_limits(packed: Packed, s: Scratch, N: Floats, limit: Floats) -> None:
     """Forces up to which contacts stick (n_c,)."""
     for k in range(limit.shape[0]):
         smooth = packed.ports.law[k] == LAW_SMOOTH
-        limit[k] = 0.0 if smooth else break_away(packed.ports, packed.laws, k, s, N[k]) * N[k]
+        limit[k] = 0.0 if smooth else stick_limit(packed.ports, packed.laws, k, s, N[k])
 
 
 @kernel

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.model.accelerations import State, complete, kinematics, slip_speed
+from fricmb.integrate.model.accelerations import State, complete, kinematics
 from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import INSIDE
 from fricmb.integrate.problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
@@ -80,7 +81,7 @@ def point_along_slip(packed: Packed, s: Scratch, y: State) -> None:
     for c in range(y.mode.shape[0]):
         row0 = packed.ports.row[c]
         if packed.ports.row[c + 1] - row0 == 2 and y.mode[c] == SLIP:
-            r = slip_speed(y.g, row0, 2)
+            r = magnitude(packed.ports.row, c, y.g)
             if r > 1e-12 * (y.size[row0] + y.size[row0 + 1]):
                 y.n[row0] = y.g[row0] / r
                 y.n[row0 + 1] = y.g[row0 + 1] / r

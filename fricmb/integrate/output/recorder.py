@@ -10,6 +10,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, Codes, Codes2, Floats, Floats2, Ints, Problem
+from fricmb.integrate.run.room_protocols import Events
 
 #: What a row is: a stage inside a step, the end of a step, the left and the right side of a transition.
 INSIDE, STEP, BEFORE, AFTER = 0, 1, 2, 3
@@ -76,7 +77,7 @@ SAME_INSTANT = 1e-14
 
 
 @kernel
-def record_event(out: Rows, t: float, contact: int, kind: int) -> None:
+def record_event(out: Events, t: float, contact: int, kind: int) -> None:
     """Add a transition; a slip that ends at the instant at which it begins has not been one, and is taken back."""
     k = out.used[1]
     last = k - 1

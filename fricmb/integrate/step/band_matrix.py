@@ -5,16 +5,17 @@ Cost and memory grow with the number of degrees of freedom, not with its square.
 
 from __future__ import annotations
 
+from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.block_places import CORE, PLACES
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.lapack import BAND_FACTOR, BAND_SOLVE, addresses, call_lapack
+from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import Ints, Pivots
+from fricmb.integrate.problem import Complexes, Ints
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.step_matrix import Factor, port_inputs, port_outputs
-from fricmb.integrate.step.tableau import Complexes, Complexes2, Tableau
+from fricmb.integrate.step.tableau import Tableau
 
 #: Blocks that know how the matrices are kept, and those that take their places for bands.
 STANDS_FOR = {"factorise": "factorise_band", "structure_correction": "correct_band"}
@@ -29,21 +30,6 @@ def places_of(half: int, *further: str) -> Ints:
     for name, stand_in in STANDS_FOR.items():
         table[PLACES.index(name)] = table[PLACES.index(stand_in)]
     return table
-
-
-@kernel
-def factor_band(ab: Complexes2, pivots: Pivots, sizes: Pivots, address: Ints) -> bool:
-    """Factor in place, with row pivoting; False where the matrix is singular."""
-    n, kl, ku, ld, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[5:6]
-    call_lapack(address[BAND_FACTOR], (n, n, kl, ku, ab, ld, pivots, info))
-    return bool(sizes[5] == 0)
-
-
-@kernel
-def solve_band(ab: Complexes2, pivots: Pivots, sizes: Pivots, b: Complexes, address: Ints) -> None:
-    """Overwrite b by the solution."""
-    n, kl, ku, ld, one, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[4:5], sizes[5:6]
-    call_lapack(address[BAND_SOLVE], (sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
 
 
 @block

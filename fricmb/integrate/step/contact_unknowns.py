@@ -11,18 +11,7 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, smooth_force
 from fricmb.integrate.model.problem_structs import Ports, Table
-from fricmb.integrate.problem import (
-    LAW_SMOOTH,
-    OPEN,
-    SLIP,
-    STICK,
-    Codes,
-    Floats,
-    Floats2,
-    Floats4,
-    Pivots,
-    Problem,
-)
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4, Pivots, Problem
 
 
 class PortState(NamedTuple):

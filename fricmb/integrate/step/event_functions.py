@@ -1,6 +1,7 @@
 """Looking for transitions inside a step that has been solved, and how far from one its end is.
 
-Whether a contact that sticks has left its friction cone, |F| > mu_s N, is seen here: ``cone_crossing`` and ``margin``.
+Whether a contact that sticks has left its friction cone, |F| > mu_s N, is seen here: ``cone_crossing`` and ``margin``,
+by ``cone_margin`` of ``model/law_values``.
 """
 
 from __future__ import annotations
@@ -9,9 +10,9 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, share_load, slip_speed
+from fricmb.integrate.model.accelerations import State, share_load
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
-from fricmb.integrate.model.law_values import break_away
+from fricmb.integrate.model.law_values import cone_margin, magnitude, stick_limit
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
@@ -57,7 +58,7 @@ def slip_crossing(packed: Packed, y: State, one: OneStep, k: int) -> float:
     where the acceleration does not jump it rises by less than the stages resolve.
     """
     row0 = packed.ports.row[k]
-    first = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+    first = magnitude(packed.ports.row, k, y.g)
     grain = BEGINS * y.size[row0] + 1e-4 * packed.ports.noise[k]
     begins = first <= grain
     for j in range(one.tab.c.shape[0]):
@@ -79,20 +80,18 @@ def force_noise(packed: Packed, y: State, k: int, h: float) -> float:
 @kernel
 def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: int) -> float:
     """Where |F| of a stuck contact first leaves the cone, by squares; 2 where it does not."""
-    row0 = packed.ports.row[k]
-    d = packed.ports.row[k + 1] - row0
-    limit = break_away(packed.ports, packed.laws, k, s, y.N[k]) * y.N[k]
-    first = max(0.0, limit * limit - slip_speed(y.F, row0, d) ** 2)
+    limit = stick_limit(packed.ports, packed.laws, k, s, y.N[k])
+    first = max(0.0, limit * limit - magnitude(packed.ports.row, k, y.F) ** 2)
     n_s = one.tab.c.shape[0]
     # stage multipliers are of lower order: a hair beyond the cone inside the step is left to its end
     hair = 1e-6 * limit * limit
-    limit = break_away(packed.ports, packed.laws, k, s, end.N[k]) * end.N[k]
-    last = limit * limit - slip_speed(end.F, row0, d) ** 2
+    limit = stick_limit(packed.ports, packed.laws, k, s, end.N[k])
+    last = limit * limit - magnitude(packed.ports.row, k, end.F) ** 2
     # and in a very short step they are the round-off of velocities over the step
     unknown = force_noise(packed, y, k, end.t[0] - y.t[0]) > 1e-8 * limit
     for j in range(n_s - 1):
-        limit = break_away(packed.ports, packed.laws, k, s, one.w.N[j, k]) * one.w.N[j, k]
-        one.margin[j] = limit * limit - slip_speed(one.w.F[j], row0, d) ** 2 + hair
+        limit = stick_limit(packed.ports, packed.laws, k, s, one.w.N[j, k])
+        one.margin[j] = limit * limit - magnitude(packed.ports.row, k, one.w.F[j]) ** 2 + hair
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair
@@ -125,8 +124,6 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: in
 
     ``found[1]`` becomes 1 where it is the normal force that comes to 0, else 0.
     """
-    row0 = packed.ports.row[k]
-    d = packed.ports.row[k + 1] - row0
     value = np.inf
     if packed.ports.var[k] >= 0:
         set_time(packed.signals, s, end.t[0], y.q.shape[0])
@@ -140,8 +137,7 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: in
     if y.mode[k] == SLIP:
         other = one.w.r[one.tab.c.shape[0] - 1, k]
     else:
-        limit = break_away(packed.ports, packed.laws, k, s, end.N[k]) * end.N[k]
-        other = limit - slip_speed(end.F, row0, d)
+        other = cone_margin(packed.ports, packed.laws, k, s, end.F, end.N[k])
     if other < value:
         found[1] = 0.0
         return float(other)

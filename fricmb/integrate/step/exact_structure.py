@@ -15,8 +15,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints, Pivots
-from fricmb.integrate.step.tableau import Complexes3
+from fricmb.integrate.problem import Complexes3, Floats, Floats2, Floats3, Floats4, Ints, Pivots
 
 #: ``flags``: number of inputs, of outputs, whether blocks are modes seen by velocities alone, whether powers other than
 #: friction are kept, unknown inputs, arguments of elements, arguments of normal forces, local forces of elements.

@@ -8,14 +8,16 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, complete, slip_speed
+from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_state, set_time
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed, Ports
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.exact_structure import Exact
 from fricmb.integrate.step.stage_predictor import start_at_rest, start_on_last
 from fricmb.integrate.step.stages import Stages, solve_stages
+from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_matrix import Factor, prepare
 from fricmb.integrate.step.tableau import Tableau
 
@@ -97,7 +99,7 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
     if again:
         set_time(packed.signals, s, y.t[0], n)
         set_state(s, y.q, y.v)
-    if not prepare(packed, tab, s, one.fac, w, one.counts, h, again, on_ladder(h), address):
+    if not prepare(packed, tab, s, one.fac, w, one.counts, h, again, h == ladder(h, ONE_STEP_RUNGS), address):
         return False
     for i in range(n):
         st.psi_v[i] = y.v[i]
@@ -129,18 +131,6 @@ def solve(packed: Packed, s: Scratch, y: State, one: OneStep, address: Ints) -> 
     """Solve the stages from the values that stand in them."""
     one.counts[2] += one.tab.c.shape[0]
     return solve_stages(packed, one.tab, s, one.fac, one.st, one.w, y.mode, one.tol, one.scale, address) > 0
-
-
-@kernel
-def ladder(h: float) -> float:
-    """The step rounded down to a power of 2^(1/8)."""
-    return float(2.0 ** (0.125 * np.floor(8.0 * np.log2(h) + 1e-9)))
-
-
-@kernel
-def on_ladder(h: float) -> bool:
-    """Whether a step is one of the ladder's."""
-    return bool(h == ladder(h))
 
 
 @kernel
@@ -199,8 +189,7 @@ def update_scales(packed: Packed, y: State, one: OneStep, acc: Accuracy) -> None
         for a in range(y.z.shape[0]):
             acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
         for k in range(y.mode.shape[0]):
-            row0 = packed.ports.row[k]
-            acc.r[k] = max(acc.r[k], slip_speed(one.w.g[j], row0, packed.ports.row[k + 1] - row0))
+            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, one.w.g[j]))
 
 
 @kernel

@@ -8,9 +8,9 @@ it has begun; no polynomial through its stages shows that.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, slip_speed
+from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.law_values import coefficient, smooth_force
+from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.step.radau_step import OneStep
@@ -42,7 +42,7 @@ def drive(packed: Packed, s: Scratch, k: int, g: Floats, N: float, z: Floats, h:
     d, nz = ports.row[k + 1] - row0, ports.z_start[k + 1] - z0
     smooth_force(packed.laws, k, s, g, row0, d, N, z, z0, nz)
     width = d + 1 + nz
-    speed = slip_speed(g, row0, d)
+    speed = magnitude(ports.row, k, g)
     value = 0.0
     for a in range(d):
         for b in range(d):
@@ -65,8 +65,7 @@ def fall_of(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, h: float
         for j in range(w.r.shape[0]):
             value = max(value, drive(packed, s, k, w.g[j], w.N[j, k], w.z[j], h))
         return float(value)
-    row0 = ports.row[k]
-    speed = slip_speed(y.g, row0, ports.row[k + 1] - row0)
+    speed = magnitude(ports.row, k, y.g)
     value = -coefficient(ports, packed.laws, k, s, speed, y.N[k])[1] * y.N[k]
     for j in range(w.r.shape[0]):
         value = max(value, -coefficient(ports, packed.laws, k, s, w.r[j, k], w.N[j, k])[1] * w.N[j, k])

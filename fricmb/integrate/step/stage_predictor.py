@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, slip_speed
+from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Floats2
 from fricmb.integrate.step.contact_unknowns import PortState
@@ -27,7 +28,7 @@ def start_at_rest(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
         for k in range(y.mode.shape[0]):
             row0 = packed.ports.row[k]
             w.N[i, k] = y.N[k]
-            w.r[i, k] = slip_speed(y.g, row0, packed.ports.row[k + 1] - row0)
+            w.r[i, k] = magnitude(packed.ports.row, k, y.g)
             for a in range(row0, packed.ports.row[k + 1]):
                 w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
                 w.n[i, a] = y.n[a]

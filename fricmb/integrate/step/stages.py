@@ -16,20 +16,13 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.model.forces import (
-    Scratch,
-    belt_velocity,
-    normal_force,
-    set_state,
-    set_time,
-    structure_force,
-)
+from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_state, set_time, structure_force
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.step_matrix import Factor
-from fricmb.integrate.step.tableau import Complexes2, Tableau
+from fricmb.integrate.step.tableau import Tableau
 
 
 class Stages(NamedTuple):

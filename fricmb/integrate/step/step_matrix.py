@@ -11,19 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_complex
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.model.forces import (
-    Scratch,
-    normal_gradient,
-    structure_jacobian,
-)
+from fricmb.integrate.model.forces import Scratch, normal_gradient, structure_jacobian
 from fricmb.integrate.model.problem_structs import Packed, packed_of
-from fricmb.integrate.problem import Floats, Floats2, Floats3, Ints, Pivots, Problem
+from fricmb.integrate.problem import Complexes, Complexes2, Complexes3, Floats, Floats2, Floats3, Ints, Pivots, Problem
 from fricmb.integrate.step.contact_unknowns import PortState
-from fricmb.integrate.step.tableau import Complexes, Complexes2, Complexes3, Tableau
+from fricmb.integrate.step.tableau import Tableau
 
 
 class Factor(NamedTuple):
@@ -72,7 +69,7 @@ def factor(problem: Problem, tableau: Tableau) -> Factor:
         np.zeros(k), np.zeros(2, np.int64), np.zeros(entries), np.zeros(entries), np.zeros((nv, n)), np.zeros((nv, n)),
         np.zeros((n, n) if half < 0 else (0, 0), complex), np.zeros((levels, mi, n), complex),
         np.zeros(0 if half < 0 else k * levels * n, np.int32),
-        np.array([n, half, half, 3 * half + 1, 1, 0, ord("N")], np.int32), np.zeros(n, complex),
+        band_sizes(n, half), np.zeros(n, complex),
     ))  # fmt: skip
 
 

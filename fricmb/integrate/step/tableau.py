@@ -12,14 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Floats, Floats2
-
-Complexes = NDArray[np.complex128]
-Complexes2 = NDArray[np.complex128]
-Complexes3 = NDArray[np.complex128]
+from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2
 
 
 class Tableau(NamedTuple):

@@ -1,0 +1,145 @@
+"""Functions that fall below 0 where a mode ends, and which of them does so in a step."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.forces import call_joint, move
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.slip_rows import lack, slip_speed, spare
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints
+from fricmb.integrate.step.crossing import first_below
+
+#: Forces at the stages are of lower order than velocities: this part of the largest one, between them, is no sign.
+ROUGH = 1e-6
+
+
+@kernel
+def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
+    """Distances of open joints at a state."""
+    joint = mech.joint
+    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    for j in range(joint.port.shape[0]):
+        if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
+            call_joint(mech, k, j, y.lam, 0, mech.address)
+            out.gap[j] = k.out[0]
+
+
+@kernel
+def triggers(
+    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
+    at_end: bool,
+) -> None:  # fmt: skip
+    """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps).
+
+    Behind them one a port whose load has a kink in the present step.  Slip almost without load may turn as it likes.
+    """
+    port, joint = mech.port, mech.joint
+    n_c = mode.shape[0]
+    for c in range(n_c):
+        out.trigger[2 * c] = 1.0
+        out.trigger[2 * c + 1] = 1.0
+        if port.normal[c] == NORMAL_LAW:
+            out.trigger[2 * c + 1] = -N[c] if mode[c] == OPEN else N[c]
+        if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
+            continue
+        if mode[c] == STICK:
+            out.trigger[2 * c] = spare(mech, k, c, F, N, k.borne[0])
+        else:
+            out.trigger[2 * c] = slip_speed(port.row, c, direction, F, g) + out.size[0] * lack(N[c], k.borne[0])
+    for j in range(joint.port.shape[0]):
+        out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
+        if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
+            out.trigger[2 * n_c + j] = out.gap[j] if at_end else 1.0
+    kinks = 2 * n_c + joint.port.shape[0]
+    for c in range(n_c):
+        out.trigger[kinks + c] = 1.0
+        if out.kinked[c] != 0:
+            j, value = port.joint[c], 0.0
+            for r in range(joint.row[j], joint.row[j + 1]):
+                value += out.kink[r] * lam[r]
+            out.trigger[kinks + c] = value
+
+
+@kernel
+def is_slip(j: int, y: State) -> bool:
+    """Whether trigger j is a slip velocity (else a force)."""
+    return bool(j < 2 * y.mode.shape[0] and j % 2 == 0 and y.mode[j // 2] == SLIP)
+
+
+@kernel
+def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
+    """Round-off of trigger j: of a slip velocity, a distance or a force."""
+    n_c = y.mode.shape[0]
+    if is_slip(j, y):
+        return float(1e-13 * out.size[0])
+    if 2 * n_c <= j < 2 * n_c + mech.joint.port.shape[0] and mech.joint.dropped[mech.joint.row[j - 2 * n_c]] == 2:
+        return float(1e-13 * out.size[2])
+    return float(1e-13 * out.size[1])
+
+
+@block
+def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages, address: Ints) -> int:
+    """The trigger that falls furthest below 0 in the step from y to end, or -1; values at the end stay in ``trigger``.
+
+    ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.
+    """
+    s = st.tab.c.shape[0]
+    worst, least = -1, 0.0
+    out.where[0] = 1.0
+    triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
+    out.inner[0] = out.trigger
+    if out.opened[0] > 0:
+        gaps(mech, k, end, out)
+    for i in range(s):
+        last = i == s - 1
+        if last:
+            triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
+        else:
+            triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
+        out.inner[i + 1] = out.trigger
+        for j in range(out.trigger.shape[0]):
+            value = out.trigger[j]
+            limit = 10.0 * grain(mech, out, j, end)
+            if value < -limit and value / max(limit, 1e-290) < least:
+                worst, least = j, value / max(limit, 1e-290)
+    return worst if worst >= 0 else first_between(mech, k, out, y, st)
+
+
+@kernel
+def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
+    """Whether trigger j is what its values say between the stages: neither an open joint's nor one almost without load.
+
+    Open joints have no values but at the end of the step; slip almost without load may turn as it likes.
+    """
+    n_c = y.mode.shape[0]
+    if j >= 2 * n_c:
+        return bool(mech.joint.dropped[mech.joint.row[j - 2 * n_c]] != 2)
+    if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
+        return bool(mech.port.normal[j // 2] == NORMAL_LAW)
+    loaded = lack(y.N[j // 2], k.borne[0]) == 0.0
+    for i in range(st.tab.c.shape[0]):
+        loaded = loaded and lack(st.N[i, j // 2], k.borne[0]) == 0.0
+    return bool(loaded)
+
+
+@kernel
+def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages) -> int:
+    """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then."""
+    found = -1
+    for j in range(2 * y.mode.shape[0] + mech.joint.port.shape[0]):
+        if not is_smooth(mech, k, j, y, st):
+            continue
+        hair = 10.0 * grain(mech, out, j, y) if is_slip(j, y) else ROUGH * out.size[1]
+        for i in range(st.tab.c.shape[0]):
+            out.values[i] = out.inner[i + 1, j] + hair
+        # what begins at 0 rises from there, whatever the polynomial makes of its first moment
+        first = out.inner[0, j] + hair if out.inner[0, j] > hair else 0.0
+        _, below = first_below(st.tab, first, out.values, out.series)
+        if below < out.where[0]:
+            found = j
+            out.where[0] = below
+    return found

@@ -1,0 +1,172 @@
+"""Whether the forces of friction have a single solution: margins of joints that slip, principal minors of several."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.accelerations import ALL, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.watch import MANY, Watch
+from fricmb.integrate.model.law_values import coefficient
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Ints
+
+#: Directions of the reaction for which the margin of a joint is looked at.
+AROUND = 16
+
+
+@block
+def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool, address: Ints) -> float:
+    """Margins of all ports that slip; returns the least.  ``whole``: also of them together, after a change of modes.
+
+    In between the minors of all of them, and of all but one, cannot vanish unless a margin does.
+
+    One port's force F follows its load, F = -mu n N(lam), and lam answers F by dlam/dF: the force is unique as long as
+    1 + mu n dN/dlam dlam/dF > 0 for every direction that the reaction may take (for a single port: Genot and Brogliato
+    1999; Klarbring 1990).  Where it vanishes there is no solution or there are several.
+    """
+    n, m, n_c = y.q.shape[0], y.lam.shape[0], y.mode.shape[0]
+    port, joint = mech.port, mech.joint
+    least = 1.0
+    for c in range(n_c):
+        out.margin[c] = 1.0
+        j = port.joint[c]
+        if j < 0 or y.mode[c] != SLIP or port.law[c] == LAW_SMOOTH:
+            continue
+        # dlam/dF: the other ports as they are, this one's force given
+        mode = y.mode[c]
+        y.mode[c] = OPEN
+        regular = instant_matrix(mech, k, w, y, ALL, mech.address)
+        y.mode[c] = mode
+        if not regular:
+            out.margin[c] = -1.0
+            return -1.0
+        for i in range(w.r.shape[0]):
+            w.r[i] = 0.0
+        push(mech, y, c, w.r, n + m)
+        solve_instant(mech, w)
+        n_x = joint.n_x[j]
+        rows = joint.row[j + 1] - joint.row[j]
+        at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
+        mu, _, by_load = coefficient(port, port.laws, c, k.s, along(mech, y, c), max(y.N[c], 0.0))
+        factor = mu + by_load * max(y.N[c], 0.0)
+        for i in range(rows):
+            out.lam[joint.row[j] + i] = y.lam[joint.row[j] + i]
+        around = 1 if joint.one_sided[j] or rows > 2 else AROUND
+        for d in range(around):
+            if around > 1:
+                for i in range(rows):
+                    angle = 2.0 * np.pi * (d + 0.13) / AROUND
+                    out.lam[joint.row[j] + i] = np.cos(angle) if i == 0 else np.sin(angle)
+            call_joint(mech, k, j, out.lam, 0, mech.address)
+            answer = 0.0
+            for i in range(rows):
+                answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
+            out.margin[c] = min(out.margin[c], 1.0 + factor * answer)
+        least = min(least, out.margin[c])
+    if whole:
+        out.together[0] = least_minor(mech, k, w, y, out)
+    return float(min(least, out.together[0]))
+
+
+@kernel
+def push(mech: Mech, y: State, c: int, r: Floats, r0: int) -> None:
+    """A unit force along the slip of port c as a right-hand side."""
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        r[r0 + a] = y.n[a]
+
+
+@kernel
+def along(mech: Mech, y: State, c: int) -> float:
+    """Slip speed of port c along its direction."""
+    speed = 0.0
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        speed += y.n[a] * y.g[a]
+    return float(speed)
+
+
+@kernel
+def rubs(mech: Mech, y: State, c: int) -> bool:
+    """Whether port c is a joint that slips under rigid friction."""
+    return bool(mech.port.joint[c] >= 0 and y.mode[c] == SLIP and mech.port.law[c] != LAW_SMOOTH)
+
+
+@kernel
+def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> float:
+    """Least principal minor of ``A = 1 + mu n dN/dF`` over the joints that slip, at most MANY of them; 1 for one.
+
+    With loads that cannot be negative, forces are unique for whatever loads act if and only if all are positive (a
+    P-matrix: Cottle, Pang and Stone 1992, theorem 3.3.7).
+    """
+    n, m = y.q.shape[0], y.lam.shape[0]
+    port, joint = mech.port, mech.joint
+    count = 0
+    for c in range(y.mode.shape[0]):
+        if rubs(mech, y, c) and count < MANY:
+            out.which[count] = c
+            count += 1
+    if count < 2:
+        return 1.0
+    for i in range(count):
+        y.mode[out.which[i]] = OPEN
+    regular = instant_matrix(mech, k, w, y, ALL, mech.address)
+    for j in range(count if regular else 0):
+        for i in range(w.r.shape[0]):
+            w.r[i] = 0.0
+        push(mech, y, out.which[j], w.r, n + m)
+        solve_instant(mech, w)
+        for i in range(count):
+            c = out.which[i]
+            owner = port.joint[c]
+            rows = joint.row[owner + 1] - joint.row[owner]
+            n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
+            at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
+            mu, _, by_load = coefficient(port, port.laws, c, k.s, along(mech, y, c), max(y.N[c], 0.0))
+            answer = 0.0
+            for r in range(rows):
+                answer += k.out[at + 1 + r] * w.r[n + joint.row[owner] + r]
+            one = 1.0 if i == j else 0.0
+            out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * answer
+    for i in range(count):
+        y.mode[out.which[i]] = SLIP
+    if not regular:
+        return -1.0
+    least = 1.0
+    for subset in range(1, 1 << count):
+        least = min(least, minor(out, count, subset))
+    return least
+
+
+@kernel
+def minor(out: Watch, count: int, subset: int) -> float:
+    """Determinant of the rows and columns of A in a subset (by its bits)."""
+    size = 0
+    for i in range(count):
+        if (subset >> i) & 1:
+            column = 0
+            for j in range(count):
+                if (subset >> j) & 1:
+                    out.B[size * MANY + column] = out.A[i * MANY + j]
+                    column += 1
+            size += 1
+    value = 1.0
+    for p in range(size):
+        best = p
+        for i in range(p + 1, size):
+            if abs(out.B[i * MANY + p]) > abs(out.B[best * MANY + p]):
+                best = i
+        pivot = out.B[best * MANY + p]
+        if pivot == 0.0:
+            return 0.0
+        value *= pivot if best == p else -pivot
+        for j in range(p, size):
+            x = out.B[best * MANY + j]
+            out.B[best * MANY + j] = out.B[p * MANY + j]
+            out.B[p * MANY + j] = x
+        for i in range(p + 1, size):
+            x = out.B[i * MANY + p] / pivot
+            for j in range(p, size):
+                out.B[i * MANY + j] -= x * out.B[p * MANY + j]
+    return value

@@ -1,0 +1,74 @@
+"""Rows of a run, taken out of the kernels' room chunk by chunk, until its end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.problem import Ints, Start
+from fricmb.integrate.run.outcomes import FULL
+from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.trajectory import Counters, Transitions
+
+
+class Chunks:
+    """What the loop of a run has left so far.
+
+    ``room`` has ``used`` (2,) numbers of rows and transitions, ``event`` (n_e, 3) time, contact and kind of these, and
+    the arrays named ``columns``, row by row.  From the first row on in which the first of them is not finite, all are
+    left out, and the run is ``broken``.
+    """
+
+    def __init__(self, room: Any, *columns: str) -> None:
+        self.room = room
+        self.columns = columns
+        self.parts: list[tuple[Any, ...]] = []
+        self.broken = False
+        self._events: list[Any] = []
+
+    def take(self) -> None:
+        """Empty the room."""
+        k, e = (int(x) for x in self.room.used)
+        if not self.broken:
+            values = getattr(self.room, self.columns[0])[:k]
+            found = np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
+            self.broken = not found.all()
+            k = int(np.argmin(found)) if self.broken else k
+            self.parts.append(tuple(getattr(self.room, name)[:k].copy() for name in self.columns))
+        self._events.append(self.room.event[:e].copy())
+        self.room.used[:] = 0
+
+    def fill(
+        self, step: Callable[[], int], t: Any, memory: float | None, progress: Callable[[float], None] | None
+    ) -> int:
+        """Let ``step`` fill the room, again and again, until the end of the run, of memory (bytes), or a failure.
+
+        ``t`` (1,): where the run stands.  Returns what the last call did; FULL where something else ended the run.
+        """
+        code = FULL
+        while code == FULL and ended() is None:
+            code = watched(step)
+            self.take()
+            if progress is not None:
+                progress(float(t[0]))
+            if memory is not None and sum(part[0].nbytes for part in self.parts) >= memory:
+                break
+        return code
+
+    def transitions(self) -> Transitions:
+        """All that were recorded."""
+        event = np.concatenate(self._events) if self._events else np.zeros((0, 3))
+        return Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
+
+
+def counters(counts: Ints, notes: tuple[str, ...] = ()) -> Counters:
+    """Work done, from the kernels' counts."""
+    steps, rejected, rhs, jac, lu = (int(x) for x in counts[:5])
+    return Counters(n_steps=steps, n_rejected=rejected, n_rhs=rhs, n_jac=jac, n_lu=lu, notes=notes)
+
+
+def end_of(y: Any) -> Start:
+    """Where the run ends: from there it can go on."""
+    return Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())

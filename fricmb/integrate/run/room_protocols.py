@@ -1,0 +1,63 @@
+"""Rooms by what is in them: kernels that serve scenes with joints and without name what they read."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from fricmb.integrate.problem import Codes, Floats, Floats2, Ints
+
+
+class Times(Protocol):
+    """``span`` (2,), ends of a run, and ``stops``, breakpoints."""
+
+    @property
+    def span(self) -> Floats:
+        """Ends of the run."""
+
+    @property
+    def stops(self) -> Floats:
+        """Breakpoints."""
+
+
+class Events(Protocol):
+    """Room for transitions: ``event`` (n_e, 3) time, contact, kind; ``used`` (2,) numbers of rows and transitions."""
+
+    @property
+    def event(self) -> Floats2:
+        """Time, contact and kind."""
+
+    @property
+    def used(self) -> Ints:
+        """Numbers of rows and transitions."""
+
+
+class Modes(Protocol):
+    """``mode`` (n_c,) of the contacts and ``n`` (m,), their directions of slip."""
+
+    @property
+    def mode(self) -> Codes:
+        """Of each contact."""
+
+    @property
+    def n(self) -> Floats:
+        """Directions of slip."""
+
+
+class Laws(Protocol):
+    """Laws of contacts: their kind, coefficient at rest and limit of that of slip, and rows ``row[k]:row[k+1]``."""
+
+    @property
+    def law(self) -> Codes:
+        """Kind of law."""
+
+    @property
+    def mu_s(self) -> Floats:
+        """Coefficient up to which a contact sticks."""
+
+    @property
+    def mu_0(self) -> Floats:
+        """Limit of the coefficient of slip at rest."""
+
+    @property
+    def row(self) -> Ints:
+        """Where the rows of each contact begin."""

@@ -1,0 +1,27 @@
+"""How long the next step may be."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+
+#: Parts of the step that would just do: of one-step methods, and of BDF.
+ONE_STEP_SAFETY, BDF_SAFETY = 0.85, 0.9
+#: Rungs of their ladders between a step and its double.
+ONE_STEP_RUNGS, BDF_RUNGS = 8, 4
+
+
+@kernel
+def step_factor(error: float, order: float, safety: float) -> float:
+    """By what a step may grow, or has to shrink, where its error over the tolerance is ``error`` and goes with h^order.
+
+    ``safety error^(-1/order)`` (Hairer, Noersett, Wanner, Solving ODEs I, II.4); bounds are the caller's.
+    """
+    return float(safety * max(error, 1e-16) ** (-1.0 / order))
+
+
+@kernel
+def ladder(x: float, rungs: int) -> float:
+    """A step, or a factor of one, rounded down to a power of 2^(1/rungs): steps come again, and factors with them."""
+    return float(2.0 ** (np.floor(rungs * np.log2(x) + 1e-9) / rungs))
