@@ -85,7 +85,7 @@ def run_mechanism(
     if code == DONE:
         out.size[0] = max(float(out.size[0]), reach)
         load = _load(m, y)
-        if not np.any(y.v) and (mass * np.abs(y.a)).max(initial=0.0) <= ROUND_OFF * load:
+        if not np.any(y.v) and (mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
             to_come = _speed_to_come(problem, start, t_end, load, mass)
             control.floor_v[:] = np.maximum(floor, to_come)
             out.size[0] = max(float(out.size[0]), to_come)
@@ -119,8 +119,9 @@ def _bdf_loop(problem: Problem, start: Start, t_end: float, stages: int, rooms: 
     return partial(drive_bdf, *together)
 
 
-#: Forces of inertia that are nothing but the round-off of others.
-ROUND_OFF = 1e-10
+#: Forces of inertia that are nothing but the round-off of others; those of a load that grows from 0 at the start, which
+#: is taken an instant later.
+ROUND_OFF, NOTHING = 1e-10, 1e-280
 
 
 def _load(m: Mechanism, y: State) -> float:
