@@ -19,7 +19,8 @@ from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Ints, Linear, Problem, Signals, Start, Templates
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish, ladder
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
+from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_error import step_error
 from fricmb.integrate.step.tableau import radau
 
@@ -39,7 +40,7 @@ def one_try(
 @entry
 def rung(h: float) -> float:
     """The step that is taken for one of h."""
-    return ladder(h)
+    return ladder(h, ONE_STEP_RUNGS)
 
 
 class Arrays:

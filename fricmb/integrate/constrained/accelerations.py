@@ -25,7 +25,7 @@ from fricmb.integrate.constrained.friction_rows import add_friction, friction_re
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass
 from fricmb.integrate.constrained.problem_structs import Mech, Moving, mech_of, mechanism_of
 from fricmb.integrate.constrained.slip_rows import add_stick
-from fricmb.integrate.model.forces import gather
+from fricmb.integrate.model.forces import element_powers, gather
 from fricmb.integrate.problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
 from fricmb.integrate.run.stop import stopped
 
@@ -330,12 +330,6 @@ def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats, 
             supply -= 0.5 * linear.K[e] * (X[1 + n_y + i] * X[1 + j] - X[1 + n_y + j] * X[1 + i])
     for e in range(linear.B.shape[0]):
         supply += linear.B[e] * X[1 + 2 * n_y + linear.Bj[e]] * X[1 + n_y + linear.Bi[e]]
-    elements, spread = mech.elements, mech.spread
-    for e in range(elements.address.shape[0]):
-        n_x = gather(elements, e, X, s.x)
-        call(elements.address[e], s.x, 0, elements.p, elements.p_start[e], s.out, 0)
-        n_f = spread.f_start[e + 1] - spread.f_start[e]
-        damping += s.out[n_f * (1 + n_x) + 1]
-        supply += s.out[n_f * (1 + n_x) + 2]
-    out[n_c] = damping
-    out[n_c + 1] = supply
+    lost, gained = element_powers(mech.elements, mech.spread, s)
+    out[n_c] = damping + lost
+    out[n_c + 1] = supply + gained

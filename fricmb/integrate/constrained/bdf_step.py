@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.attempt_step import grow
@@ -18,10 +19,10 @@ from fricmb.integrate.constrained.bdf_history import Formula, put
 from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
-from fricmb.integrate.constrained.radau_step import Control, measure, settle
-from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
+from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle
+from fricmb.integrate.constrained.recorder import Record, record_step
 from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
-from fricmb.integrate.constrained.slip_rows import aim, keep_held
+from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
@@ -73,7 +74,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     h = past.h[0]
     beta_h = h / past.gamma[past.status[ORDER]]
     n = y.q.shape[0]
-    copy_state(y, base, mech.address)
+    copy_room(y, base)
     for i in range(n):
         base.q[i] = past.new[i]
         base.v[i] = past.new[n + i]
@@ -84,7 +85,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     measure(c, y, h, one.scale)
     accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
-        copy_state(y, end, mech.address)
+        copy_room(y, end)
         take(past.guess, end, end.rate)
         fresh = formula.made[0] != beta_h
         if fresh:
@@ -97,11 +98,9 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
                 formula.made[0] = 0.0
                 return False
             formula.made[0] = beta_h
-        for i in range(n):
-            one.V[0, i] = end.v[i]
-        for part, target in ((end.lam, one.lam[0]), (end.F, one.F[0]), (end.z, one.Z[0])):
+        for part, target in ((end.v, one.V), (end.lam, one.lam), (end.F, one.F), (end.z, one.Z)):
             for i in range(part.shape[0]):
-                target[i] = part[i]
+                target[0, i] = part[i]
         keep_held(mech, y.mode, y.F, one.F[0])
         used = iterate_stages(mech, k, base, one, beta_h, accuracy, y.mode, mech.address)
         c.counts[2] += max(used, 1)
@@ -197,15 +196,9 @@ def multistep(
         formula.made[0] = 0.0
         return REJECTED
     one = formula.one
-    copy_state(y, end, mech.address)
+    copy_room(y, end)
     end.t[0] = y.t[0] + h
-    for part, target in ((one.Q[0], end.q), (one.V[0], end.v), (one.acc, end.a), (one.Z[0], end.z)):
-        for i in range(target.shape[0]):
-            target[i] = part[i]
-    for part, target in ((one.lam[0], end.lam), (one.F[0], end.F)):
-        for i in range(target.shape[0]):
-            target[i] = part[i]
-    aim(mech, end.mode, end.F, end.n)
+    last_stage(mech, y, end, one)
     if not settle(mech, k, w, end):
         return HANDOVER
     put(end, end.rate, past.new)
@@ -231,7 +224,7 @@ def multistep(
         for l in range(st.tab.c.shape[0]):
             end.work[i] += h * st.tab.b[l] * c.power[l, i]
     record_step(mech, rec, y, end, st, c, h, mech.address)
-    copy_state(end, y, mech.address)
+    copy_room(end, y)
     c.counts[0] += 1
     c.h[1] = 0.0
     grow(c, out, y)

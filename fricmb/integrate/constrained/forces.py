@@ -6,7 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
-from fricmb.integrate.model.forces import gather, set_time
+from fricmb.integrate.model.forces import element_forces, gather, set_time
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Floats, Ints
 
@@ -168,13 +168,7 @@ def forces(
             fu[i - n_y] -= value
     for e in range(linear.B.shape[0]):
         fy[linear.Bi[e]] += linear.B[e] * X[1 + 2 * n_y + linear.Bj[e]]
-    elements, spread = mech.elements, mech.spread
-    for e in range(elements.address.shape[0]):
-        gather(elements, e, X, s.x)
-        call(elements.address[e], s.x, 0, elements.p, elements.p_start[e], s.out, 0)
-        for b in range(spread.f_start[e], spread.f_start[e + 1]):
-            for i in range(spread.start[b], spread.start[b + 1]):
-                fy[spread.dof[i]] += spread.coefficient[i] * s.out[b - spread.f_start[e]]
+    element_forces(mech.elements, mech.spread, s, fy)
     joint_forces(mech, k, lam, F, l0, f0, N, g)
     contact_forces(mech, k, lam, F, l0, f0, N, g)
 

@@ -17,13 +17,15 @@ from fricmb.integrate.constrained.projection import project_positions, project_v
 from fricmb.integrate.constrained.slip_rows import aim, keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.step.stage_predictor import lagrange
 
 
 class Control(NamedTuple):
     """Step control.
 
     ``rtol`` (1,); running maxima ``q``, ``v``, ``z`` with floors ``floor_v``; ``h`` (3,) next step, the step before,
-    that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at 0, c for prediction; ``counts`` work done;
+    that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c
+    for prediction, by ``weight`` (s, s+1); ``counts`` work done;
     ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
     time of the Jacobian; ``power`` (s, n_c+2) powers at the stages.
     """
@@ -40,7 +42,8 @@ class Control(NamedTuple):
     mass: Floats
     made: Floats
     power: Floats2
-    weight: Floats
+    nodes: Floats
+    weight: Floats2
 
 
 def control_of(problem: Problem, st: Stages, rtol: float, v: Floats, z: Floats, floor: Floats, span: Floats,
@@ -50,7 +53,7 @@ def control_of(problem: Problem, st: Stages, rtol: float, v: Floats, z: Floats, 
     return room(Control(
         np.array([rtol]), v, z, floor, np.array([h, 0.0, 0.0]), np.zeros((s + 1, size)), np.zeros(8, np.int64), span,
         np.sort(np.asarray(problem.signals.breakpoints, float)), mass, np.zeros(2), np.zeros((s, problem.n_c + 2)),
-        np.zeros(s + 1),
+        np.append(0.0, st.tab.c), np.zeros((s, s + 1)),
     ))  # fmt: skip
 
 
@@ -69,65 +72,33 @@ def measure(c: Control, y: State, h: float, scale: Floats) -> None:
 @kernel
 def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
     """Start values of the stages: the polynomial of the step before, or constant accelerations and forces."""
-    n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
-    tab = st.tab
-    s = tab.c.shape[0]
-    before = c.h[1]
-    for i in range(s):
-        x = 1.0 + tab.c[i] * h / before if before > 0.0 else 0.0
-        if before <= 0.0 or x > 4.0:
-            for a in range(n):
-                st.V[i, a] = y.v[a] + tab.c[i] * h * y.a[a]
-            for a in range(m):
-                st.lam[i, a] = y.lam[a]
-            for a in range(n_c):
-                st.F[i, a] = y.F[a]
-            for a in range(nz):
-                st.Z[i, a] = y.z[a]
-            continue
-        for j in range(s + 1):
-            node = 0.0 if j == 0 else tab.c[j - 1]
-            value = 1.0
-            for l in range(s + 1):
-                if l != j:
-                    other = 0.0 if l == 0 else tab.c[l - 1]
-                    value *= (x - other) / (node - other)
-            c.weight[j] = value
-        for a in range(n):
-            value = 0.0
-            for j in range(s + 1):
-                value += c.weight[j] * c.old[j, a]
-            st.V[i, a] = value
-        for a in range(m):
-            value = 0.0
-            for j in range(s + 1):
-                value += c.weight[j] * c.old[j, n + a]
-            st.lam[i, a] = value
-        for a in range(n_c):
-            value = 0.0
-            for j in range(s + 1):
-                value += c.weight[j] * c.old[j, n + m + a]
-            st.F[i, a] = value
-        for a in range(nz):
-            value = 0.0
-            for j in range(s + 1):
-                value += c.weight[j] * c.old[j, n + m + n_c + a]
-            st.Z[i, a] = value
+    nodes, before = st.tab.c, c.h[1]
+    if before > 0.0:
+        lagrange(c.nodes, nodes, 1.0, h / before, c.weight)
+    for i in range(nodes.shape[0]):
+        at = 0
+        old = before > 0.0 and 1.0 + nodes[i] * h / before <= 4.0
+        for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.Z)):
+            for a in range(start.shape[0]):
+                value = 0.0 if old else start[a]
+                for j in range(c.nodes.shape[0] if old else 0):
+                    value += c.weight[i, j] * c.old[j, at + a]
+                part[i, a] = value
+            at += start.shape[0]
+        for a in range(0 if old else y.v.shape[0]):
+            st.V[i, a] += nodes[i] * h * y.a[a]
 
 
 @kernel
 def remember(c: Control, y: State, st: Stages, h: float) -> None:
     """Keep this step's values for the prediction of the next; y is still its start."""
-    n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
-    for j in range(st.tab.c.shape[0] + 1):
-        for a in range(n):
-            c.old[j, a] = y.v[a] if j == 0 else st.V[j - 1, a]
-        for a in range(m):
-            c.old[j, n + a] = y.lam[a] if j == 0 else st.lam[j - 1, a]
-        for a in range(n_c):
-            c.old[j, n + m + a] = y.F[a] if j == 0 else st.F[j - 1, a]
-        for a in range(nz):
-            c.old[j, n + m + n_c + a] = y.z[a] if j == 0 else st.Z[j - 1, a]
+    at = 0
+    for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.Z)):
+        for a in range(start.shape[0]):
+            c.old[0, at + a] = start[a]
+            for j in range(part.shape[0]):
+                c.old[j + 1, at + a] = part[j, a]
+        at += start.shape[0]
     c.h[1] = h
 
 
@@ -164,23 +135,14 @@ def error_of(c: Control, y: State, st: Stages) -> float:
     tab = st.tab
     s = tab.c.shape[0]
     last = before = 0.0
-    for a in range(y.q.shape[0]):
-        high = tab.top[0, 0] * y.v[a]
-        low = tab.top[1, 0] * y.v[a]
-        for j in range(s):
-            high += tab.top[0, j + 1] * st.V[j, a]
-            low += tab.top[1, j + 1] * st.V[j, a]
-        last = max(last, abs(high) / st.scale[a])
-        before = max(before, abs(low) / st.scale[a])
-    for a in range(y.z.shape[0]):
-        scale = max(c.z[a], abs(y.z[a]), abs(st.Z[s - 1, a]), 1e-290)
-        high = tab.top[0, 0] * y.z[a]
-        low = tab.top[1, 0] * y.z[a]
-        for j in range(s):
-            high += tab.top[0, j + 1] * st.Z[j, a]
-            low += tab.top[1, j + 1] * st.Z[j, a]
-        last = max(last, abs(high) / scale)
-        before = max(before, abs(low) / scale)
+    for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.Z)):
+        for a in range(start.shape[0]):
+            scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), 1e-290)
+            high, low = tab.top[0, 0] * start[a], tab.top[1, 0] * start[a]
+            for j in range(s):
+                high += tab.top[0, j + 1] * part[j, a]
+                low += tab.top[1, j + 1] * part[j, a]
+            last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
     ratio = min(1.0, last / before) if before > 0.0 else 1.0
     return float(last * ratio / c.rtol[0])
 
@@ -195,6 +157,21 @@ def settle(mech: Mech, k: Moving, w: Instant, end: State) -> bool:
     )
 
 
+@kernel
+def last_stage(mech: Mech, y: State, end: State, st: Stages) -> None:
+    """Put the last stage of a step from y into ``end``; modes are those of y."""
+    s = st.tab.c.shape[0]
+    for part, target in ((st.Q, end.q), (st.V, end.v), (st.Z, end.z), (st.lam, end.lam), (st.F, end.F)):
+        for a in range(target.shape[0]):
+            target[a] = part[s - 1, a]
+    for part, target in ((st.acc, end.a), (y.n, end.n)):
+        for a in range(target.shape[0]):
+            target[a] = part[a]
+    for a in range(y.mode.shape[0]):
+        end.mode[a] = y.mode[a]
+    aim(mech, end.mode, end.F, end.n)
+
+
 @block
 def end_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float, address: Ints
@@ -203,20 +180,7 @@ def end_step(
     s = st.tab.c.shape[0]
     n_c = y.mode.shape[0]
     end.t[0] = y.t[0] + h
-    for a in range(y.q.shape[0]):
-        end.q[a] = st.Q[s - 1, a]
-        end.v[a] = st.V[s - 1, a]
-        end.a[a] = st.acc[a]
-    for a in range(y.z.shape[0]):
-        end.z[a] = st.Z[s - 1, a]
-    for a in range(y.lam.shape[0]):
-        end.lam[a] = st.lam[s - 1, a]
-    for a in range(y.F.shape[0]):
-        end.F[a] = st.F[s - 1, a]
-        end.n[a] = y.n[a]
-    for a in range(n_c):
-        end.mode[a] = y.mode[a]
-    aim(mech, end.mode, end.F, end.n)
+    last_stage(mech, y, end, st)
     if not settle(mech, k, w, end):
         return False
     # energies: the stages' powers, integrated by the formula itself

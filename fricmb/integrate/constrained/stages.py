@@ -195,7 +195,6 @@ def iterate_stages(
     mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float, mode: Codes, address: Ints
 ) -> int:
     """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
-    n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
     s = st.tab.c.shape[0]
     last = np.inf
     st.found[0] = 1.0
@@ -213,15 +212,13 @@ def iterate_stages(
         for i in range(s):
             for a in range(st.R.shape[1]):
                 sound += 0.0 * st.R[i, a]
-            for a in range(n):
-                st.V[i, a] -= st.R[i, a]
+            for a in range(st.scale.shape[0]):
                 change = max(change, abs(st.R[i, a]) / st.scale[a])
-            for a in range(m):
-                st.lam[i, a] -= st.R[i, n + a]
-            for a in range(n_c):
-                st.F[i, a] -= st.R[i, n + m + a]
-            for a in range(nz):
-                st.Z[i, a] -= st.R[i, n + m + n_c + a]
+            at = 0
+            for part in (st.V, st.lam, st.F, st.Z):
+                for a in range(part.shape[1]):
+                    part[i, a] -= st.R[i, at + a]
+                at += part.shape[1]
         if not (change < 1e30 and sound == 0.0):
             return 0
         rate = change / last if iteration > 0 else 1.0

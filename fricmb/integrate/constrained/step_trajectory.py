@@ -70,7 +70,7 @@ class StepTrajectory(Trajectory):
             return self._only_start(len(t))
         step = np.clip(np.searchsorted(self._span[:, 0], t, side="right") - 1, 0, len(self._span) - 1)
         x = np.clip((t - self._span[step, 0]) / self._span[step, 1], 0.0, 1.0)
-        weight = lagrange(self._nodes, x)
+        weight = lagrange_weights(self._nodes, x)
         return self._complete(t, np.einsum("tj,tjw->tw", weight, self._values[step]), step, project=True)
 
     def _only_start(self, count: int = 1) -> Samples:
@@ -158,7 +158,7 @@ def _windows(stops: Floats, t: Floats) -> Floats:
     return np.column_stack([low + 4e-16 * np.abs(low) * (low > -1e300), high - 4e-16 * np.abs(high) * (high < 1e300)])
 
 
-def lagrange(nodes: Floats, x: Floats) -> Floats:
+def lagrange_weights(nodes: Floats, x: Floats) -> Floats:
     """Weights (n_t, k) of values at the nodes for their polynomial at x."""
     weight = np.ones((len(x), len(nodes)))
     for j in range(len(nodes)):

@@ -40,7 +40,7 @@ class Turns(NamedTuple):
     base: Floats
     answer: Floats3
     gain: Floats2
-    work: Floats2
+    work: Floats
     spread: Floats
     turn: Floats
     sizes: Pivots
@@ -55,7 +55,7 @@ def turns_of(problem: Problem, s: int, size: int) -> Turns:
     full = k * s
     return room(Turns(
         np.zeros(k, np.int64), np.zeros(k, np.int64), np.zeros(1, np.int64), np.zeros((k, 3)), np.zeros(k),
-        np.zeros((full, s, size)), np.zeros((full, full)), np.zeros((full, full)), np.zeros(full), np.zeros(full),
+        np.zeros((full, s, size)), np.zeros((full, full)), np.zeros(full * full), np.zeros(full), np.zeros(full),
         np.zeros(4, np.int32), np.zeros(full, np.int32),
     ))  # fmt: skip
 
@@ -101,7 +101,7 @@ def correct_turns(mech: Mech, turns: Turns, R: Floats2) -> None:
     """From the changes R (s, size) by the Jacobian to those by the derivatives of every stage."""
     s = R.shape[0]
     full = turns.near[0] * s
-    work = turns.work[:full, :full]
+    work = turns.work[: full * full].reshape(full, full)
     for p in range(full):
         turns.turn[p] = across(mech, turns, p // s, R[p % s])
         for q in range(full):

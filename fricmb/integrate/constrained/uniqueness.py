@@ -6,6 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lu import lu_factor
 from fricmb.integrate.constrained.accelerations import ALL, Instant, State, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
@@ -135,38 +136,28 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
         return -1.0
     least = 1.0
     for subset in range(1, 1 << count):
-        least = min(least, minor(out, count, subset))
+        least = min(least, minor(out, count, subset, mech.address))
     return least
 
 
 @kernel
-def minor(out: Watch, count: int, subset: int) -> float:
+def minor(out: Watch, count: int, subset: int, address: Ints) -> float:
     """Determinant of the rows and columns of A in a subset (by its bits)."""
     size = 0
     for i in range(count):
-        if (subset >> i) & 1:
-            column = 0
-            for j in range(count):
-                if (subset >> j) & 1:
-                    out.B[size * MANY + column] = out.A[i * MANY + j]
-                    column += 1
-            size += 1
+        size += (subset >> i) & 1
+    B = out.B[: size * size].reshape(size, size)
+    row = 0
+    for i in range(count):
+        column = 0
+        for j in range(count):
+            if (subset >> i) & (subset >> j) & 1:
+                B[row, column] = out.A[i * MANY + j]
+                column += 1
+        row += (subset >> i) & 1
+    if not lu_factor(B, out.sizes, out.pivots, address):
+        return 0.0
     value = 1.0
-    for p in range(size):
-        best = p
-        for i in range(p + 1, size):
-            if abs(out.B[i * MANY + p]) > abs(out.B[best * MANY + p]):
-                best = i
-        pivot = out.B[best * MANY + p]
-        if pivot == 0.0:
-            return 0.0
-        value *= pivot if best == p else -pivot
-        for j in range(p, size):
-            x = out.B[best * MANY + j]
-            out.B[best * MANY + j] = out.B[p * MANY + j]
-            out.B[p * MANY + j] = x
-        for i in range(p + 1, size):
-            x = out.B[i * MANY + p] / pivot
-            for j in range(p, size):
-                out.B[i * MANY + j] -= x * out.B[p * MANY + j]
+    for i in range(size):
+        value *= B[i, i] if out.pivots[i] == i else -B[i, i]
     return value

@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.problem_structs import mechanism_of
-from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 
 #: Joints that slip at once and are looked at together.
 MANY = 8
@@ -18,8 +18,9 @@ class Watch(NamedTuple):
     """What is watched along a run.
 
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` (1,) the least
-    principal minor of the same for several of them (``which``, ``A``, ``B`` room for it).  ``sigma`` (4,): least
-    singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak`` (m,) its direction.
+    principal minor of the same for several of them (``which``, ``A``, ``B``, ``sizes``, ``pivots`` room for it).
+    ``sigma`` (4,): least singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak``
+    (m,) its direction.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
     stages of a step, ``where`` (1,) the part of the step at which only the polynomial through these is below 0, else 1;
     ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
@@ -32,6 +33,8 @@ class Watch(NamedTuple):
     which: Ints
     A: Floats
     B: Floats
+    sizes: Pivots
+    pivots: Pivots
     sigma: Floats
     weak: Floats
     trigger: Floats
@@ -55,6 +58,7 @@ def watch_of(problem: Problem, stages: int) -> Watch:
     count = 3 * problem.n_c + len(m.joints.port)
     return room(Watch(
         np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
+        np.zeros(4, np.int32), np.zeros(MANY, np.int32),
         np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
         np.ones((stages + 1, count)), np.ones(1), np.zeros(stages), np.zeros(stages + 1), np.zeros(len(m.joints.port)),
         np.array([int((m.joints.dropped == 2).sum())]), np.zeros(len(m.joints.port), np.int64),

@@ -100,12 +100,31 @@ def structure_force(structure: Structure, elements: Table, spread: Spread, s: Sc
             value -= structure.Ku[i, j] * u[j] + structure.Cu[i, j] * du[j]
             value += structure.B[i, j] * u[j]
         f[i] = value
+    element_forces(elements, spread, s, f)
+
+
+@kernel
+def element_forces(elements: Table, spread: Spread, s: Scratch, f: Floats) -> None:
+    """Add the forces of nonlinear elements at X to f."""
     for k in range(elements.address.shape[0]):
         gather(elements, k, s.X, s.x)
         call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
         for b in range(spread.f_start[k], spread.f_start[k + 1]):
             for j in range(spread.start[b], spread.start[b + 1]):
                 f[spread.dof[j]] += spread.coefficient[j] * s.out[b - spread.f_start[k]]
+
+
+@kernel
+def element_powers(elements: Table, spread: Spread, s: Scratch) -> tuple[float, float]:
+    """What nonlinear elements lose and bring in at X."""
+    loss, supply = 0.0, 0.0
+    for k in range(elements.address.shape[0]):
+        n_x = gather(elements, k, s.X, s.x)
+        call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
+        n_f = spread.f_start[k + 1] - spread.f_start[k]
+        loss += s.out[n_f * (1 + n_x) + 1]
+        supply += s.out[n_f * (1 + n_x) + 2]
+    return loss, supply
 
 
 @kernel
@@ -235,11 +254,6 @@ def powers(packed: Packed, s: Scratch, F: Floats, N: Floats, g: Floats, out: Flo
             force += structure.Kd[j, n + i] * s.X[u0 + i]
         damping += s.X[u0 + nu + j] * dashpot
         supply += s.X[u0 + nu + j] * (force + dashpot)
-    for k in range(packed.elements.address.shape[0]):
-        n_x = gather(packed.elements, k, s.X, s.x)
-        call(packed.elements.address[k], s.x, 0, packed.elements.p, packed.elements.p_start[k], s.out, 0)
-        n_f = packed.spread.f_start[k + 1] - packed.spread.f_start[k]
-        damping += s.out[n_f * (1 + n_x) + 1]
-        supply += s.out[n_f * (1 + n_x) + 2]
-    out[nc] = damping
-    out[nc + 1] = supply
+    lost, gained = element_powers(packed.elements, packed.spread, s)
+    out[nc] = damping + lost
+    out[nc + 1] = supply + gained

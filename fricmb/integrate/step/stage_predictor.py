@@ -46,7 +46,7 @@ def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
     if not (shift >= -1e-9 and shift + ratio <= REACH):
         return False
     weight = st.weight
-    lagrange(tab.c, shift, ratio, weight)
+    lagrange(tab.c, tab.c, shift, ratio, weight)
     if packed.elements.address.shape[0] > 0:
         carry(st.V, weight, st.line)
     else:
@@ -82,15 +82,15 @@ def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
 
 
 @kernel
-def lagrange(c: Floats, shift: float, ratio: float, weight: Floats2) -> None:
-    """Weights (s, s) of values at the nodes c for the points shift + ratio c."""
+def lagrange(nodes: Floats, c: Floats, shift: float, ratio: float, weight: Floats2) -> None:
+    """Weights (s, k) of values at the k nodes for the s points shift + ratio c."""
     for i in range(c.shape[0]):
         x = shift + ratio * c[i]
-        for j in range(c.shape[0]):
+        for j in range(nodes.shape[0]):
             product = 1.0
-            for k in range(c.shape[0]):
+            for k in range(nodes.shape[0]):
                 if k != j:
-                    product *= (x - c[k]) / (c[j] - c[k])
+                    product *= (x - nodes[k]) / (nodes[j] - nodes[k])
             weight[i, j] = product
 
 

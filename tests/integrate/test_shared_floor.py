@@ -1,0 +1,175 @@
+"""What scenes with joints and without share, kernel by kernel: arrays in, arrays out, against numpy and scipy."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.linalg import solve
+
+from fricmb.integrate.compile.band import band_sizes, factor_band, solve_band, spread_of_pivots
+from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.methods.backward_differences import best_order
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.problem import Complexes, Floats, Ints, Pivots
+from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
+from fricmb.integrate.run.chunks import Chunks
+from fricmb.integrate.run.outcomes import DONE, FULL
+from fricmb.integrate.step.step_control import ladder, step_factor
+
+
+class Stops(NamedTuple):
+    """What the kernels read of a run."""
+
+    span: Floats
+    stops: Floats
+
+
+@entry
+def stop_and_window(times: Stops, window: Floats, t: float) -> float:
+    """The next stop; the window of functions of time."""
+    stop = set_window(times, window, t)
+    return stop if stop == next_stop(times, t) and not reached(t, stop) else -1.0
+
+
+@entry
+def solve_real(ab: Floats, pivots: Pivots, sizes: Pivots, b: Floats, address: Ints) -> float:
+    """Factor and solve; spread of the pivots, -1 where the matrix is singular."""
+    if not factor_band(ab, pivots, sizes, address):
+        return -1.0
+    solve_band(ab, pivots, sizes, b, address)
+    return spread_of_pivots(ab, sizes)
+
+
+@entry
+def solve_complex(ab: Complexes, pivots: Pivots, sizes: Pivots, b: Complexes, address: Ints) -> bool:
+    """Factor and solve."""
+    if not factor_band(ab, pivots, sizes, address):
+        return False
+    solve_band(ab, pivots, sizes, b, address)
+    return True
+
+
+@entry
+def factor_of(error: float, order: float) -> float:
+    """By what a step may change."""
+    return step_factor(error, order, 0.9)
+
+
+@entry
+def rung(x: float, rungs: int) -> float:
+    """A step on the ladder."""
+    return ladder(x, rungs)
+
+
+@entry
+def order_of(k: int, lower: float, error: float, higher: float, out: Floats) -> int:
+    """The order that goes fastest, and by what."""
+    order, out[0] = best_order(k, lower, error, higher)
+    return order
+
+
+@entry
+def lengths(row: Ints, x: Floats, out: Floats) -> int:
+    """Length of the part of every contact."""
+    for k in range(out.shape[0]):
+        out[k] = magnitude(row, k, x)
+    return 0
+
+
+def test_stops_and_windows():
+    times = room(Stops(np.array([0.0, 10.0]), np.array([2.0, 5.0, 20.0])))
+    window = np.zeros(2)
+    for t, stop, low, high in ((0, 2, 0, 2), (2, 5, 2, 5), (2 - 1e-9, 2, 0, 2), (7, 10, 5, 20)):
+        assert stop_and_window(times, window, float(t)) == stop
+        assert low < window[0] <= low + 1e-14
+        assert high - 1e-13 <= window[1] < high
+
+
+def band_of(matrix, half):
+    """As LAPACK takes it: entry (i, j) at 2 half + i - j in column j."""
+    n = len(matrix)
+    ab = np.zeros((n, 3 * half + 1), matrix.dtype)
+    for j in range(n):
+        for i in range(max(0, j - half), min(n, j + half + 1)):
+            ab[j, 2 * half + i - j] = matrix[i, j]
+    return ab.ravel()
+
+
+@pytest.mark.parametrize("kind", [float, complex])
+def test_banded_systems_are_those_of_scipy(kind):
+    rng = np.random.default_rng(3)
+    n, half = 12, 2
+    matrix = rng.normal(size=(n, n)).astype(kind) + (1j * rng.normal(size=(n, n)) if kind is complex else 0.0)
+    matrix[np.abs(np.subtract.outer(np.arange(n), np.arange(n))) > half] = 0.0
+    b = rng.normal(size=n).astype(kind)
+    x, pivots = b.copy(), np.zeros(n, np.int32)
+    call = solve_real if kind is float else solve_complex
+    assert call(band_of(matrix, half), pivots, band_sizes(n, half), x, addresses()) > 0.0
+    np.testing.assert_allclose(x, solve(matrix, b), rtol=1e-12, atol=1e-12)
+    matrix[:, 4] = 0.0
+    assert call(band_of(matrix, half), pivots, band_sizes(n, half), x, addresses()) in (-1.0, False)
+
+
+def test_steps_grow_by_the_order_of_their_error():
+    assert factor_of(2.0**-4, 4.0) == pytest.approx(1.8)
+    assert factor_of(81.0, 4.0) == pytest.approx(0.3)
+    assert factor_of(np.inf, 3.0) == 0.0
+    assert np.isfinite(factor_of(0.0, 1.0))
+
+
+@pytest.mark.parametrize("rungs", [4, 8])
+def test_a_rung_is_the_next_one_below(rungs):
+    powers = 2.0 ** (np.arange(-40, 40) / rungs)
+    for x in np.random.default_rng(1).uniform(0.1, 10.0, 50):
+        assert rung(x, rungs) == pytest.approx(powers[powers <= x].max(), rel=1e-12)
+    assert [rung(power, rungs) for power in powers] == pytest.approx(powers, rel=1e-12)
+
+
+def test_the_order_that_goes_fastest():
+    rng, out = np.random.default_rng(2), np.zeros(1)
+    for _ in range(200):
+        k = int(rng.integers(1, 6))
+        errors = 10.0 ** rng.uniform(-6, 2, 3)
+        errors[0] = np.inf if k == 1 else errors[0]
+        errors[2] = np.inf if rng.uniform() < 0.3 else errors[2]
+        factors = {k + i: 0.9 * errors[1 + i] ** (-1.0 / (k + i)) for i in (-1, 0, 1) if k + i > 0}
+        order = order_of(k, *errors, out)
+        assert factors[order] == max(factors.values())
+        assert out[0] == pytest.approx(factors[order])
+
+
+def test_lengths_do_not_overflow():
+    row, x = np.array([0, 1, 3, 6]), np.array([-2.0, 3e200, 4e200, 2e-200, 3e-200, 6e-200])
+    out = np.zeros(3)
+    lengths(row, x, out)
+    np.testing.assert_allclose(out, [2.0, 5e200, 7e-200], rtol=1e-15)
+
+
+def test_rows_that_are_not_finite_are_left_out():
+    rows = np.arange(12.0).reshape(6, 2)
+    rows[4, 1] = np.nan
+    arrays = {"values": np.zeros((2, 2)), "kind": np.zeros(2, np.int8), "event": np.zeros((1, 3))}
+    kept = SimpleNamespace(**arrays, used=np.zeros(2, int))
+    chunks, t, seen = Chunks(kept, "values", "kind"), np.zeros(1), []
+
+    def step():
+        kept.values[:] = rows[len(seen) * 2 : len(seen) * 2 + 2]
+        kept.event[0] = len(seen), 0, 1
+        kept.used[:] = 2, 1
+        seen.append(t[0])
+        t[0] = kept.values[1, 0]
+        return DONE if len(seen) == 3 else FULL
+
+    assert chunks.fill(step, t, None, None) == DONE
+    assert chunks.broken
+    np.testing.assert_array_equal(np.concatenate([part[0] for part in chunks.parts]), rows[:4])
+    np.testing.assert_array_equal(chunks.transitions().t, [0.0, 1.0, 2.0])
+    seen.clear()
+    chunks = Chunks(kept, "values", "kind")
+    assert chunks.fill(step, t, 16.0, None) == FULL  # memory for one row: one chunk and no more
+    assert len(seen) == 1
