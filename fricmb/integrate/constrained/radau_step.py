@@ -25,7 +25,7 @@ class Control(NamedTuple):
 
     ``rtol`` (1,); running maxima ``q``, ``v``, ``z`` with floors ``floor_v``; ``h`` (3,) next step, the step before,
     that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c
-    for prediction, by ``weight`` (s, s+1); ``counts`` work done;
+    for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts`` work done;
     ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
     time of the Jacobian; ``power`` (s, n_c+2) powers at the stages.
     """
@@ -43,6 +43,7 @@ class Control(NamedTuple):
     made: Floats
     power: Floats2
     nodes: Floats
+    ahead: Floats
     weight: Floats2
 
 
@@ -53,7 +54,7 @@ def control_of(problem: Problem, st: Stages, rtol: float, v: Floats, z: Floats, 
     return room(Control(
         np.array([rtol]), v, z, floor, np.array([h, 0.0, 0.0]), np.zeros((s + 1, size)), np.zeros(8, np.int64), span,
         np.sort(np.asarray(problem.signals.breakpoints, float)), mass, np.zeros(2), np.zeros((s, problem.n_c + 2)),
-        np.append(0.0, st.tab.c), np.zeros((s, s + 1)),
+        np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
     ))  # fmt: skip
 
 
@@ -72,12 +73,14 @@ def measure(c: Control, y: State, h: float, scale: Floats) -> None:
 @kernel
 def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
     """Start values of the stages: the polynomial of the step before, or constant accelerations and forces."""
-    nodes, before = st.tab.c, c.h[1]
+    before = c.h[1]
+    for i in range(c.ahead.shape[0]):
+        c.ahead[i] = 1.0 + st.tab.c[i] * h / before
     if before > 0.0:
-        lagrange(c.nodes, nodes, 1.0, h / before, c.weight)
-    for i in range(nodes.shape[0]):
+        lagrange(c.nodes, c.ahead, c.weight)
+    for i in range(c.ahead.shape[0]):
         at = 0
-        old = before > 0.0 and 1.0 + nodes[i] * h / before <= 4.0
+        old = before > 0.0 and c.ahead[i] <= 4.0
         for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.Z)):
             for a in range(start.shape[0]):
                 value = 0.0 if old else start[a]
@@ -86,7 +89,7 @@ def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
                 part[i, a] = value
             at += start.shape[0]
         for a in range(0 if old else y.v.shape[0]):
-            st.V[i, a] += nodes[i] * h * y.a[a]
+            st.V[i, a] += st.tab.c[i] * h * y.a[a]
 
 
 @kernel

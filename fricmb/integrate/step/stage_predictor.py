@@ -46,7 +46,9 @@ def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
     if not (shift >= -1e-9 and shift + ratio <= REACH):
         return False
     weight = st.weight
-    lagrange(tab.c, tab.c, shift, ratio, weight)
+    for i in range(tab.c.shape[0]):
+        st.line[i] = shift + ratio * tab.c[i]
+    lagrange(tab.c, st.line, weight)
     if packed.elements.address.shape[0] > 0:
         carry(st.V, weight, st.line)
     else:
@@ -82,15 +84,14 @@ def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
 
 
 @kernel
-def lagrange(nodes: Floats, c: Floats, shift: float, ratio: float, weight: Floats2) -> None:
-    """Weights (s, k) of values at the k nodes for the s points shift + ratio c."""
-    for i in range(c.shape[0]):
-        x = shift + ratio * c[i]
+def lagrange(nodes: Floats, x: Floats, weight: Floats2) -> None:
+    """Weights (s, k) of values at the k nodes for the points x (s,)."""
+    for i in range(weight.shape[0]):
         for j in range(nodes.shape[0]):
             product = 1.0
             for k in range(nodes.shape[0]):
                 if k != j:
-                    product *= (x - nodes[k]) / (nodes[j] - nodes[k])
+                    product *= (x[i] - nodes[k]) / (nodes[j] - nodes[k])
             weight[i, j] = product
 
 
