@@ -52,7 +52,7 @@ def raised(path):
 def reasons():
     """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
     from fricmb.integrate.constrained import failure_text
-    from fricmb.integrate.methods.attempt_step import FAILURES
+    from fricmb.integrate.run.outcomes import FAILURES
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
