@@ -81,7 +81,6 @@ def kept(compiled: Any) -> Any:
     """Let a numba dispatcher or callback keep its machine code by content."""
     function = getattr(compiled, "py_func", None) or compiled._pyfunc
     options = repr(sorted(getattr(compiled, "targetoptions", {}).items()))
-    if not function.__module__.startswith("fricmb."):
-        options += f" {function.__module__}"  # a kept kernel imports the module that it was compiled in
+    options += f" {function.__module__}"  # a kept kernel imports the module that it was compiled in
     compiled._cache = KernelCache(function, function.__name__, options)
     return compiled

@@ -152,8 +152,7 @@ class _RoomAttributes(AttributeTemplate):
 
 
 @lower_getattr_generic(RoomType)
-def field_of(context: Any, builder: Any, kind: RoomType, value: Any, name: str) -> Any:
-    """Code that reads a field of a room at an address."""
+def _room_attribute(context: Any, builder: Any, kind: RoomType, value: Any, name: str) -> Any:
     word = ir.IntType(64)
     start = builder.gep(value, [ir.Constant(word, kind.at[name])])
     words = builder.bitcast(start, word.as_pointer())

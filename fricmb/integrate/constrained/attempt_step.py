@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.event_functions import violated
@@ -11,7 +10,7 @@ from fricmb.integrate.constrained.event_location import last_unique, locate_trig
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
-from fricmb.integrate.constrained.recorder import Record, record_step
+from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import dips, near_singular, nears_singular, step_to_singular
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.transition import change_modes
@@ -82,7 +81,7 @@ def radau_step(
         reached = step_to_singular(mech, k, w, y, end, st, c, out, h)
         if reached > 0.0:
             record_step(mech, rec, y, end, st, c, reached, mech.address)
-            copy_room(end, y)
+            copy_state(end, y, mech.address)
             near_singular(mech, k, w, y, out, reached)
             return FAIL_SINGULAR
         out.sigma[3] = 0.0
@@ -110,7 +109,7 @@ def radau_step(
         h = last_unique(mech, k, w, y, end, st, c, out, h)
         if h > 0.0:
             record_step(mech, rec, y, end, st, c, h, mech.address)
-            copy_room(end, y)
+            copy_state(end, y, mech.address)
         return FAIL_MARGIN
     find_kinks(mech, k, y, st, out)
     worst = violated(mech, k, out, y, end, st, mech.address)
@@ -125,7 +124,7 @@ def radau_step(
         end.t[0] = stop
     remember(c, y, st, h)
     c.counts[0] += 1
-    copy_room(end, y)
+    copy_state(end, y, mech.address)
     grow(c, out, y)
     if worst < 0 and (h < left or factor < 1.0):
         c.h[0] = h * min(3.0, max(0.3, factor))

@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.attempt_step import grow
@@ -20,7 +19,7 @@ from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle
-from fricmb.integrate.constrained.recorder import Record, record_step
+from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
 from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
@@ -74,7 +73,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     h = past.h[0]
     beta_h = h / past.gamma[past.status[ORDER]]
     n = y.q.shape[0]
-    copy_room(y, base)
+    copy_state(y, base, mech.address)
     for i in range(n):
         base.q[i] = past.new[i]
         base.v[i] = past.new[n + i]
@@ -85,7 +84,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     measure(c, y, h, one.scale)
     accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
-        copy_room(y, end)
+        copy_state(y, end, mech.address)
         take(past.guess, end, end.rate)
         fresh = formula.made[0] != beta_h
         if fresh:
@@ -196,7 +195,7 @@ def multistep(
         formula.made[0] = 0.0
         return REJECTED
     one = formula.one
-    copy_room(y, end)
+    copy_state(y, end, mech.address)
     end.t[0] = y.t[0] + h
     last_stage(mech, y, end, one)
     if not settle(mech, k, w, end):
@@ -224,7 +223,7 @@ def multistep(
         for l in range(st.tab.c.shape[0]):
             end.work[i] += h * st.tab.b[l] * c.power[l, i]
     record_step(mech, rec, y, end, st, c, h, mech.address)
-    copy_room(end, y)
+    copy_state(end, y, mech.address)
     c.counts[0] += 1
     c.h[1] = 0.0
     grow(c, out, y)

@@ -84,3 +84,20 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
 def crowded(out: Record, n_c: int) -> bool:
     """Whether another step and its transitions might not find room."""
     return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + n_c + 2 > out.event.shape[0])
+
+
+@block
+def copy_state(a: State, b: State, address: Ints) -> None:
+    """Put state a into b."""
+    b.t[0] = a.t[0]
+    for source, target in ((a.q, b.q), (a.v, b.v), (a.a, b.a), (a.z, b.z), (a.lam, b.lam)):
+        for i in range(source.shape[0]):
+            target[i] = source[i]
+    for source, target in ((a.F, b.F), (a.N, b.N), (a.g, b.g), (a.ga, b.ga), (a.n, b.n), (a.zd, b.zd)):
+        for i in range(source.shape[0]):
+            target[i] = source[i]
+    for i in range(a.mode.shape[0]):
+        b.mode[i] = a.mode[i]
+    for i in range(a.work.shape[0]):
+        b.work[i] = a.work[i]
+        b.rate[i] = a.rate[i]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control, end_step, try_step
+from fricmb.integrate.constrained.recorder import copy_state
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Ints
@@ -78,7 +78,7 @@ def nears_singular(out: Watch, h: float) -> bool:
 @kernel
 def dips(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, out: Watch, h: float) -> bool:
     """Whether the least singular value falls to less than half at a stage of the step just solved."""
-    copy_room(y, end)
+    copy_state(y, end, mech.address)
     for i in range(st.tab.c.shape[0]):
         move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
         if not instant_matrix(mech, k, w, end, NONE, mech.address):

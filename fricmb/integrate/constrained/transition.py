@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix, react
 from fricmb.integrate.constrained.forces import move
@@ -11,7 +10,7 @@ from fricmb.integrate.constrained.mode_decision import ARRIVES, FOUND, LENT, RES
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
-from fricmb.integrate.constrained.recorder import Record
+from fricmb.integrate.constrained.recorder import Record, copy_state
 from fricmb.integrate.constrained.singular_position import TURNS, least_singular
 from fricmb.integrate.constrained.slip_rows import lack, plane
 from fricmb.integrate.constrained.uniqueness import margins
@@ -83,7 +82,7 @@ def change_modes(
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
-    copy_room(y, before)
+    copy_state(y, before, mech.address)
     if j >= 2 * n_c:
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
         if code != DONE:

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
 from fricmb.integrate.model.accelerations import State, share_load
@@ -50,6 +49,71 @@ class Before(NamedTuple):
 
 
 @kernel
+def copy_state(source: State, target: State) -> None:
+    """Make ``target`` equal to ``source``."""
+    target.t[0] = source.t[0]
+    for i in range(source.q.shape[0]):
+        target.q[i] = source.q[i]
+        target.v[i] = source.v[i]
+        target.a[i] = source.a[i]
+        target.f[i] = source.f[i]
+        target.low[i] = source.low[i]
+    for a in range(source.z.shape[0]):
+        target.z[a] = source.z[a]
+        target.zd[a] = source.zd[a]
+    for a in range(source.g.shape[0]):
+        target.F[a] = source.F[a]
+        target.n[a] = source.n[a]
+        target.g[a] = source.g[a]
+        target.a0[a] = source.a0[a]
+        target.size[a] = source.size[a]
+        target.wd[a] = source.wd[a]
+    for k in range(source.mode.shape[0]):
+        target.N[k] = source.N[k]
+        target.mode[k] = source.mode[k]
+    for k in range(source.work.shape[0]):
+        target.work[k] = source.work[k]
+        target.rate[k] = source.rate[k]
+
+
+@kernel
+def swap_state(one: State, other: State) -> None:
+    """Exchange two states but for their forces f."""
+    for a, b in (
+        (one.t, other.t),
+        (one.q, other.q),
+        (one.v, other.v),
+        (one.a, other.a),
+        (one.low, other.low),
+        (one.z, other.z),
+        (one.zd, other.zd),
+        (one.F, other.F),
+        (one.n, other.n),
+        (one.g, other.g),
+        (one.a0, other.a0),
+        (one.size, other.size),
+        (one.wd, other.wd),
+        (one.N, other.N),
+        (one.work, other.work),
+        (one.rate, other.rate),
+    ):
+        exchange(a, b)
+    for k in range(one.mode.shape[0]):
+        mode = one.mode[k]
+        one.mode[k] = other.mode[k]
+        other.mode[k] = mode
+
+
+@kernel
+def exchange(a: Floats, b: Floats) -> None:
+    """Exchange the entries of two arrays."""
+    for i in range(a.shape[0]):
+        kept = a[i]
+        a[i] = b[i]
+        b[i] = kept
+
+
+@kernel
 def slip_rate(packed: Packed, y: State, k: int) -> float:
     """Rate of the slip speed of contact k in its direction, n . (W^T a - w')."""
     value = 0.0
@@ -82,7 +146,7 @@ def locate(
         if stopped():
             return -1
         if hi <= 4.0 * t_unit or step <= 2.0 * t_unit:
-            copy_room(y, end)
+            copy_state(y, end)
             return k
         if not attempt(packed, s, y, one, acc, step, address):
             failures += 1
@@ -98,7 +162,7 @@ def locate(
         if error > 1.0:
             retry[0] = step * max(0.1, step_factor(error, one.tab.c.shape[0], ONE_STEP_SAFETY))
             return -1
-        copy_room(y, end)
+        copy_state(y, end)
         if not finish(packed, s, end, one, acc, step, address):
             return -2
         first = find_trigger(packed, s, y, end, one, found, address)

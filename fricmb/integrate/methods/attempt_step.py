@@ -7,9 +7,16 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room, swap_rooms
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.contact.event_location import Before, locate, passes_by, slip_rate, transition
+from fricmb.integrate.contact.event_location import (
+    Before,
+    copy_state,
+    locate,
+    passes_by,
+    slip_rate,
+    swap_state,
+    transition,
+)
 from fricmb.integrate.contact.mode_decision import Rest
 from fricmb.integrate.model.accelerations import INFINITE, State
 from fricmb.integrate.model.forces import Scratch
@@ -104,7 +111,7 @@ def advance(
         one.counts[1] += 1
         clock.h[0] = 0.25 * h
         return REJECTED
-    copy_room(y, end)
+    copy_state(y, end)
     if not finish(packed, s, end, one, acc, h, address):
         return incomplete(end)
     k = find_trigger(packed, s, y, end, one, clock.found, address)
@@ -115,7 +122,7 @@ def advance(
         if end.fault[0] > 0.0:
             return FAIL_LAW
         record_inside(packed, s, y, end, one, acc, out, address)
-        swap_rooms(y, end)
+        swap_state(y, end)
         record(out, y, STEP)
         one.counts[0] += 1
         clock.same[0] = 0
@@ -157,7 +164,7 @@ def advance(
             return code
     if clock.same[0] > 20 + 4 * y.mode.shape[0] or pile_up(clock, end.t[0], y.mode.shape[0]):
         return FAIL_CHATTER
-    copy_room(end, y)
+    copy_state(end, y)
     clock.h[0] = clock.usual[0]
     one.last[1] = 0.0
     return settled(transition(packed, s, y, k, lifted, r, old, out, address))

@@ -8,9 +8,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.event_location import turned
+from fricmb.integrate.contact.event_location import copy_state, turned
 from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
 from fricmb.integrate.model.accelerations import State, complete
@@ -176,7 +175,7 @@ def drive_paper(
                 break
         if not settled:
             return FAIL_STEP
-        copy_room(y, end)
+        copy_state(y, end)
         end.t[0] = y.t[0] + step if step < left else t_end
         for i in range(n):
             end.q[i] = one.st.Q[0, i]
@@ -219,4 +218,4 @@ def drive_paper(
             last.n[a] = end.n[a]
         last.h[0] = step
         one.counts[0] += 1
-        copy_room(end, y)
+        copy_state(end, y)

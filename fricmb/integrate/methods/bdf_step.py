@@ -12,9 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.copy_room import copy_room
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.contact.event_location import slip_rate
+from fricmb.integrate.contact.event_location import copy_state, slip_rate
 from fricmb.integrate.methods.backward_differences import (
     ADAMS,
     EQUAL,
@@ -239,7 +238,7 @@ def bdf_step(
     if past.h[0] > left or past.status[REJECTIONS] > 3:
         return HANDOVER
     predict(past)
-    copy_room(y, end)
+    copy_state(y, end)
     if not solve_formula(packed, s, y, one, acc, past, address):
         forget(one.fac)
         past.status[REJECTIONS] += 2
@@ -277,7 +276,7 @@ def bdf_step(
     for i in range(y.rate.shape[0]):
         past.d[2 * n + nz + i] = end.rate[i] - past.guess[2 * n + nz + i]
     accept(y, end, past)
-    copy_room(end, y)
+    copy_state(end, y)
     record(out, y, STEP)
     one.counts[0] += 1
     for i in range(n):
