@@ -107,3 +107,25 @@ def test_laws_of_two_directions_keep_the_ledger(law):
     fine = fm.simulate(fm.Scene("s", [body, belt, *feet, spring]), t_end=3.0, rtol=1e-10)
     assert np.abs(sol.energy.residual).max() < 1e-6
     np.testing.assert_allclose(sol.q[:, -1], fine.q[:, -1], atol=1e-6)
+
+
+def disc_on_feet(name, feet, x, **motion):
+    angles = np.linspace(0.0, 2 * np.pi, feet, endpoint=False) + 0.1
+    points = {f"f{i}": (0.2 * np.cos(a), 0.15 * np.sin(a)) for i, a in enumerate(angles)}
+    body = fm.RigidBody(name, mass=1.0, inertia=0.02, position=(x, 0.0), points=points, **motion)
+    law = fm.laws.Coulomb(mu_s=0.3)
+    return body, *(
+        fm.Contact(f"{name}_{p}", body.point(p), law=law, normal_force=1.0 + 0.1 * i) for i, p in enumerate(points)
+    )
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+def test_many_feet_come_to_rest_beside_others_that_do_not(rtol):
+    """Six feet near rest have a larger system of turns than is solved without LAPACK; four more are not near."""
+    slow = disc_on_feet("a", 6, 0.0, velocity=(0.5, 0.2), angular_velocity=1.0)
+    fast = disc_on_feet("b", 4, 5.0, velocity=(60.0, 10.0))
+    alone, beside = (fm.simulate(fm.Scene("s", parts), t_end=0.8, rtol=rtol) for parts in (slow, slow + fast))
+    np.testing.assert_allclose(beside.events.t, alone.events.t, atol=10 * rtol)
+    for name in ("a.x", "a.y", "a.angle"):
+        assert beside[name][-1] == pytest.approx(alone[name][-1], abs=10 * rtol)
+    assert beside.stats.n_rejected < 2 * alone.stats.n_rejected
