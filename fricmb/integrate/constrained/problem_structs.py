@@ -16,7 +16,7 @@ from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Spread, Table, _table
-from fricmb.integrate.problem import NORMAL_CONSTANT, Codes, Floats, Ints, Pivots, Problem
+from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 from fricmb.integrate.run.problem_cache import kept
 
 
