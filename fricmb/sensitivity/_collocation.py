@@ -10,6 +10,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from fricmb.integrate.problem import Floats
+from fricmb.sensitivity._eliminate import SMALL, small_maps
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,8 +56,12 @@ def step_maps(formula: Formula, h: Floats, slopes: Floats, rates: Floats, n: int
     unknowns of the stages.
     """
     count, s = h.size, formula.c.size
-    G = np.concatenate([slopes, rates], axis=2)
+    G = np.concatenate([slopes, rates], axis=2) if rates.size else slopes
     m, width = G.shape[2], G.shape[3]
+    if s * m <= SMALL:
+        found = np.zeros((count, n_y, width))
+        small_maps(formula.A, formula.c, h, G.reshape(count, s * m, width), n, found)
+        return found
     A2 = formula.A @ formula.A
     Gq, Gv, Gz = G[..., :n], G[..., n : 2 * n], G[..., 2 * n : n_y]
     left = np.zeros((count, s, m, s, m))

@@ -156,8 +156,8 @@ class Equations:
         """Accelerations where stuck contacts hold: M a = f + W F, W^T a + drift = 0."""
         hard = [k for k, contact in self.contacts.items() if not contact.smooth]
         patterns, which = _patterns(mode[hard] == STICK)
-        G = np.ascontiguousarray(found.force_slopes().transpose(0, 2, 1))
-        a, slopes = np.zeros((self.n, count)), np.zeros((self.n, count, self.columns))
+        G = found.force_slopes()
+        a, slopes = np.empty((self.n, count)), np.empty((self.n, self.columns, count))
         F = {
             k: (np.zeros((count, self.contacts[k].d)), np.zeros((count, self.contacts[k].d, self.columns)))
             for k in hard
@@ -165,20 +165,21 @@ class Equations:
         for p, pattern in enumerate(patterns.T):
             stuck = [k for k, s in zip(hard, pattern, strict=True) if s]
             at = np.flatnonzero(which == p)
-            a[:, at], slopes[:, at] = self._held(found, G, stuck, slice(None) if at.size == count else at, F)
-        return a.T, slopes.transpose(1, 0, 2), F
+            own = slice(None) if at.size == count else at
+            a[:, own], slopes[..., own] = self._held(found, G, stuck, own, F)
+        return a.T, slopes.transpose(2, 0, 1), F
 
     def _held(self, found: Found, G: Floats, stuck: list[int], at: Any, F: Any) -> tuple[Floats, Floats]:
-        """Accelerations (n, n_t) and their slopes at times at which the same contacts stick."""
+        """Accelerations (n, n_t) and their slopes (n, columns, n_t) at times at which the same contacts stick."""
         free, B, D = self.projector(found, stuck)
-        f, G = found.force[:, at], G[:, at]
+        f, G = found.force[:, at], G[..., at]
         a = free @ f
         drift, drift_slopes = whole([d for k in stuck for d in found.drift[k]], found.force.shape[1], self.columns)
         if stuck:
-            drift, drift_slopes = drift[at].T, drift_slopes[at].transpose(1, 0, 2)
+            drift, drift_slopes = drift[at].T, drift_slopes[at].transpose(1, 2, 0)
             a -= B @ drift
         for i, k, j, slope in self.seeded_masses:
-            G[i, :, j] -= slope * a[k]
+            G[i, j] -= slope * a[k]
         slopes = np.tensordot(free, G, 1)
         if stuck:
             slopes -= np.tensordot(B, drift_slopes, 1)
@@ -187,7 +188,7 @@ class Equations:
             own = slice(first, first + self.contacts[k].d)
             F[k][0][at] = -(B[:, own].T @ f + D[own] @ drift).T
             by = -np.tensordot(B[:, own].T, G, 1) - np.tensordot(D[own], drift_slopes, 1)
-            F[k][1][at] = by.transpose(1, 0, 2)
+            F[k][1][at] = by.transpose(2, 0, 1)
             first = own.stop
         return a, slopes
 

@@ -16,7 +16,7 @@ from fricmb.sensitivity._phases import BESIDE, Phases
 #: Stages of the steps, and of the two formulas whose difference tells how fine they have to be.
 STAGES, COARSE = 7, (2, 3)
 #: Rounds of dividing steps, into so many parts at most; numbers that are held at once.
-_ROUNDS, _PARTS, _HELD = 16, 8, 4_000_000
+_ROUNDS, _PARTS, _HELD = 16, 8, 1_000_000
 #: A step is divided on while its error falls by this factor each time; one that is this much too long or less is
 #: divided without being looked at again.
 _FALLS, _NEARLY = 0.5, 2.0

@@ -17,6 +17,7 @@ from fricmb.sensitivity._landings import extrapolated, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
 from fricmb.sensitivity._seeds import STATE
+from fricmb.sensitivity._sizes import sizes
 from fricmb.sensitivity._starts import held, one_sided
 from fricmb.sensitivity._transitions import Transitions
 
@@ -56,7 +57,7 @@ class Tangent:
         self.phases = phases_of(piece, np.asarray(sol.events.t), sol.names.row, breakpoints.t)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
-        self.mesh = mesh_of(self.stepper, _scale(sample(self.phases.t)), self.rtol)
+        self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving())
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
@@ -153,15 +154,6 @@ def state_names(names: Any) -> tuple[str, ...]:
     found = [f"{body}.{kind}.{path}" for kind in ("position", "velocity") for body, _, path in dofs]
     laws = [f"{c}.state.{s}" for c, held in zip(names.contacts, names.states, strict=True) for s in held]
     return (*found, *laws)
-
-
-def _scale(samples: Any) -> Floats:
-    """Sizes of states (n_y,): what rests has that of the largest."""
-    found = []
-    for values in (samples.q, samples.v, samples.z):
-        size = np.abs(values).max(axis=1, initial=0.0)
-        found.append(np.where(size > 0.0, size, size.max(initial=0.0) or 1.0))
-    return np.concatenate(found)
 
 
 def _check(sol: Any, equations: Equations) -> None:

@@ -98,3 +98,13 @@ def test_start_that_does_not_fit():
     with pytest.raises(fm.SceneError, match="moved to satisfy the joints"):
         fm.simulate(scene, t_end=0.1, sensitivities=("arm.angle",))
     fm.simulate(scene, t_end=0.1, sensitivities=("arm.mass",))
+
+
+def test_coordinates_that_hardly_move_do_not_set_the_steps():
+    """A wheelset: a coordinate that stays at round-off beside one that turns five times."""
+    scene = models.wheelset()
+    found = worst(scene, ("conicity",), rtol=1e-8, step=5e-3, t_end=0.03)
+    assert found["conicity"] < 1e3
+    sol = fm.simulate(scene, t_end=0.1, rtol=1e-8, sensitivities=("conicity",))
+    (tangent,) = sol.run.__dict__["_tangents"].values()
+    assert tangent.mesh.t.size < 20 * sol.t.size
