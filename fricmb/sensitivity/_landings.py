@@ -40,24 +40,32 @@ def places_before(t: float, rest: float, mesh: Floats) -> Ints:
 
 def extrapolated(tau: Floats, values: Floats) -> Floats:
     """What values (k, ..., n_t, n) at times tau (k, n_t) > 0 tend to at 0, by the polynomials through all k of them."""
+    return np.asarray(np.einsum("kt,k...tn->...tn", _weights(tau), values))
+
+
+def _weights(tau: Floats) -> Floats:
+    """Of the values at times tau (k, n_t) in what they tend to."""
     apart = tau[None] - tau[:, None]
-    weights = np.prod(np.where(apart == 0.0, 1.0, tau[None] / np.where(apart == 0.0, 1.0, apart)), axis=1)
-    return np.asarray(np.einsum("kt,k...tn->...tn", weights, values))
+    shares = np.where(apart == 0.0, 1.0, tau[None] / np.where(apart == 0.0, 1.0, apart))
+    return np.asarray(np.prod(shares, axis=1))
 
 
 def settled(tau: Floats, values: Floats, noise: Floats) -> tuple[Floats, Floats]:
     """Limits at tau = 0 of values (n_t, n), and how sure they are (n,); ``noise``: of the values.
 
     Far from a landing powers of tau that no polynomial has are in the way, near it errors of the dense output, which
-    count the more the smaller r is: extrapolations from three neighbours each are taken where they differ least.
+    count the more the smaller r is: extrapolations from three neighbours each are taken where they differ least, and
+    noise, which extrapolation makes larger, is small.
     """
     if tau.size < 5:
         best, less = (extrapolated(tau[:k, None], values[:k, None])[0] for k in (3, 2))
         return best, np.maximum(np.abs(best - less), noise[0])
     count = tau.size - 2
-    found = extrapolated(*(np.array([x[k : k + count] for k in range(3)]) for x in (tau, values)))
+    times, held, loud = (np.array([x[k : k + count] for k in range(3)]) for x in (tau, values, noise))
+    found = extrapolated(times, held)
+    louder = np.einsum("kt,ktn->tn", np.abs(_weights(times)), loud)
     apart = np.abs(np.diff(found, axis=0))
-    off = np.maximum(np.maximum(apart[:-1], apart[1:]), noise[1 : len(apart)])
+    off = np.maximum(np.maximum(apart[:-1], apart[1:]), louder[1:-1])
     best = np.argmin(off, axis=0)
     columns = np.arange(values.shape[1])
     return found[best + 1, columns], off[best, columns]

@@ -128,7 +128,7 @@ class Tangent:
         dts, noise = transitions.landing_times(i, S_before, self.stepper.sample(self.mesh.t[places]).g)
         dt, off = settled(tau, dts, noise)
         S_plus = [transitions.jump(i, *one)[0] for one in zip(S_before[:3], dts[:3], strict=True)]
-        transitions.say_unsure(i, dt, off)
+        transitions.say_unsure(i, dt, off, self.columns)
         return extrapolated(np.tile(tau[:3, None], S.shape[0]), np.array(S_plus)), dt
 
     def at(self, t: Floats, *, left: Any = None) -> Floats:

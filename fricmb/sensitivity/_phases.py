@@ -27,11 +27,14 @@ class Phases:
         Ends of steps and times of transitions.
     mode, sign : (n_c, n_k), (m, n_k)
         Of the contacts in each stretch; the sign of slip in one direction, nan on the rows of contacts with two.
+    speed : (n,)
+        The largest of each degree of freedom, of those in the middles of the stretches.
     """
 
     t: Floats
     mode: Codes
     sign: Floats
+    speed: Floats
 
     def of(self, t: Floats) -> Ints:
         """Number of the stretch that each time lies in, on the right at their ends."""
@@ -53,4 +56,4 @@ def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats) -> Pha
     sign = np.where(seen.g < 0.0, -1.0, 1.0)
     wide = np.repeat(np.diff(row) > 1, np.diff(row))
     sign[wide] = np.nan
-    return Phases(t=t, mode=seen.mode, sign=sign)
+    return Phases(t=t, mode=seen.mode, sign=sign, speed=np.abs(seen.v).max(axis=1, initial=0.0))

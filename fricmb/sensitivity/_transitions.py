@@ -7,6 +7,7 @@ dt = -(h_y S- + h_p)/(h_y f- + h_t).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -61,7 +62,7 @@ class Transitions:
         self.before = equations.field(before, phases.mode[:, begin - 1], phases.sign[:, begin - 1])
         self.after = equations.field(after, phases.mode[:, begin], phases.sign[:, begin])
         self._beginnings()
-        self.triggers = Triggers(equations, phases, happened, self.before, self.samples.v)
+        self.triggers = Triggers(equations, phases, happened, self.before, self.samples, self.zero)
         self._kept: dict[int, list[Trigger]] = {}
 
     def _beginnings(self) -> None:
@@ -87,8 +88,7 @@ class Transitions:
         """Whether slip begins with a speed: what a contact touches has jumped."""
         e = self.equations
         g, W = whole(self.after.found.g[k], len(self.happened), e.columns)
-        speeds = np.abs(self.samples.v).max(axis=1)
-        speed = float(np.abs(W[i, :, e.n : 2 * e.n]).max(axis=0) @ speeds) + 1e-300
+        speed = float(np.abs(W[i, :, e.n : 2 * e.n]).max(axis=0) @ self.phases.speed) + 1e-300
         return bool(np.linalg.norm(g[i]) > 1e-3 * speed)
 
     def of(self, i: int) -> list[Trigger]:
@@ -171,21 +171,23 @@ class Transitions:
                     f"{where}: a transition ({kind}) that only touches its condition (transversality"
                     f" {trigger.transversality:.1e}); there is no sound derivative of what follows"
                 )
-            elif kind == "slip" and self.triggers.indeterminate(i):
+            elif not trigger.sure:
                 self.unsafe.add(trigger.event)
                 self.notes.append(
                     f"{where}: lets go while stuck contacts hold the same motion, which leaves their forces open;"
                     " derivatives of what follows are not sound"
                 )
 
-    def say_unsure(self, i: int, dt: Floats, off: Floats) -> None:
-        """A note where derivatives of a landing's time are not known to a thousand tolerances."""
-        size = np.abs(dt).max(initial=0.0)
-        if off.max(initial=0.0) > 1e3 * self.rtol * size:
+    def say_unsure(self, i: int, dt: Floats, off: Floats, columns: Sequence[str]) -> None:
+        """A note where derivatives of a landing's time are not known to a thousand tolerances of their own size."""
+        sizes = np.maximum(np.abs(dt), 1e-300)
+        open_to = np.flatnonzero(off > 1e3 * self.rtol * np.where(dt != 0.0, sizes, np.inf))
+        if open_to.size:
+            by = ", ".join(f"{columns[j]!r} to {off[j] / sizes[j]:.0e}" for j in open_to)
             self.notes.append(
-                f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled:"
-                f" derivatives of that time are known to {off.max() / size:.0e} of their size (those of what follows"
-                " are not affected)"
+                f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled: of the"
+                f" derivatives of that time, those by {by} of their size are all that is known (what follows is not"
+                " affected)"
             )
 
     def _stopped(self, i: int, trigger: Trigger, S: Floats) -> Floats:

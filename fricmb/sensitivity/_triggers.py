@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fricmb.integrate.problem import STICK, Floats
+from fricmb.integrate.run.chunked_run import take
+from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations, Field
 from fricmb.sensitivity._found import at
 from fricmb.sensitivity._happenings import Happening
+from fricmb.sensitivity._loops import about_to_slip
 from fricmb.sensitivity._phases import Phases
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trigger:
-    """An event function at its zero: residual, slopes (columns,), rate along the motion, and that rate normalised."""
+    """An event function at its zero: residual, slopes (columns,), rate along the motion, and that rate normalised.
+
+    ``sure``: False where it depends on forces in stick that are not determined.
+    """
 
     event: int
     contact: int
@@ -24,6 +30,7 @@ class Trigger:
     slopes: Floats
     rate: float
     transversality: float
+    sure: bool = True
 
 
 class Triggers:
@@ -33,15 +40,18 @@ class Triggers:
     ----------
     before : Field
         At the times of all happenings, before them.
-    v : (n, n_t)
-        Velocities there.
+    samples : Samples
+        There.
+    zero : float
+        Residuals up to which a condition is met.
     """
 
     def __init__(
-        self, equations: Equations, phases: Phases, happened: list[Happening], before: Field, v: Floats
-    ) -> None:
+        self, equations: Equations, phases: Phases, happened: list[Happening], before: Field, samples: Samples,
+        zero: float,
+    ) -> None:  # fmt: skip
         self.equations, self.phases, self.happened, self.before = equations, phases, happened, before
-        self.speeds = np.abs(v).max(axis=1)
+        self.samples, self.zero = samples, zero
 
     def of(self, i: int) -> list[Trigger]:
         """Those of one happening."""
@@ -50,7 +60,31 @@ class Triggers:
         for event, k, kind in zip(one.events.tolist(), one.contacts, one.kinds, strict=True):
             make = {"slip": self._release, "open": self._opening, "close": self._opening}.get(kind, self._rest)
             found.append(make(i, event, k, along))
+        if "slip" in one.kinds and self._indeterminate(i):
+            return self._together(i, found, along)
         return found
+
+    def _together(self, i: int, found: list[Trigger], along: Floats) -> list[Trigger]:
+        """Those of a happening in which contacts let go whose forces in stick are not determined."""
+        one = self.happened[i]
+        letting = [k for k, kind in zip(one.contacts, one.kinds, strict=True) if kind == "slip"]
+        mode, sign = self.phases.mode[:, one.phase], self.phases.sign[:, one.phase]
+        begins = about_to_slip(self.equations, take(self.samples, [i]), mode, sign, letting)
+        sure = begins is not None and all(abs(value) <= self.zero * size for value, _, size in begins.values())
+        changed = []
+        for trigger, kind in zip(found, one.kinds, strict=True):
+            if kind == "slip" and sure and begins is not None:
+                value, slopes, size = begins[trigger.contact]
+                rate = float(slopes @ along)
+                changed.append(
+                    replace(
+                        trigger, residual=abs(value) / size, slopes=slopes, rate=rate or 1e-300,
+                        transversality=abs(rate) / size * self._lasted(i),
+                    )
+                )  # fmt: skip
+            else:
+                changed.append(replace(trigger, sure=kind != "slip"))
+        return changed
 
     def landing(self, i: int, k: int, g: Floats) -> tuple[Floats, Floats, float]:
         """Slopes (n_t, columns) of the time that slip in two directions still takes, where it has g (d, n_t).
@@ -72,10 +106,10 @@ class Triggers:
         turned = np.where(length > 0.0, g / np.where(length > 0.0, length, 1.0), n[:, None])
         whole_rate = c * float(n @ D @ n) - c * float(held_by @ D @ held_by)
         across = slopes - np.einsum("at,bt,bj->taj", turned, turned, slopes)
-        speed = float(np.abs(W).max(axis=0) @ self.speeds)
+        speed = float(np.abs(W).max(axis=0) @ self.phases.speed)
         return (turned + held_by[:, None]).T @ slopes / whole_rate, across / whole_rate, speed
 
-    def indeterminate(self, i: int) -> bool:
+    def _indeterminate(self, i: int) -> bool:
         """Whether forces in stick before a happening are not determined."""
         e, mode = self.equations, self.phases.mode[:, self.happened[i].phase - 1]
         stuck = [k for k, contact in e.contacts.items() if not contact.smooth and mode[k] == STICK]
@@ -122,7 +156,8 @@ class Triggers:
         limit, _ = self._row(self.before.found.limit[k], i)
         W = (n @ slopes)[self.equations.n : 2 * self.equations.n]
         scale = float(W @ self.equations.inverse @ W) * max(limit, 1e-300)
-        speed = float(np.abs(slopes[:, self.equations.n : 2 * self.equations.n]).max(axis=0) @ self.speeds) + 1e-300
+        W = np.abs(slopes[:, self.equations.n : 2 * self.equations.n])
+        speed = float(W.max(axis=0) @ self.phases.speed) + 1e-300
         rate = float(n @ rates)
         return Trigger(
             event=event, contact=k, residual=float(np.linalg.norm(g)) / speed, slopes=n @ slopes, rate=rate or 1e-300,

@@ -70,14 +70,24 @@ def test_landing_whose_direction_hardly_settles():
     assert max(found.values()) < 1e3
 
 
-def test_landing_that_settles_too_slowly_says_so():
+#: Derivatives of the time of the last landing, by Richardson's differences of runs at 1e-12; surer than 3e-7.
+SLOW = {
+    0: {"c0.law.mu_k": -0.05122584356851546, "b0.position.y": -0.02627608549620354, "b0.mass": 0.8483062822538415},
+    6: {"belt.velocity.x": -1.1567304791080602, "k1.stiffness": 0.2509621030680536},
+}
+
+
+@pytest.mark.parametrize("seed", list(SLOW))
+def test_landing_that_settles_too_slowly_says_so(seed):
     """Of a landing that hardly settles the time is known less well than the tolerance asks: a note says how well."""
-    scene = scene_of(generate("plane", 0))
-    sol = fm.simulate(scene, t_end=4.0, rtol=1e-8, sensitivities=("c0.law.mu_k",))
+    spec = generate("plane", seed)
+    t_end = min(spec.t_end, 7.0)
+    sol = fm.simulate(scene_of(spec), t_end=t_end, rtol=1e-8, sensitivities=tuple(SLOW[seed]))
     note = next(note for note in sol.stats.notes if "before its direction has settled" in note)
-    said = float(note.split("known to ")[1].split()[0])
-    exact = -0.05122584356852  # differences of runs at 1e-12
-    assert abs(sol.events[0].sensitivity("c0.law.mu_k") / exact - 1.0) < said < 1e-3
+    for name, exact in SLOW[seed].items():
+        named = note.split(f"{name!r} to ")
+        said = float(named[1].split()[0].rstrip(",")) if len(named) > 1 else 1e3 * 1e-8
+        assert abs(sol.events[-1].sensitivity(name) / exact - 1.0) < said < 1e-3
 
 
 def test_slip_that_ends_is_projected():
