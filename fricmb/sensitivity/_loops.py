@@ -7,15 +7,14 @@ the forces which are open.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._found import at, whole
+from fricmb.sensitivity._found import Found, at, whole
+from fricmb.sensitivity._friction import Friction
 
 
 def about_to_slip(
@@ -49,7 +48,7 @@ def about_to_slip(
     return {k: (float(g[r]), g_slopes[r], float(size[r])) for r, k in enumerate(contacts)}
 
 
-def _more(contact: Any, found: Any, k: int, sign: Floats) -> Dual:
+def _more(contact: Friction, found: Found, k: int, sign: Floats) -> Dual:
     """What friction at its limit is more than that of slip, as a force."""
     slipping = contact.beginning(found.N[k], sign[:, None])[0]
     return found.limit[k] * -float(sign[0]) + slipping * -1.0

@@ -183,7 +183,7 @@ class Transitions:
         sizes = np.maximum(np.abs(dt), 1e-300)
         open_to = np.flatnonzero(off > 1e3 * self.rtol * np.where(dt != 0.0, sizes, np.inf))
         if open_to.size:
-            by = ", ".join(f"{columns[j]!r} to {off[j] / sizes[j]:.0e}" for j in open_to)
+            by = ", ".join(f"{columns[j]!r} to {off[j] / sizes[j]:.0e}" for j in open_to.tolist())
             self.notes.append(
                 f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled: of the"
                 f" derivatives of that time, those by {by} of their size are all that is known (what follows is not"
