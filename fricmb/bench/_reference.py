@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.resources import files
 from typing import cast
 
@@ -97,8 +98,9 @@ class Reference:
         return inside
 
 
+@cache
 def shipped(name: str) -> Reference:
-    """The reference in the data file of that name."""
+    """The reference in the data file of that name; read once, since methods ask for its times in every timed run."""
     path = files("fricmb.bench") / "data" / f"{name}.npz"
     with path.open("rb") as stream, np.load(stream) as data:
         held = dict(data)
