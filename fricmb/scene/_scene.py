@@ -244,7 +244,11 @@ class Scene:
     def expand(self, form: LinearForm) -> LinearForm:
         """``form`` in dofs and prescribed motions alone: points of modal bodies become sums of modes."""
         motions = self._named_motions()
-        if all(motions.get(name, form).terms == ((name, 1.0),) for name, _ in form.terms):
+        for name, _ in form.terms:
+            found = motions.get(name)
+            if found is None or found.terms != ((name, 1.0),):
+                break
+        else:
             return form
         result = LinearForm((), form.constant)
         for name, coefficient in form.terms:

@@ -37,7 +37,8 @@ def available() -> float | None:
 def taken() -> float | None:
     """Bytes that this process holds; None: unknown."""
     try:
-        return float(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        with open("/proc/self/statm", "rb", buffering=0) as file:  # every run asks: a tenth of one that does nothing
+            return float(file.read(200).split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError, AttributeError):
         pass
     try:
