@@ -100,12 +100,12 @@ class MechanismSystem(System):
         """Without what redundant constraints may push against one another."""
         if not self.mechanism.joints.dropped.any():
             return lam
-        from fricmb.integrate.constrained.least_change import constraints_at
+        from fricmb.integrate.constrained.least_change import constraints_at, dense
         from fricmb.integrate.constrained.redundancy import RANK
 
         found = np.empty_like(lam)
         for i, t in enumerate(samples.t.tolist()):
-            G = constraints_at(self.problem, t, samples.q[:, i], samples.v[:, i]).G.toarray()
+            G = dense(constraints_at(self.problem, t, samples.q[:, i], samples.v[:, i]).G)
             found[:, i] = np.linalg.lstsq(G.T, G.T @ lam[:, i], rcond=RANK)[0]
         return found
 

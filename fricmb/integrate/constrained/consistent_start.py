@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate.constrained.least_change import Least, constraints_at, names_of_rows, unit_rows
+from fricmb.integrate.constrained.least_change import Constrained, Least, constraints_at, names_of_rows, unit_rows
 from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
+from fricmb.integrate.run.problem_cache import kept
 
 #: A constraint is satisfied to this part of the sizes that occur.
 CLOSED = 1e-12
@@ -25,27 +27,47 @@ def consistent_start(problem: Problem, start: Start) -> tuple[Start, tuple[str, 
     SceneError
         Where the constraints cannot be satisfied; names the joints that stay open.
     """
-    m = mechanism_of(problem)
-    if not m.n_rows:
+    if not mechanism_of(problem).n_rows:
         return start, ()
-    weight = 1.0 / np.sqrt(masses(m))
+    found = assembled(problem, start)
+    return replace(start, q=found.q.copy(), v=found.v.copy()), found.notes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assembled:
+    """Positions and velocities (n,) that satisfy the constraints, their Jacobian there, and notes on what moved."""
+
+    q: Floats
+    v: Floats
+    G: Any
+    notes: tuple[str, ...]
+
+
+def assembled(problem: Problem, start: Start) -> Assembled:
+    """What :func:`consistent_start` finds, with the Jacobian; raises as that."""
     q, v = np.array(start.q, float), np.array(start.v, float)
-    q = closed(problem, m, start.t, q, v, weight)
-    there = constraints_at(problem, start.t, q, v)
-    v = v - least_change(there.G, weight, there.rate)
-    left = np.abs(constraints_at(problem, start.t, q, v).rate)
+    return kept(problem, ("start", start.t, q.tobytes(), v.tobytes()), lambda: _assembled(problem, start.t, q, v))
+
+
+def _assembled(problem: Problem, t: float, q: Floats, v: Floats) -> Assembled:
+    m, old = mechanism_of(problem), (q, v)
+    weight = 1.0 / np.sqrt(masses(m))
+    q, there = closed(problem, m, t, q, v, weight)
+    change = least_change(there.G, weight, there.rate)
+    v = v - change
+    left = np.abs(there.rate - there.G @ change)  # rates are linear in velocities
     size = abs(there.G) @ np.abs(v) + np.abs(there.rate)
     if (left > 1e-9 * np.maximum(size, size.max(initial=0.0))).any():
         names = names_of_rows(m, np.flatnonzero(left > 1e-9 * size.max(initial=0.0)))
         raise SceneError(
-            f"joints {listed(names)}: no velocities satisfy them together at t = {start.t:g}; the motion they"
+            f"joints {listed(names)}: no velocities satisfy them together at t = {t:g}; the motion they"
             " prescribe contradicts itself"
         )
     notes = [
-        _moved(what, old, new, problem.dof_names)
-        for what, old, new in (("positions", start.q, q), ("velocities", start.v, v))
+        _moved(what, before, now, problem.dof_names)
+        for what, before, now in zip(("positions", "velocities"), old, (q, v), strict=True)
     ]
-    return replace(start, q=q, v=v), tuple(note for note in notes if note)
+    return Assembled(q=q, v=v, G=there.G, notes=tuple(note for note in notes if note))
 
 
 def away(problem: Problem, start: Start) -> Codes:
@@ -80,8 +102,10 @@ def _moved(what: str, old: Floats, new: Floats, names: tuple[str, ...]) -> str:
     )
 
 
-def closed(problem: Problem, m: Mechanism, t: float, q: Floats, v: Floats, weight: Floats) -> Floats:
-    """Positions on the constraints, by Gauss-Newton with the step halved where the constraints grow.
+def closed(
+    problem: Problem, m: Mechanism, t: float, q: Floats, v: Floats, weight: Floats
+) -> tuple[Floats, Constrained]:
+    """Positions on the constraints, and these there, by Gauss-Newton with the step halved where the constraints grow.
 
     Raises
     ------
@@ -116,7 +140,7 @@ def closed(problem: Problem, m: Mechanism, t: float, q: Floats, v: Floats, weigh
             f"({names_of_rows(m, np.array([worst]))[0]}); bodies are too short or too far apart, or joints contradict "
             "one another"
         )
-    return q
+    return q, here
 
 
 def listed(names: list[str]) -> str:

@@ -1,4 +1,4 @@
-"""The constraints at a state as a sparse matrix, and the least change that satisfies them: before a run, in scipy."""
+"""The constraints at a state as a matrix, and the least change that satisfies them: before a run, in scipy."""
 
 from __future__ import annotations
 
@@ -16,18 +16,19 @@ from fricmb.integrate.constrained.instants import constraints
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of, moving_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem
+from fricmb.integrate.run.problem_cache import kept
 
 #: What keeps the equations regular where constraints depend on one another, beside rows of length 1.
 REGULAR = 1e-10
 #: Corrections that take its effect away again: a factor REGULAR / sigma^2 each, sigma the singular values.
 REFINED = 4
-#: Up to so many unknowns dense factors cost less than the making of sparse ones.
+#: Up to so many unknowns dense matrices and factors cost less than the making of sparse ones.
 DENSE = 150
 
 
 @dataclass(frozen=True, kw_only=True)
 class Constrained:
-    """Constraints phi (m,), their rates (m,) and Jacobian G (m, n), sparse, at a state."""
+    """Constraints phi (m,), their rates (m,) and Jacobian G (m, n), sparse where it is large, at a state."""
 
     phi: Floats
     rate: Floats
@@ -39,15 +40,25 @@ def constraints_at(problem: Problem, t: float, q: Floats, v: Floats) -> Constrai
     mechanism, mech, nc = mechanism_of(problem), mech_of(problem), problem.n_c
     m = mechanism.n_rows
     phi, rate = np.zeros(m), np.zeros(m)
-    count = _entries(mech, mechanism)
+    count = kept(problem, "entries of G", lambda: _entries(mech, mechanism))
     row, column, value = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count)
     F, N, g = np.zeros(problem.m), np.zeros(nc), np.zeros(problem.m)
     q, v = (np.array(x, dtype=float) for x in (q, v))
     used = constraints(
         mech, moving_of(problem), float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value
     )  # fmt: skip
+    if m + problem.n <= DENSE:
+        G = np.zeros((m, problem.n))
+        np.add.at(G, (row[:used], column[:used]), value[:used])
+        return Constrained(phi=phi, rate=rate, G=G)
     entries = (value[:used], (row[:used], column[:used]))
     return Constrained(phi=phi, rate=rate, G=csr_matrix(entries, shape=(m, problem.n)))
+
+
+def dense(G: Any) -> Floats:
+    """A matrix as an array."""
+    found: Floats = G if isinstance(G, np.ndarray) else G.toarray()
+    return found
 
 
 def _entries(mech: Any, m: Mechanism) -> int:
@@ -64,13 +75,19 @@ def _entries(mech: Any, m: Mechanism) -> int:
 
 
 def names_of_rows(m: Mechanism, rows: Ints) -> list[str]:
-    """Joints that own the rows, each once."""
+    """Joints that own the rows, each once; what ties one body together only where there is nothing else."""
     owner = np.searchsorted(m.joints.row, rows, side="right") - 1
-    return list(dict.fromkeys(m.joints.names[i] for i in owner))
+    joints = owner[m.joints.inner[owner] == 0]
+    return list(dict.fromkeys(m.joints.names[i] for i in (joints if joints.size else owner)))
 
 
 def unit_rows(G: Any, weight: Floats) -> tuple[Any, Floats]:
     """``G diag(weight)`` with rows of length 1, and their lengths (1 for a row of zeros)."""
+    if isinstance(G, np.ndarray):
+        scaled = G * weight
+        length = np.sqrt((scaled**2).sum(axis=1))
+        length = np.where(length > 0.0, length, 1.0)
+        return scaled / length[:, None], length
     row = np.repeat(np.arange(G.shape[0]), np.diff(G.indptr))
     values = G.data * weight[G.indices]
     length = np.sqrt(np.bincount(row, values**2, minlength=G.shape[0]))
@@ -86,7 +103,7 @@ class Least:
         self.J = J
         self._solve: Callable[[Floats], Floats]
         if m + n <= DENSE:
-            rows = J.toarray()
+            rows = dense(J)
             factors = lu_factor(np.block([[np.eye(n), rows.T], [rows, -REGULAR * np.eye(m)]]), check_finite=False)
             self._solve = partial(lu_solve, factors, check_finite=False)
         else:

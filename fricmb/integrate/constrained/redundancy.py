@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate.constrained.consistent_start import closed, consistent_start, listed
+from fricmb.integrate.constrained.consistent_start import assembled, closed, listed
 from fricmb.integrate.constrained.least_change import Least, constraints_at, names_of_rows, unit_rows
 from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
 from fricmb.integrate.mechanism import Mechanism
@@ -49,10 +49,10 @@ def redundancy(problem: Problem, start: Start, groups: Sequence[Sequence[str]] =
     m = mechanism_of(problem)
     if not m.n_rows:
         return Redundancy(rows=np.zeros(0, np.int64), joints=())
-    start, _ = consistent_start(problem, start)
+    found = assembled(problem, start)
+    start = replace(start, q=found.q, v=found.v)
     weight = 1.0 / np.sqrt(masses(m))
-    G = constraints_at(problem, start.t, start.q, start.v).G
-    J = unit_rows(G, weight)[0]
+    J = unit_rows(found.G, weight)[0]
     dropped: list[Ints] = []
     touched: list[str] = []
     nearby: Any = None
@@ -69,7 +69,8 @@ def redundancy(problem: Problem, start: Start, groups: Sequence[Sequence[str]] =
                 f"the mechanism starts in a singular position: the constraints of {listed(names)} depend on one "
                 "another there, and not in positions nearby; start it from another one"
             )
-        order = qr(block.T, mode="r", pivoting=True)[1]
+        # what ties the coordinates of one body together comes first, and is never left out
+        order = qr((block * _first(m, rows)[:, None]).T, mode="r", pivoting=True)[1]
         dropped.append(rows[order[rank:]])
         touched += names
     rows_left = np.sort(np.concatenate(dropped)).astype(np.int64) if dropped else np.zeros(0, np.int64)
@@ -87,9 +88,18 @@ def _rows_of(m: Mechanism, groups: Sequence[Sequence[str]]) -> list[Ints]:
     return [found for found in rows if found.size]
 
 
+def _first(m: Mechanism, rows: Ints) -> Floats:
+    """Weights (n_rows,) by which pivoting takes the inner constraints of bodies before those of joints."""
+    owner = np.searchsorted(m.joints.row, rows, side="right") - 1
+    weights: Floats = np.where(m.joints.inner[owner] != 0, 1.0 / RANK, 1.0)
+    return weights
+
+
 def _dense(J: Any, rows: Ints) -> Floats:
     """The rows as a dense matrix over the columns that they touch."""
     some = J[rows]
+    if isinstance(some, np.ndarray):
+        return some
     columns = np.unique(some.indices)
     block: Floats = some[:, columns].toarray() if columns.size else np.zeros((len(rows), 1))
     return block
@@ -110,10 +120,10 @@ def _nearby(problem: Problem, start: Start, J: Any, weight: Floats) -> Any:
         return J
     length = 1e-3 * max(float(np.abs(start.q).max(initial=0.0)), 1e-300) / np.abs(direction).max()
     try:
-        q = closed(problem, m, start.t, start.q + length * direction, start.v, weight)
+        _, there = closed(problem, m, start.t, start.q + length * direction, start.v, weight)
     except SceneError:
         return J
-    return unit_rows(constraints_at(problem, start.t, q, start.v).G, weight)[0]
+    return unit_rows(there.G, weight)[0]
 
 
 def singular_joints(problem: Problem, t: float, q: Floats, v: Floats) -> list[str]:
