@@ -192,28 +192,36 @@ def round_to(x: float) -> float:
 
 
 def hanging(rng: Generator, before: Link | None, *, round: bool) -> Link:
-    """A body on a ball joint or a hinge, four of five dry."""
+    """A body on a ball joint, on a hinge, in a sleeve or in a guide, most of them dry."""
     mass = some(rng, 0.5, 2.0)
-    joint = "spherical" if rng.random() < 0.6 or (before is not None and before.round) else "revolute"
+    joint = str(rng.choice(["spherical", "revolute", "cylindrical", "prismatic"], p=[0.4, 0.2, 0.2, 0.2]))
+    if (before is not None and before.round) or (joint == "prismatic" and round):
+        joint = "spherical"
     link = Link(joint, mass, box(rng, mass, round=round), [], [], round)
     link.own = (0.0, 0.0, some(rng, 0.3, 0.8)) if round else triple(rng, 0.5)
     if before is not None:
         link.there = (0.0, 0.0, round_to(-0.8 * before.own[2])) if before.round else triple(rng, 0.4)
     link.start = list(triple(rng, 0.7))
-    if joint == "revolute" and not round:
+    if joint == "prismatic":
+        x, y, z = turned(link).T[:, 2]
+        link.axis = (float(x), float(y), float(z))
+    elif joint != "spherical" and not round:
         axis = rng.normal(size=3)
         x, y, z = (float(c) for c in axis / np.linalg.norm(axis))
         link.axis = (x, y, z)
     speed = 0.0 if rng.random() < 0.3 else 3.0
-    link.rates = list(triple(rng, speed)) if joint == "spherical" else [even(rng, -speed, speed)]
+    link.rates = list(triple(rng, speed))[: {"spherical": 3, "cylindrical": 2}.get(joint, 1)]
     if round and joint == "spherical" and rng.random() < 0.5:
         link.rates = [round_to(x) for x in np.array(link.rates) + turned(link)[:, 2] * even(rng, -25.0, 25.0)]
     if before is None or rng.random() < 0.8:
         link.law, link.fields = law(rng)
         link.radius = some(rng, 0.05, 0.4)
-        if joint == "revolute":
+        if joint != "spherical":
             link.length = some(rng, 0.1, 0.5) if rng.random() < 0.7 else 0.0
+        if joint == "revolute":
             link.thrust = some(rng, 0.03, 0.2) if rng.random() < 0.5 else 0.0
+        if joint == "prismatic":
+            link.width = some(rng, 0.1, 0.5) if rng.random() < 0.7 else 0.0
     return link
 
 
@@ -231,7 +239,7 @@ def disturbed(rng: Generator, spec: Bodies) -> None:
     """Springs, dampers and forces on centres of mass, a torque on the last."""
     for i, link in enumerate(spec.links):
         axes = (0, 1) if link.on_floor else (0, 1, 2)
-        for _ in range(2 if link.joint == "ball" else rng.integers(2)):
+        for _ in range(2 if link.joint in ("ball", "cylindrical", "prismatic") else rng.integers(2)):
             spec.springs.append((i, int(rng.choice(axes)), some(rng, 3.0, 60.0), even(rng, 0.0, 0.5)))
         if rng.random() < 0.4:
             shape = even(rng, -2.0, 2.0), even(rng, 0.0, 4.0), some(rng, 1.0, 8.0), even(rng, 0.0, 6.28)

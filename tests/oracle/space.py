@@ -18,9 +18,10 @@ import fricmb as fm
 from .judge import Case
 from .laws import parts_of
 from .problem import Contact, OracleError, Problem
-from .turning import EZ, Body, Pose, Tree, about, ball_joint, floor, hinge, wheel
+from .turning import EZ, Body, Pose, Tree, about, axle, ball_joint, floor, wheel
 
 G = 9.81
+EX = np.array([1.0, 0.0, 0.0])
 AXES = "xyz"
 Triple = tuple[float, float, float]
 
@@ -29,9 +30,9 @@ Triple = tuple[float, float, float]
 class Link:
     """A body and the joint that carries it.
 
-    ``joint``: "spherical", "revolute" (at ``there`` of the one before, which of the ground is a place in space, and at
-    ``own`` of its own axes) or "edge", "tip", "ball" (on the floor).  A ``round`` one has equal moments across its
-    third axis, on which its points lie.
+    ``joint``: "spherical", "revolute", "cylindrical", "prismatic" (along z at the start), at ``there`` of the one
+    before (of the ground: a place in space) and at ``own`` of its own axes; or "edge", "tip", "ball", on the floor.  A
+    ``round`` one has equal moments across its third axis, on which its points lie.
     """
 
     joint: str
@@ -48,6 +49,7 @@ class Link:
     radius: float = 0.0
     length: float = 0.0
     thrust: float = 0.0
+    width: float = 0.0
     reach: float = 0.0
     """``start``: a rotation vector, or on the floor x, y, heading, tilt, spin; ``radius``: what slips, or touches."""
 
@@ -121,10 +123,11 @@ def tree_of(spec: Bodies) -> Tree:
         else:
             R0 = turned(link)
             places = {"there": np.array(link.there), "own": np.array(link.own), "R0": R0}
-            if link.joint == "revolute":
-                joint = hinge(**places, R0_before=before, axis=np.array(link.axis))
-            else:
+            if link.joint == "spherical":
                 joint = ball_joint(**places)
+            else:
+                ways = {"turns": link.joint != "prismatic", "slides": link.joint in ("cylindrical", "prismatic")}
+                joint = axle(**places, R0_before=before, axis=np.array(link.axis), **ways)
             before = R0
         bodies.append(Body(mass=link.mass, inertia=link.inertia, joint=joint, before=i - 1, first=first))
         first += len(link.rates)
@@ -151,7 +154,7 @@ def numbers(spec: Bodies, tree: Tree) -> Problem:
 
     def slip(q: np.ndarray) -> np.ndarray:
         poses = tree.poses(q, np.zeros(q.size))
-        return np.hstack([rows(spec, i, poses, q.size).T for i in dry])
+        return np.hstack([rows(spec, tree, i, poses, q.size).T for i in dry])
 
     def slip_rate(q: np.ndarray, v: np.ndarray) -> np.ndarray:
         poses = tree.poses(q, v)
@@ -169,13 +172,22 @@ def before(i: int, poses: list[Pose], what: str) -> Any:
     return getattr(poses[i - 1], what) if i else 0.0
 
 
-def rows(spec: Bodies, i: int, poses: list[Pose], n: int) -> np.ndarray:
+def levers(link: Link) -> list[float]:
+    """What slips of the joint's own coordinates, where these are those of a hinge, a sleeve or a guide."""
+    return {"revolute": [link.radius], "cylindrical": [link.radius, 1.0], "prismatic": [1.0]}[link.joint]
+
+
+def rows(spec: Bodies, tree: Tree, i: int, poses: list[Pose], n: int) -> np.ndarray:
     """What slips at the joint of body ``i``, of all rates."""
     link, pose = spec.links[i], poses[i]
     if link.on_floor:
         return (pose.Jv - wheel(pose.touch) @ pose.Jw)[:2]
-    turns = link.radius * (pose.Jw - before(i, poses, "Jw"))
-    return turns if link.joint == "spherical" else (pose.R @ np.array(link.axis))[None, :] @ turns
+    if link.joint == "spherical":
+        return link.radius * (pose.Jw - before(i, poses, "Jw"))
+    own = np.diag(levers(link))
+    out, first = np.zeros((len(own), n)), tree.bodies[i].first
+    out[:, first : first + len(own)] = own
+    return out
 
 
 def changes(spec: Bodies, i: int, poses: list[Pose]) -> np.ndarray:
@@ -183,17 +195,15 @@ def changes(spec: Bodies, i: int, poses: list[Pose]) -> np.ndarray:
     link, pose = spec.links[i], poses[i]
     if link.on_floor:
         return (pose.bv + np.cross(pose.bw, pose.touch) + np.cross(pose.omega, pose.touch_rate))[:2]
-    turns = link.radius * (pose.bw - before(i, poses, "bw"))
     if link.joint == "spherical":
-        return turns
-    e, apart = pose.R @ np.array(link.axis), pose.omega - before(i, poses, "omega")
-    return np.array([e @ turns + link.radius * np.cross(pose.omega, e) @ apart])
+        return link.radius * (pose.bw - before(i, poses, "bw"))
+    return np.zeros(len(levers(link)))
 
 
 def contact(spec: Bodies, tree: Tree, i: int, n: int) -> Contact:
     """The joint of body ``i`` with its law."""
     link = spec.links[i]
-    d = 2 if link.on_floor else 3 if link.joint == "spherical" else 1
+    d = 2 if link.on_floor else 3 if link.joint == "spherical" else len(levers(link))
 
     def N(t: float, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> float:
         force, torque = tree.borne(i, t, q, v, a)
@@ -204,10 +214,15 @@ def contact(spec: Bodies, tree: Tree, i: int, n: int) -> Contact:
         if link.joint == "spherical":
             return float(np.linalg.norm(force))
         e = tree.poses(q, v)[i].R @ np.array(link.axis)
-        across = force - (force @ e) * e
+        radial = force - (force @ e) * e
         couple = np.cross(torque, e) / link.length if link.length else np.zeros(3)
-        ends = np.linalg.norm(across / 2 + couple) + np.linalg.norm(across / 2 - couple)
-        return float(ends + link.thrust / link.radius * abs(force @ e))
+        ends = [radial / 2 + couple, radial / 2 - couple]
+        if link.joint == "prismatic":  # each end is two shoes, side by side along what was x at the start
+            w = np.cross(e, tree.poses(q, v)[i].R @ turned(link).T @ EX)
+            twist = torque @ e / link.width / 2 * w if link.width else np.zeros(3)
+            ends = [end / 2 + sign * twist for end in ends for sign in (1.0, -1.0)]
+        thrust = link.thrust / link.radius * abs(force @ e) if link.thrust else 0.0
+        return float(sum(np.linalg.norm(end) for end in ends) + thrust)
 
     return Contact(
         name=f"j{i}", W=np.zeros((n, d)), N=lambda t, q, v: math.nan, reaction=N, **parts_of(law_of(link), d)
@@ -271,8 +286,11 @@ def joint_of(name: str, link: Link, pose: Pose, body: Any, other: Any) -> Any:
     ends = place(body, "own"), fm.space.ground_point(*link.there) if other is None else place(other, "next")
     if link.joint == "spherical":
         return fm.space.Spherical(name, *ends, **({"radius": link.radius, **friction} if friction else {}))
-    bearing = {"radius": link.radius, "length": link.length, "thrust_radius": link.thrust} if friction else {}
-    return fm.space.Revolute(name, *ends, axis=pose.R @ np.array(link.axis), **bearing, **friction)
+    kind = {"revolute": fm.space.Revolute, "cylindrical": fm.space.Cylindrical, "prismatic": fm.space.Prismatic}
+    own = {"revolute": "radius length thrust_radius", "cylindrical": "radius length", "prismatic": "length width"}
+    given = {"radius": link.radius, "length": link.length, "thrust_radius": link.thrust, "width": link.width}
+    bearing = {name: given[name] for name in own[link.joint].split()} if friction else {}
+    return kind[link.joint](name, *ends, axis=pose.R @ np.array(link.axis), **bearing, **friction)
 
 
 def place(body: Any, name: str) -> Any:

@@ -84,17 +84,28 @@ def ball_joint(*, there: Array, own: Array, R0: Array) -> Joint:
     return pose
 
 
-def hinge(*, there: Array, own: Array, R0: Array, R0_before: Array, axis: Array) -> Joint:
-    """One angle about ``axis`` (body axes) from how both bodies stand at the start."""
+def axle(
+    *, there: Array, own: Array, R0: Array, R0_before: Array, axis: Array, turns: bool = True, slides: bool = False
+) -> Joint:
+    """An angle about ``axis`` (body axes) from how both bodies stand at the start, and a way along it."""
     start = R0_before.T @ R0
 
     def pose(before: Pose | None, at: int, q: Array, v: Array) -> Pose:
         before = before or ground(q.size)
-        R = before.R @ start @ about(axis, q[at])
+        R = before.R @ start @ about(axis, q[at] if turns else 0.0)
         e = R @ axis
-        Jw = before.Jw.copy()
-        Jw[:, at] += e
-        return carried(before, R, Jw, before.bw + v[at] * np.cross(before.omega, e), v, there, own)
+        Jw, bw = before.Jw.copy(), before.bw
+        if turns:
+            Jw[:, at] += e
+            bw = bw + v[at] * np.cross(before.omega, e)
+        if not slides:
+            return carried(before, R, Jw, bw, v, there, own)
+        on = at + int(turns)
+        found = carried(before, R, Jw, bw, v, there + q[on] * start @ axis, own)
+        found.Jv[:, on] += e
+        found.v = found.Jv @ v
+        found.bv = found.bv + 2.0 * v[on] * np.cross(before.omega, e)
+        return found
 
     return pose
 
