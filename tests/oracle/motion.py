@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .instant import loaded
+from .loads import check_single, settled
 from .problem import OPEN, SLIP, STICK, OracleError, Problem, nothing
 
 
@@ -93,21 +94,23 @@ class Field:
         if not self.reactive:
             self.load = self.loads(t, q, v, self.guess)
             return self.under(t, y, self.load, known)
-        asked = before = np.array(self.loads(t, q, v, self.guess))
-        answer = asked
-        for k in range(200):  # N = f(N) by secants (Anderson 1965, one earlier pair)
-            found = self.under(t, y, asked.tolist(), known)
-            new = np.array(self.loads(t, q, v, found[0]))
-            miss = new - asked
-            if np.abs(miss).max() <= 1e-14 * max(1.0, np.abs(new).max()):
-                break
-            turn = miss - (answer - before)
-            share = float(miss @ turn) / max(float(turn @ turn), 1e-300) if k else 0.0
-            before, asked, answer = asked, new - share * (new - answer), new
-        else:
-            raise OracleError("loads from reactions are not found")
-        self.guess, self.load = found[0], new.tolist()
+
+        def answer(N: np.ndarray) -> np.ndarray:
+            return np.array(self.loads(t, q, v, self.under(t, y, N.tolist(), known)[0]))
+
+        self.load = settled(answer, np.array(self.loads(t, q, v, self.guess))).tolist()
+        found = self.under(t, y, self.load, known)
+        self.guess = found[0]
         return found
+
+    def check_loads(self, t: float, y: np.ndarray) -> None:
+        """An error where loads that depend on friction would also be others: of two solutions, secants find any."""
+        if self.reactive:
+            self.evaluate(t, y)
+            q, v, known = y[: self.n], y[self.n : 2 * self.n], self.known(t, y)
+            check_single(
+                lambda N: np.array(self.loads(t, q, v, self.under(t, y, N.tolist(), known)[0])), np.array(self.load)
+            )
 
     def known(self, t: float, y: np.ndarray) -> tuple[Any, ...]:
         """What does not depend on the loads: relative velocities, forces other than friction, matrices."""

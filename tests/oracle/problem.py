@@ -20,6 +20,10 @@ def nothing(t: float) -> float:
     return 0.0
 
 
+class NoLoad(OracleError):
+    """Loads and the friction that they cause do not settle each other."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Contact:
     """One contact: relative velocity ``g = W^T v - slide(t)``, and either a cone or a smooth law.

@@ -9,8 +9,9 @@ from scipy.integrate import DOP853, LSODA, Radau
 from scipy.optimize import brentq, minimize_scalar
 
 from .instant import decide
+from .loads import settled
 from .motion import Field
-from .problem import OPEN, SLIP, STICK, Motion, OracleError, Problem, Transition
+from .problem import OPEN, SLIP, STICK, Motion, NoLoad, OracleError, Problem, Transition
 from .slow import leap
 
 #: Slip speeds in two directions, over the scale, at which it is decided whether a contact sticks.
@@ -66,8 +67,7 @@ class Run:
         g = field.speeds(t, self.y[: self.n], self.y[self.n : 2 * self.n])
         loads = field.loads(t, self.y[: self.n], self.y[self.n : 2 * self.n], np.zeros(self.n))
         before, self.start = list(zip(self.modes, self.signs, strict=True)), {}
-        # (at the start, what is at rest has no direction of slip from which to have any)
-        guess = field.evaluate(t, self.y)[0] if field.reactive and not first else np.zeros(self.n)
+        guess = self.accelerations(field, t) if field.reactive and not first else np.zeros(self.n)
         resting = []
         for i, (c, s) in enumerate(zip(p.contacts, field.rows, strict=True)):
             if c.force is not None:
@@ -95,6 +95,13 @@ class Run:
         if self.start:
             self.begin()
 
+    def accelerations(self, field: Field, t: float) -> np.ndarray:
+        """In these modes; 0 where there are none, as behind the end of slip."""
+        try:
+            return field.evaluate(t, self.y)[0]
+        except NoLoad:
+            return np.zeros(self.n)
+
     def choose(
         self, resting: list[int], released: frozenset[int], one_of: frozenset[int], t: float, guess: np.ndarray
     ) -> None:
@@ -112,18 +119,19 @@ class Run:
         W, D = W[:, columns], D[np.ix_(columns, columns)]
         local = frozenset(resting.index(i) for i in released if i in resting)
         some = frozenset(resting.index(i) for i in one_of if i in resting)
-        total, push = guess, np.zeros(moving.W.shape[1])
-        for _ in range(200):  # once, unless loads depend on accelerations
-            loads = moving.loads(t, q, v, total)
-            a, push, _, _ = moving.under(t, self.y, loads)
+
+        def under(loads: np.ndarray) -> tuple[Any, ...]:
+            a, push, _, _ = moving.under(t, self.y, loads.tolist())
             b = moving.speed_up(t, self.y, a)[columns]
-            found = self.consistent(D, b, resting, loads, rows, local, some)
+            found = self.consistent(D, b, resting, loads.tolist(), rows, local, some)
             push[columns] = found[0][1]
-            before, total = total, a + Mi @ (W @ found[0][1])
-            if not moving.reactive or np.abs(total - before).max() <= 1e-13 * max(1.0, np.abs(total).max()):
-                break
-        else:
-            raise OracleError(f"loads from reactions are not found at t = {self.t}")
+            return a + Mi @ (W @ found[0][1]), push, b, found
+
+        def answer(loads: np.ndarray) -> np.ndarray:
+            return np.array(moving.loads(t, q, v, under(loads)[0]))
+
+        loads = np.array(moving.loads(t, q, v, guess))
+        _, push, b, found = under(settled(answer, loads) if moving.reactive else loads)
         if len({tuple(np.round(D @ f[1] + b, 9)) for f in found}) > 1:
             self.motion.ambiguous = True
         slips, F = found[0]
@@ -204,11 +212,15 @@ class Run:
         if self.smooth and self.y.size > 2 * self.n:
             atol[2 * self.n :] = 1e-16
         options: dict[str, Any] = {"rtol": self.rtol, "atol": atol, "max_step": longest}
-        solver: Any = kind(field, self.t, self.y, self.end, **options)
+        solver: Any = self.solver(kind, field, options)
         last = None if self.smooth else field.margins(self.t, self.y)
         start = self.t
         while True:
-            solver.step()
+            try:
+                solver.step()
+            except NoLoad:  # perhaps only beyond the next transition, where a stage of a long step has looked
+                solver = self.solver(kind, field, options, shorter=0.1)
+                continue
             if solver.status == "failed":
                 raise OracleError(f"step fails at t = {solver.t}")
             dense = solver.dense_output()
@@ -225,6 +237,7 @@ class Run:
             if last is not None:
                 if self.catch(field):
                     return
+                field.check_loads(self.t, self.y)
                 last = field.margins(self.t, self.y)
             if solver.status == "finished":
                 self.slow = False
@@ -232,6 +245,13 @@ class Run:
             if self.slow and self.t - start > 0.02 * min(1.0, self.p.t_end):
                 self.slow = False  # explicit steps from here
                 return
+
+    def solver(self, kind: Any, field: Field, options: dict[str, Any], *, shorter: float = 1.0) -> Any:
+        """Steps of scipy from here on; ``shorter``: than the last, where that failed."""
+        options["max_step"] *= shorter
+        if options["max_step"] < 1e-13 * self.p.t_end:
+            raise NoLoad(f"loads and friction do not settle each other at t = {self.t}")
+        return kind(field, self.t, self.y, self.end, **options)
 
     def keep(self, a: float, b: float, dense: Any) -> None:
         """Remember this piece of dense output."""

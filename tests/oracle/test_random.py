@@ -68,6 +68,16 @@ def test_body_falls_from_rest_on_a_large_dry_ball():
     assert {method: judge(true, method).kind for method in ("bdf", "radau")} == {"bdf": "right", "radau": "right"}
 
 
+def test_sleeve_slides_that_is_nearly_jammed_by_its_own_friction():
+    """The load grows by 0.77 of what friction grows: iterations that know nothing of that do not get done."""
+    sleeve = Link(
+        "cylindrical", 0.7, (0.0643, 0.0874, 0.0449), [-0.44, -0.24, 0.52], [-0.85, 1.98], own=(0.3, -0.3, -0.02),
+        axis=(0.0, 0.6, -0.8), law="Coulomb", fields={"mu_s": 0.39}, radius=0.09, length=0.31,
+    )  # fmt: skip
+    true = truth(make({}, Bodies("tree", [sleeve], 0.1)))
+    assert {method: judge(true, method).kind for method in ("bdf", "radau")} == {"bdf": "right", "radau": "right"}
+
+
 def test_shares_of_a_load_that_jump_within_a_step_leave_no_cone():
     """Redundant contacts that hold a load share it anew once one of them is at its limit, before any of them gives."""
     true = truth(case_of(generate("loop", 31245)))

@@ -103,17 +103,16 @@ def add_found(
 def add_along(
     mech: Mech, k: Moving, c: int, n: Floats, lam: Floats, load: float, g: Floats, L: Layers, row: int, full: bool
 ) -> None:
-    """Rows of a port whose direction is that of its slip velocity; at an instant it is known."""
+    """Rows of a port whose direction is that of its slip velocity; at an instant that is known, and given by n."""
     port = mech.port
     first, d = port.row[c], port.row[c + 1] - port.row[c]
     speed = magnitude(port.row, c, g)
     mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, speed, load)
+    turns = full and speed > 0.0
     for a in range(d):
         add(mech.order, L.A1, row + a, row + a, 1.0)
-        if not full or speed == 0.0:
-            continue
-        unit = g[first + a] / speed
-        for b in range(d):
+        unit = g[first + a] / speed if turns else n[first + a]
+        for b in range(d if turns else 0):
             other = g[first + b] / speed
             across = (1.0 if a == b else 0.0) - unit * other
             slope = load * (mu / speed * across + by_speed * unit * other)
