@@ -17,7 +17,7 @@ from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.contact.event_location import record_changes
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Ints
 from fricmb.integrate.run.breakpoints import set_window
 from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL
 
@@ -53,6 +53,18 @@ def bears(k: Moving, y: State, i: int) -> bool:
 
 
 @kernel
+def turn_with_slip(mech: Mech, y: State, small: float) -> None:
+    """Give ports the direction of their slip: almost without load they may have turned, and a transition may load them.
+
+    In one direction; ``small``: slip that may be round-off, and tells no direction.
+    """
+    for i in range(y.mode.shape[0]):
+        a = mech.port.row[i]
+        if y.mode[i] == SLIP and not plane(mech, i) and mech.port.law[i] != LAW_SMOOTH and y.n[a] * y.g[a] < -small:
+            y.n[a] = -y.n[a]
+
+
+@kernel
 def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
     """Take the round-off of slip away from what sticks, and from what has been at rest and sets out from there."""
     for i in range(part.shape[0]):
@@ -82,6 +94,7 @@ def change_modes(
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
+    turn_with_slip(mech, y, 1e-11 * out.size[0])
     copy_state(y, before, mech.address)
     if j >= 2 * n_c:
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
