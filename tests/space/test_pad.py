@@ -193,6 +193,30 @@ def test_smooth_law_lifts_off_with_its_pad():
     assert np.abs(sol.energy.residual).max() < 1e-8 * np.ptp(sol.energy.friction_loss)
 
 
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_pad_beside_a_contact_that_opens(order):
+    """A pad has no row among the constraints, a lifted ball loses its own: neither takes the other for itself."""
+    disc = SPACE.Rotor("disc", mass=2.0, inertia_across=0.05, inertia_axial=0.08, spin=20.0)
+    ball = SPACE.Ball("ball", mass=1.0, radius=0.1, position=(3.0, 0, 0.1), velocity=(1, 0, 0))
+    law = fm.laws.Coulomb(mu_s=0.1)
+    pair = [
+        SPACE.Pad("pad", disc, at=(0.2, 0, 0.01), normal=(0, 0, 1), preload=5.0, stiffness=1e4, friction=law),
+        SPACE.OnPlane("floor", ball, normal=(0, 0, 1), push_only=True, when_lost="open", friction=law),
+    ]
+    parts = [
+        disc, ball, SPACE.Revolute("hub", disc, axis=(0, 0, 1)), *(pair[i] for i in order),
+        fm.Force("weight", ball, axis="z", value=-9.81 + 20.0 * fm.t),
+        fm.Spring("thread", ball, disc, axis="y", stiffness=1e-3),  # one island, nothing moves along y
+    ]  # fmt: skip
+    sol = fm.simulate(fm.Scene("both", parts), t_end=1.0, rtol=1e-8)
+    assert [(event.contact, event.kind) for event in sol.events] == [("floor", "open")]
+    lost = 9.81 / 20.0
+    assert sol.events[0].t == pytest.approx(lost, abs=1e-10)
+    assert sol["ball.z"][-1] == pytest.approx(0.1 + 20.0 * (1.0 - lost) ** 3 / 6, rel=1e-9)
+    assert sol.velocity("disc.spin")[-1] == pytest.approx(20.0 - 0.1 * 5.0 * 0.2 / 0.08, rel=1e-9)
+    np.testing.assert_allclose(sol.normal_force("pad"), 5.0, rtol=1e-12)
+
+
 @pytest.mark.parametrize(("kick", "end"), [(1.0, 5e-4), (60.0, 3e-4)])
 def test_derivatives_by_numbers_of_the_pads(kick, end):
     """Beside differences of runs, without and with lifting off and touching again."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import State
-from fricmb.integrate.constrained.forces import call_joint, move
+from fricmb.integrate.constrained.forces import call_joint, is_open, move
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.slip_rows import lack, slip_speed, spare
 from fricmb.integrate.constrained.stages import Stages
@@ -23,7 +23,7 @@ def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
     joint = mech.joint
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     for j in range(joint.port.shape[0]):
-        if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
+        if is_open(mech, j):
             call_joint(mech, k, j, y.lam, 0, mech.address)
             out.gap[j] = k.out[0]
 
@@ -52,7 +52,7 @@ def triggers(
             out.trigger[2 * c] = slip_speed(port.row, c, direction, F, g) + out.size[0] * lack(N[c], k.borne[0])
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
-        if joint.hands_over[j] and joint.dropped[joint.row[j]] == 2:
+        if is_open(mech, j):
             out.trigger[2 * n_c + j] = out.gap[j] if at_end else 1.0
     kinks = 2 * n_c + joint.port.shape[0]
     for c in range(n_c):
@@ -76,7 +76,7 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
     n_c = y.mode.shape[0]
     if is_slip(j, y):
         return float(1e-13 * out.size[0])
-    if 2 * n_c <= j < 2 * n_c + mech.joint.port.shape[0] and mech.joint.dropped[mech.joint.row[j - 2 * n_c]] == 2:
+    if is_open(mech, j - 2 * n_c):
         return float(1e-13 * out.size[2])
     return float(1e-13 * out.size[1])
 
@@ -117,7 +117,7 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
     """
     n_c = y.mode.shape[0]
     if j >= 2 * n_c:
-        return bool(mech.joint.dropped[mech.joint.row[j - 2 * n_c]] != 2)
+        return not is_open(mech, j - 2 * n_c)
     if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
         return bool(mech.port.normal[j // 2] == NORMAL_LAW)
     loaded = lack(y.N[j // 2], k.borne[0]) == 0.0

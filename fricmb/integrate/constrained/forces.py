@@ -120,6 +120,13 @@ def load_place(n_x: int, at: int, d: int) -> int:
 
 
 @kernel
+def is_open(mech: Mech, j: int) -> bool:
+    """Whether joint j may open, and is open; False beyond the joints."""
+    joint = mech.joint
+    return bool(0 <= j < joint.port.shape[0] and joint.hands_over[j] != 0 and joint.dropped[joint.row[j]] == 2)
+
+
+@kernel
 def directions(mech: Mech, c: int) -> int:
     """Number of directions in which port c slips."""
     return int(mech.port.row[c + 1] - mech.port.row[c])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, aim, lack, lightness, plane, slip_speed, spare
 from fricmb.integrate.model.law_values import magnitude, stick_limit
@@ -260,7 +261,7 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
         part[c] = SLIPS_ON
         row = port.row[c]
         j = port.joint[c]
-        if j >= 0 and mech.joint.hands_over[j] and mech.joint.dropped[mech.joint.row[j]] == 2:
+        if is_open(mech, j):
             y.mode[c] = OPEN
             for a in range(row, port.row[c + 1]):
                 y.F[a] = 0.0

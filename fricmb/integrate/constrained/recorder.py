@@ -10,6 +10,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.problem_structs import Mech, mechanism_of
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.stages import Stages
@@ -76,7 +77,7 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
     for a in range(y.mode.shape[0]):
         out.mode[i, a] = y.mode[a]
     for j in range(mech.joint.port.shape[0]):
-        out.opened[i, j] = 1 if mech.joint.hands_over[j] and mech.joint.dropped[mech.joint.row[j]] == 2 else 0
+        out.opened[i, j] = 1 if is_open(mech, j) else 0
     out.used[0] = i + 1
 
 
