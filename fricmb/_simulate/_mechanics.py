@@ -87,6 +87,11 @@ class SceneMechanics:
             kinds[member.place.contacts] = member.system.problem.contacts.law
         return kinds
 
+    def has_law(self, kind: int, run: Iterable[int] | None = None) -> bool:
+        """Whether a contact in the members that are run has a law of that kind."""
+        numbers = range(len(self.members)) if run is None else run
+        return any(bool((self.members[i].system.problem.contacts.law == kind).any()) for i in numbers)
+
     def smooth(self) -> Flags:
         """Whether each contact has a force law that never sticks (n_c,)."""
         kinds = {c.name: "" if c.law is None else c.law.kind for c in self.placed.frictional}

@@ -133,10 +133,10 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: M
     show the wrong sign by as much as the tolerance allows.
     """
     run = [i for i, _ in trajectory.runs] if isinstance(trajectory, JoinedRun) else None
+    if samples.t.size == 0 or not mechanics.has_law(LAW_COEFFICIENT, run):
+        return
     varies = mechanics.laws(run) == LAW_COEFFICIENT
     row = mechanics.names.row
-    if not varies.any() or samples.t.size == 0:
-        return
 
     def power(samples: MotionSamples) -> Floats:
         return np.asarray(np.add.reduceat(samples.F * samples.g, row[:-1], axis=0))

@@ -16,6 +16,7 @@ from fricmb.integrate.collocation._structure import blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate.run.by_content import by_content
 from fricmb.integrate.run.problem_cache import kept
 
 
@@ -65,6 +66,16 @@ class Rows(NamedTuple):
     events: Floats
 
 
+@by_content
+def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
+    """Inverse mass, motion of the dofs per contact force, Delassus matrix and its inverse, and W^+ of the mass."""
+    Minv = np.linalg.inv(M)
+    MW = Minv @ W
+    D = W.T @ MW
+    Dinv = np.linalg.inv(D)
+    return Minv, MW, D, Dinv, Dinv @ MW.T
+
+
 def _model(problem: Problem) -> Model:
     n, linear, contacts = problem.n, problem.linear, problem.contacts
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
@@ -73,10 +84,7 @@ def _model(problem: Problem) -> Model:
     slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
     start, rate = linear_part(problem)
     Ku = linear.B - linear.Kx[:n, n:]
-    Minv = np.linalg.inv(M)
-    MW = Minv @ W
-    D = W.T @ MW
-    hold = np.linalg.inv(D) @ MW.T
+    Minv, MW, D, Dinv, hold = _port(M, W)
     w = contacts.w + contacts.Wu @ rate
     blk, mat = np.zeros((2, 2, n)), np.zeros((2, 8, n, n))
     row = np.zeros((4, m, n))
@@ -97,7 +105,7 @@ def _model(problem: Problem) -> Model:
     fastest = np.sqrt(np.abs(slip.w2)).max(initial=0.0)
     arrays = [
         blk, mat, co, ci, linked, row, np.stack([K, C, Minv]), np.stack([f0, Ku @ rate, stick.stuck_motion @ w]),
-        np.stack([D, np.linalg.inv(D)]), np.array([contacts.mu_s[0] * N, contacts.mu_0[0] * N, fastest, *w]),
+        np.stack([D, Dinv]), np.array([contacts.mu_s[0] * N, contacts.mu_0[0] * N, fastest, *w]),
     ]  # fmt: skip
     flags = np.array([m, len(stick.w2), slip.modal, stick.modal, coupled], dtype=np.int64)
     solid: list[Any] = [np.ascontiguousarray(x, dtype=float) for x in arrays]

@@ -73,20 +73,38 @@ def _null_basis(Linv: Floats, W: Floats) -> Floats:
     return np.asarray(Linv.T @ full[:, W.shape[1] :])
 
 
+@by_content
+def _held(M: Floats, W: Floats, stuck: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Motions (n, b) that the rows ``stuck`` of W leave, and those (n, m) that move one of these rows alone."""
+    rows = list(stuck)
+    Linv = _inverse_factor(M)
+    Wz = W[:, rows]
+    G = np.zeros((len(M), W.shape[1]))
+    if rows:
+        MW = Linv.T @ (Linv @ Wz)
+        G[:, rows] = MW @ np.linalg.inv(Wz.T @ MW)
+    return _null_basis(Linv, Wz), G
+
+
+def _off_diagonal(matrix: Floats) -> Floats:
+    rest = matrix.copy()
+    np.fill_diagonal(rest, 0.0)
+    return rest
+
+
 def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
     """Modes that diagonalise K and C together: (w2, d, vectors), or None."""
     size_k, size_c = float(np.abs(K).max(initial=0.0)), float(np.abs(C).max(initial=0.0))
     if np.abs(K - K.T).max(initial=0.0) > 1e-14 * size_k or np.abs(C - C.T).max(initial=0.0) > 1e-14 * size_c:
         return None
     mixed = K if size_c == 0.0 else K + C * (0.6180339887 * size_k / size_c if size_k else 1.0)
-    off_diagonal = mixed - np.diag(np.diag(mixed))
-    if not off_diagonal.any():
+    if not _off_diagonal(mixed).any():
         E = np.eye(len(K))
     else:
         E = scipy.linalg.eigh(0.5 * (mixed + mixed.T))[1]
     Km, Cm = E.T @ K @ E, E.T @ C @ E
     for matrix, size in ((Km, size_k), (Cm, size_c)):
-        if np.abs(matrix - np.diag(np.diag(matrix))).max(initial=0.0) > 1e-13 * max(size, 1e-300) * len(K):
+        if np.abs(_off_diagonal(matrix)).max(initial=0.0) > 1e-13 * max(size, 1e-300) * len(K):
             return None
     w2 = np.diag(Km).copy()
     w2[np.abs(w2) < 1e-14 * size_k] = 0.0
@@ -151,15 +169,8 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
 @by_content
 def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -> Blocks:
     """The structure M q'' + C q' + K q with the rows ``stuck`` of W held; raises NoBlocks where it has no such form."""
-    n, rows = len(M), list(stuck)
-    Linv = _inverse_factor(M)
-    Wz = W[:, rows]
-    N = _null_basis(Linv, Wz)
-    G = np.zeros((n, W.shape[1]))
-    if rows:
-        MW = Linv.T @ (Linv @ Wz)
-        G[:, rows] = MW @ np.linalg.inv(Wz.T @ MW)
-    b = N.shape[1]
+    N, G = _held(M, W, stuck)
+    n, b = N.shape
     Kz, Cz = N.T @ K @ N, N.T @ C @ N
     proportional = _proportional(Kz, Cz)
     solid = np.ascontiguousarray

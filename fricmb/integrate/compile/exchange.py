@@ -18,7 +18,7 @@ def with_arrays(values: _Tuple, **new: Any) -> _Tuple:
     made.room_type, made._rooms = old.room_type, old._rooms
     made._memory = old._memory.copy()
     for name, array in new.items():
-        before = getattr(old, name)
+        before = getattr(old._tuple, name)
         if array.dtype != before.dtype or array.ndim != before.ndim or not array.flags.c_contiguous:
             raise TypeError(f"{name} is {array.dtype} with {array.ndim} axes; expected {old.room_type.of[name]}")
         first = old.room_type.at[name] // _WORD
