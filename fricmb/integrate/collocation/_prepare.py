@@ -69,10 +69,10 @@ class Rows(NamedTuple):
 @by_content
 def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
     """Inverse mass, motion of the dofs per contact force, Delassus matrix and its inverse, and W^+ of the mass."""
-    Minv = np.linalg.inv(M)
+    Minv: Floats = np.linalg.inv(M)
     MW = Minv @ W
     D = W.T @ MW
-    Dinv = np.linalg.inv(D)
+    Dinv: Floats = np.linalg.inv(D)
     return Minv, MW, D, Dinv, Dinv @ MW.T
 
 
