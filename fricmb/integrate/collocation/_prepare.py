@@ -68,11 +68,11 @@ class Rows(NamedTuple):
 
 @by_content
 def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
-    """Inverse mass, motion of the dofs per contact force, Delassus matrix and its inverse, and W^+ of the mass."""
-    Minv: Floats = np.linalg.inv(M)
+    """Inverse mass, motion of the dofs per contact force, Delassus matrix, its inverse, and force that holds the rows."""
+    Minv = np.asarray(np.linalg.inv(M), dtype=float)
     MW = Minv @ W
     D = W.T @ MW
-    Dinv: Floats = np.linalg.inv(D)
+    Dinv = np.asarray(np.linalg.inv(D), dtype=float)
     return Minv, MW, D, Dinv, Dinv @ MW.T
 
 
