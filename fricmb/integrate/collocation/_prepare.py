@@ -68,7 +68,7 @@ class Rows(NamedTuple):
 
 @by_content
 def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
-    """Inverse mass, motion of the dofs per contact force, Delassus matrix, its inverse, and force that holds the rows."""
+    """Inverse mass, motion of the dofs per contact force, Delassus matrix, its inverse, what holds the rows."""
     Minv = np.asarray(np.linalg.inv(M), dtype=float)
     MW = Minv @ W
     D = W.T @ MW
