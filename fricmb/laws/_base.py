@@ -139,6 +139,10 @@ class FrictionLaw(Regimes, Declaration):
         """Number of states over ``d`` directions."""
         return len(self.state_labels("xyz"[:d]))
 
+    def knots(self) -> tuple[float, ...]:
+        """Slip speeds at which the slope of the coefficient bends; of a smooth curve none."""
+        return ()
+
     def axis_scale(self) -> tuple[Any, ...]:
         """Friction along the contact's directions relative to the first; () for an isotropic law.
 

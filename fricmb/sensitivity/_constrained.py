@@ -71,7 +71,7 @@ class Constrained(Equations):
         moment, count = self.moment(samples), samples.t.size
         lam = self.piece.mechanics.reactions(samples)
         held = {joint.name: np.array(lam[joint.name]) for joint in self.joints}
-        unknowns = Unknowns(lam=held, F=samples.F * self.names.row_scale)
+        unknowns = Unknowns(lam=held, F=samples.F.copy())
         last = np.inf
         for _ in range(_MOST):
             found = self._found(moment, unknowns, mode, sign)

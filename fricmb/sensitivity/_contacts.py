@@ -13,7 +13,7 @@ from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._found import Found, masked
 from fricmb.sensitivity._friction import Friction
 from fricmb.sensitivity._functions import Function
-from fricmb.sensitivity._motions import Given, Moment
+from fricmb.sensitivity._motions import Given, Moment, Row
 from fricmb.sensitivity._seeds import Seeds
 
 
@@ -48,9 +48,12 @@ class Rubs(Friction):
         motions = [moment.form(form) for form in self.directions]
         k = self.number
         g = [m.rate + slide.over(moment.time) for m, slide in zip(motions, self.slides, strict=True)]
-        found.g[k], found.rows[k] = g, [m.row for m in motions]
-        drifts = zip(motions, self.slide_rates, strict=True)
-        found.drift[k] = [m.drift + rate.over(moment.time) for m, rate in drifts]
+        drift = [m.drift + rate.over(moment.time) for m, rate in zip(motions, self.slide_rates, strict=True)]
+        rows: list[Row] = [m.row for m in motions]
+        if self.scales:  # in scaled velocities and forces the law is isotropic, the power the same
+            g, drift = ([x.times(s) for x, s in zip(own, self.scales, strict=True)] for own in (g, drift))
+            rows = [[(i, _product(s, c)) for i, c in row] for row, s in zip(rows, self.scales, strict=True)]
+        found.g[k], found.drift[k], found.rows[k] = g, drift, rows
         N = found.N[k] = self._pressed(moment, found, mode)
         N = masked(N, (mode != OPEN) & (np.asarray(N.value) > 0.0)) if self.varies else N
         self.rub(moment, found, N, mode, sign)
@@ -62,3 +65,9 @@ class Rubs(Friction):
         N = self.press([motion.position, motion.rate, *self.press_numbers])[0]
         found.push(motion.row, masked(N, mode != OPEN) + self.preload * -1.0)
         return N
+
+
+def _product(scale: Dual, c: Any) -> Any:
+    """Of a scale and a coefficient; a number where neither has slopes."""
+    found = scale.times(c) if isinstance(c, Dual) else scale * c
+    return found if found.slopes or np.ndim(found.value) else float(found.value)

@@ -14,10 +14,11 @@ from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Body, Contact, ModalBody
 from fricmb.sensitivity._breakpoints import Breakpoints, timed_of
 from fricmb.sensitivity._contacts import Rubs
+from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._found import Found, whole
 from fricmb.sensitivity._friction import Friction
 from fricmb.sensitivity._linear import Linear
-from fricmb.sensitivity._motions import Frame, Moment
+from fricmb.sensitivity._motions import Frame, Moment, Row
 from fricmb.sensitivity._parts import Acting, acting, masses, refuse
 from fricmb.sensitivity._seeds import Seeds
 
@@ -63,7 +64,7 @@ class Equations:
         self.n, self.n_z = len(index), int(names.z_start[-1])
         self.n_y = 2 * self.n + self.n_z
         self.columns = self.n_y + len(parameters) + 1
-        seeds = Seeds({name: self.n_y + i for i, name in enumerate(parameters)})
+        seeds = Seeds({name: self.n_y + i for i, name in enumerate(parameters)}, scene)
         self.seeds = seeds
         self._prepare(piece)
         for body in scene.bodies:
@@ -180,17 +181,29 @@ class Equations:
             a -= B @ drift
         for i, k, j, slope in self.seeded_masses:
             G[i, j] -= slope * a[k]
+        if stuck:
+            F_held = -(B.T @ f + D @ drift)
+            self._turn([row for k in stuck for row in found.rows[k]], F_held, a, G, drift_slopes)
         slopes = np.tensordot(free, G, 1)
         if stuck:
             slopes -= np.tensordot(B, drift_slopes, 1)
         first = 0
         for k in stuck:
             own = slice(first, first + self.contacts[k].d)
-            F[k][0][at] = -(B[:, own].T @ f + D[own] @ drift).T
+            F[k][0][at] = F_held[own].T
             by = -np.tensordot(B[:, own].T, G, 1) - np.tensordot(D[own], drift_slopes, 1)
             F[k][1][at] = by.transpose(2, 0, 1)
             first = own.stop
         return a, slopes
+
+    @staticmethod
+    def _turn(rows: list[Row], F: Floats, a: Floats, G: Floats, drift_slopes: Floats) -> None:
+        """What parameters in the rows W of what sticks add to slopes of W F and of W^T a, in place."""
+        for r, row in enumerate(rows):
+            for i, c in row:
+                for j, slope in c.slopes.items() if isinstance(c, Dual) else ():
+                    G[i, j] += slope * F[r]
+                    drift_slopes[r, j] += slope * a[i]
 
     def free(self, found: Found, mode: Codes, i: int) -> Floats:
         """Inverse mass (n, n) of what is free to move while contacts stick as ``mode`` (n_c,) says."""
@@ -209,7 +222,7 @@ class Equations:
             W = np.zeros((self.n, len(rows)))
             for r, row in enumerate(rows):
                 for i, c in row:
-                    W[i, r] += c
+                    W[i, r] += c.value if isinstance(c, Dual) else c
             MW = self.inverse @ W
             D: Floats = np.zeros((0, 0))
             if rows:

@@ -41,17 +41,26 @@ class Friction:
         self.numbers = seeds.numbers(law, prefix)
         own = law.compiled_force(self.d) if self.smooth else law.compiled_coefficient()
         self.compiled = own is not None
-        if self.compiled and (self.smooth or (any(x.slopes for x in self.numbers) and law.static_path is None)):
+        if self.compiled and self.smooth:
             refuse(part, f"the law {type(law).__name__}, which brings compiled code")
-        if not self.smooth and law.axis_scale():
-            refuse(part, f"the anisotropic law {type(law).__name__}")
+        self.scales = Function(stated.scale(law))(self.numbers) if not self.smooth and law.axis_scale() else []
         if self.smooth:
             self.function = Function(stated.smooth(law, self.d))
             return
         if not self.compiled:
             self.function = Function(stated.coefficient(law))
+        self.others = self._others(part, law, seeds) if self.compiled else {}
         path = law.static_path
         self.mu_s = None if path is None else seeds.dual(law.slots()[path], f"{prefix}{path}")
+
+    def _others(self, part: Any, law: Any, seeds: Seeds) -> dict[int, list[tuple[float, Any]]]:
+        """By column of a number of a compiled law: laws with other numbers, whose weighted sums are its slope."""
+        own = {j for number in self.numbers for j in number.slopes}
+        if not own:
+            return {}
+        field = "law" if part.slots().keys() & {f"law.{path}" for path in law.slots()} else "friction"
+        varied = seeds.varied(part).items()
+        return {j: [(w, getattr(one, field).numeric()) for w, one in ones] for j, ones in varied if j in own}
 
     def rub(self, moment: Moment, found: Found, N: Dual, mode: Codes, sign: Floats) -> None:
         """Forces of slip and rates of states, g and rows being found; ``mode``, ``sign`` (d, n_t): of the phases."""
@@ -104,13 +113,20 @@ class Friction:
     def _coefficient(self, r: Dual, N: Dual) -> Dual:
         if self.compiled:
             load = np.broadcast_to(N.value, np.shape(r.value))
-            return composed(self.law.coefficient(r.value, load), [(self.law.derivative(r.value, load), r)])
+            found = composed(self.law.coefficient(r.value, load), [(self.law.derivative(r.value, load), r)])
+            for j, ones in self.others.items():
+                own = sum(weight * law.coefficient(r.value, load) for weight, law in ones)
+                found.slopes[j] = found.slopes.get(j, 0.0) + own
+            return found
         return self.function([r, N, *self.numbers])[0]
 
     def _limit(self, N: Dual) -> Dual:
         mu = self.mu_s
         if mu is None and self.compiled:
-            mu = Dual(value=self.law.slip_limit())
+            slopes = {
+                j: sum(weight * law.slip_limit() for weight, law in ones) for j, ones in self.others.items()
+            }  # fmt: skip
+            mu = Dual(value=self.law.slip_limit(), slopes=slopes)
         if mu is None:
             at_rest = self.function([Dual(value=_REST), N, *self.numbers])[0]
             mu = replace(at_rest, value=np.where(np.isfinite(at_rest.value), at_rest.value, self.law.slip_limit()))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
 from typing import Any
 
@@ -18,7 +20,21 @@ Stated = tuple[Sequence[Any], Sequence[Any]]
 _stated: dict[Hashable, Stated] = {}
 _compiled: dict[Hashable, tuple[Callable[..., Any], list[tuple[int, int]]]] = {}
 _linear: dict[Hashable, bool] = {}
+_switches: dict[Hashable, list[Callable[..., Any]]] = {}
 _switching: dict[Hashable, list[tuple[Callable[..., Any], tuple[int, ...]]]] = {}
+#: Where values of conditions are gathered, while somebody asks for them.
+_seen: ContextVar[list[Any] | None] = ContextVar("_seen", default=None)
+
+
+@contextmanager
+def conditions_seen() -> Iterator[list[Any]]:
+    """A list of the values of all that functions called inside switch on, in the order of the calls."""
+    found: list[Any] = []
+    token = _seen.set(found)
+    try:
+        yield found
+    finally:
+        _seen.reset(token)
 
 
 class Function:
@@ -34,6 +50,9 @@ class Function:
 
     def __call__(self, arguments: Sequence[Dual]) -> list[Dual]:
         """Outputs with slopes; those arguments count that have any."""
+        seen = _seen.get()
+        if seen is not None:
+            self._tell(seen, [argument.value for argument in arguments])
         active = tuple(j for j, argument in enumerate(arguments) if argument.slopes)
         function, places = self._function(active)
         with np.errstate(all="ignore"):
@@ -43,6 +62,22 @@ class Function:
         for (i, j), slope in zip(places, values[count:], strict=True):
             partials[i].append((slope, arguments[j]))
         return [composed(value, own) for value, own in zip(values[:count], partials, strict=True)]
+
+    def switches(self) -> list[Any]:
+        """What it switches on, functions of all arguments: it has jumps or kinks where these change sign."""
+        if self._key not in _switches:
+            arguments, outputs = self._statement()
+            stated = dict.fromkeys(c for output in outputs for c in _switching_functions(output))
+            moved = [c for c in stated if c.free_symbols & set(arguments)]
+            import sympy
+
+            _switches[self._key] = [sympy.lambdify(list(arguments), moved, MODULES)] if moved else []
+        return _switches[self._key]
+
+    def _tell(self, seen: list[Any], values: Sequence[Any]) -> None:
+        with np.errstate(all="ignore"):
+            for function in self.switches():
+                seen += function(*values)
 
     def is_linear(self, time: int, zeros: tuple[int, ...]) -> bool:
         """Whether outputs are linear in the arguments before number ``time`` and do not depend on time.
@@ -147,15 +182,19 @@ def _length() -> Any:
     return vector_length
 
 
+def _switching_functions(output: Any) -> list[Any]:
+    from fricmb.equations._expression import switching_functions
+
+    return switching_functions(output)
+
+
 def _conditions(
     arguments: Sequence[Any], outputs: Sequence[Any], time: int
 ) -> list[tuple[Callable[..., Any], tuple[int, ...]]]:
     """Functions at whose sign changes outputs jump: values and slopes, with the arguments that these belong to."""
     import sympy
 
-    from fricmb.equations._expression import switching_functions
-
-    stated = dict.fromkeys(c for output in outputs for c in switching_functions(output))
+    stated = dict.fromkeys(c for output in outputs for c in _switching_functions(output))
     found = []
     for condition in stated:
         if arguments[time] in condition.free_symbols:

@@ -20,6 +20,8 @@ _ROUNDS, _PARTS, _HELD = 16, 8, 1_000_000
 #: A step is divided on while its error falls by this factor each time; one that is this much too long or less is
 #: divided without being looked at again.
 _FALLS, _NEARLY = 0.5, 2.0
+#: Logarithm of the volume of states that a coarse step may lose.
+_LOST = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,18 +61,26 @@ class Stepper:
             found.append(step_maps(formula, h[own], slopes, rates, e.n, e.n_y))
         return np.concatenate(found) if found else np.zeros((0, e.n_y, e.columns - 1))
 
-    def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> Floats:
-        """How far the maps of two coarse formulas are apart (n_t,)."""
+    def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> tuple[Floats, Any]:
+        """How far the maps of two coarse formulas are apart (n_t,), and where steps are so long that this says nothing.
+
+        What vibrates many times in a step both damp out, and agree: there the volume of states is lost, which changes
+        like the exponential of the trace of the slopes (Liouville).
+        """
         low, high = (radau(s) for s in COARSE)
         e, c = self.equations, np.concatenate([low.c[:-1], high.c])
-        found = []
+        found, blind = [], []
         for own in self._parts(c.size, t.size):
             slopes, rates = self._slopes(c, t[own], h[own], phase[own])
             at = [*range(low.c.size - 1), c.size - 1]
             less = step_maps(low, h[own], slopes[:, at], rates[:, at], e.n, e.n_y)
             maps = step_maps(high, h[own], slopes[:, low.c.size - 1 :], rates[:, low.c.size - 1 :], e.n, e.n_y)
             found.append(_difference(less - maps, maps, scale, e.n_y))
-        return np.concatenate(found)
+            kept = np.linalg.slogdet(maps[..., : e.n_y])[1]
+            traces = np.trace(slopes[..., e.n : 2 * e.n], axis1=2, axis2=3)
+            traces = traces + np.trace(rates[..., 2 * e.n : e.n_y], axis1=2, axis2=3)
+            blind.append(kept < h[own] * (traces[:, low.c.size - 1 :] @ high.A[-1]) - _LOST)
+        return np.concatenate(found), np.concatenate(blind)
 
     def _parts(self, s: int, count: int) -> list[slice]:
         """Steps that are done at once."""
@@ -106,13 +116,14 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     for number in range(_ROUNDS):
         if not t.size:
             break
-        off = stepper.misses(t, h, phase, scale)
+        off, blind = stepper.misses(t, h, phase, scale)
         # what does not fall when steps are divided is round-off of the dense output, which no mesh removes
-        bad = (off > limit) & (off < _FALLS * before) & (number < _ROUNDS - 1)
+        bad = (((off > limit) & (off < _FALLS * before)) | blind) & (number < _ROUNDS - 1)
         kept.append((t[~bad], h[~bad], phase[~bad]))
-        ratio = (off[bad] / limit) ** (1.0 / (coarse.order + 1))
+        ratio = np.where(blind[bad], _PARTS, (off[bad] / limit) ** (1.0 / (coarse.order + 1)))
         parts = np.clip(np.ceil(1.1 * ratio), 2, _PARTS).astype(np.int64)
-        before = np.repeat(np.where((number > 0) | (off[bad] < 1.0), off[bad], np.inf), parts)
+        told = ~blind[bad] & ((number > 0) | (off[bad] < 1.0))
+        before = np.repeat(np.where(told, off[bad], np.inf), parts)
         sure = np.repeat(ratio < _NEARLY, parts)
         t, h, phase = _divided(t[bad], h[bad], phase[bad], parts)
         kept.append((t[sure], h[sure], phase[sure]))

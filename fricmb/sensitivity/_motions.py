@@ -85,6 +85,7 @@ class Frame:
     start: float
     breaks: list[tuple[float, dict[int, float]]] = field(default_factory=list)
     _prescribed: dict[str, tuple[Given, ...]] = field(default_factory=dict)
+    _shapes: dict[str, dict[int, dict[str, float]]] = field(default_factory=dict)
 
     def prescribed(self, name: str) -> tuple[Given, ...]:
         """Position (an offset, where the velocity is given), velocity, acceleration."""
@@ -103,6 +104,26 @@ class Frame:
                 place, value = f"{owner}.position.{letter}", body.position[letter]
                 found = tuple(Given(value, place, self.seeds, order=k) for k in range(3))
             self._prescribed[name] = found
+        return found
+
+    def shapes(self, name: str) -> dict[int, dict[str, float]]:
+        """Slopes of the terms of the motion of a body of modes' point, by columns of parameters in shapes."""
+        if name not in self._shapes:
+            owner, _, letter = name.rpartition(".")
+            points = [point for point in self.scene.points.values() if point.end_name == owner]
+            self._shapes[name] = self._slopes_of(points[0], letter) if points else {}
+        return self._shapes[name]
+
+    def _slopes_of(self, point: Any, letter: str) -> dict[int, dict[str, float]]:
+        found: dict[int, dict[str, float]] = {}
+        for j, ones in self.seeds.varied(point.body).items():
+            sums: dict[str, float] = {}
+            for weight, body in ones:
+                for dof, c in body.modal_form(point.point, letter).terms:
+                    sums[dof] = sums.get(dof, 0.0) + weight * c
+            slopes = {dof: slope for dof, slope in sums.items() if abs(slope) > 1e-12 and dof in self.index}
+            if slopes:
+                found[j] = slopes
         return found
 
     def is_integral(self, name: str) -> bool:
@@ -137,10 +158,12 @@ class Moment:
 
     def form(self, form: LinearForm) -> Motion:
         """A linear form in named motions."""
-        parts = [(c, self.motion(name)) for name, c in form.terms]
+        return self._combined([(c, self.motion(name)) for name, c in form.terms], form.constant)
+
+    def _combined(self, parts: list[tuple[float, Motion]], constant: float) -> Motion:
         row = [(i, c * k) for c, part in parts for i, k in part.row]
         position = composed(
-            sum((c * p.position.value for c, p in parts), form.constant), [(c, p.position) for c, p in parts]
+            sum((c * p.position.value for c, p in parts), constant), [(c, p.position) for c, p in parts]
         )
         rate = composed(sum(c * p.rate.value for c, p in parts), [(c, p.rate) for c, p in parts])
         drift = composed(sum(c * p.drift.value for c, p in parts), [(c, p.drift) for c, p in parts])
@@ -160,11 +183,24 @@ class Moment:
             return self._point(point, letter)
         terms = frame.scene.motion(name).terms if frame.scene.has_motion(name) else ()
         if terms and terms != ((name, 1.0),):
-            return self.form(LinearForm(terms))
+            shapes = frame.shapes(name)
+            return self._shaped(terms, shapes) if shapes else self.form(LinearForm(terms))
         if name in frame.scene.dof_names:  # what the plan left out rests
             start = frame.scene[owner].start_values("position").get(letter, 0.0)  # type: ignore[attr-defined]
             return Motion(position=Dual(value=float(value_of(start))), rate=still, drift=still, row=[])
         return self._prescribed(name)
+
+    def _shaped(self, terms: tuple[tuple[str, float], ...], shapes: dict[int, dict[str, float]]) -> Motion:
+        """A point of a body of modes whose shapes hold parameters: coefficients with slopes by column."""
+        still = Dual(value=0.0)
+        pairs = []
+        for name in dict.fromkeys([*(name for name, _ in terms), *(name for own in shapes.values() for name in own)]):
+            slopes = {j: own[name] for j, own in shapes.items() if own.get(name, 0.0)}
+            pairs.append((self.motion(name), Dual(value=dict(terms).get(name, 0.0), slopes=slopes)))
+        return Motion(
+            position=summed(m.position.times(c) for m, c in pairs), rate=summed(m.rate.times(c) for m, c in pairs),
+            drift=still, row=[(i, c if c.slopes else float(c.value)) for m, c in pairs for i, _ in m.row],
+        )  # fmt: skip
 
     def _point(self, point: Any, letter: str) -> Motion:
         """A point of a body that turns."""

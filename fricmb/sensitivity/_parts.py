@@ -16,10 +16,7 @@ from fricmb.sensitivity._found import Found
 from fricmb.sensitivity._functions import Function
 from fricmb.sensitivity._motions import Given, Moment
 from fricmb.sensitivity._seeds import Seeds
-from fricmb.values import parameters_in, value_of
-
-#: Part by which a number is changed to find the slope of what is linear in it; a power of 2.
-_LITTLE = 2.0**-7
+from fricmb.values import value_of
 
 
 class Acting(Protocol):
@@ -128,23 +125,10 @@ def _inertia(part: Any) -> Floats:
     return np.diag(modal_matrices(part)[0]) if isinstance(part, ModalBody) else _dense(part.M, len(part.dofs))
 
 
-def _slopes(scene: Any, part: Any, seeds: Seeds, values: Callable[[Any], Floats]) -> dict[int, Floats]:
-    """Slopes of numbers of a part by the columns of parameters that its entries hold.
-
-    By Richardson's differences, to 1e-10: exact for entries that are linear in a parameter, as most are.
-    """
-    found = {}
-    for name in dict.fromkeys(seeds.touch(part)):
-        p = float(value_of(scene.parameters[name]))
-        size = abs(p) or 1.0
-        rates = []
-        for h in (_LITTLE * size, 0.5 * _LITTLE * size):
-            high, low = (values(scene.with_parameters({name: p + side * h})[part.name]) for side in (1.0, -1.0))
-            rates.append((high - low) / (2.0 * h))
-        slope = (4.0 * rates[1] - rates[0]) / 3.0
-        if slope.any():
-            found[seeds.columns[name]] = slope
-    return found
+def _slopes(part: Any, seeds: Seeds, values: Callable[[Any], Floats]) -> dict[int, Floats]:
+    """Slopes of numbers of a part by the columns of parameters that its entries hold."""
+    found = {j: np.sum([weight * values(one) for weight, one in own], axis=0) for j, own in seeds.varied(part).items()}
+    return {j: slope for j, slope in found.items() if slope.any()}
 
 
 class Falls:
@@ -194,7 +178,7 @@ def masses(
             own = [k for k, name in enumerate(names) if name in index]
             at = np.array([index[names[k]] for k in own], dtype=np.int64)
             M[np.ix_(at, at)] += _inertia(part)[np.ix_(own, own)]
-            for column, slopes in _slopes(scene, part, seeds, _inertia).items():
+            for column, slopes in _slopes(part, seeds, _inertia).items():
                 held = slopes[np.ix_(own, own)]
                 seeded += [(int(at[a]), int(at[b]), column, held[a, b]) for a, b in zip(*np.nonzero(held), strict=True)]
             if isinstance(part, SpaceBody):
@@ -220,21 +204,12 @@ def acting(scene: Any, part: Any, index: dict[str, int], seeds: Seeds) -> Acting
         return Falls(scene, part, index, seeds)
     if isinstance(part, ModalBody | MatrixElement):
         names = part.dof_names if isinstance(part, ModalBody) else part.dofs
-        _refuse_shapes(part, seeds)
         own = [k for k, name in enumerate(names) if name in index]
         places = np.ix_(range(2), own, own)
         matrices = _vibrating(part)[places]
-        slopes = {j: slope[places] for j, slope in _slopes(scene, part, seeds, _vibrating).items()}
+        slopes = {j: slope[places] for j, slope in _slopes(part, seeds, _vibrating).items()}
         return Vibrates([index[names[k]] for k in own], matrices, slopes) if matrices.any() or slopes else None
     return Acts(part, seeds) if hasattr(part, "local_coordinates") else None
-
-
-def _refuse_shapes(part: Any, seeds: Seeds) -> None:
-    """Shapes of modes say where forces act, which is not differentiated."""
-    for path, value in part.slots().items():
-        held = [p.name for p in parameters_in(value) if p.name in seeds.columns]
-        if held and path.startswith("shapes"):
-            refuse(part, f"the parameter {held[0]!r} of shapes of modes")
 
 
 def refuse(part: Any, what: str) -> NoReturn:

@@ -9,6 +9,7 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import RigidBody
+from fricmb.sensitivity._bends import bends_of
 from fricmb.sensitivity._collocation import radau
 from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
@@ -54,7 +55,11 @@ class Tangent:
         self.columns = (*self.states, *self.parameters)
         sample = piece.trajectory.motion
         breakpoints = e.breakpoints
-        self.phases = phases_of(piece, np.asarray(sol.events.t), sol.names.row, breakpoints.t)
+        transitions_at = np.asarray(sol.events.t)
+        self.phases = phases_of(piece, transitions_at, sol.names.row, breakpoints.t)
+        bends = bends_of(e, self.phases, sample)
+        if bends.size:
+            self.phases = phases_of(piece, transitions_at, sol.names.row, np.union1d(breakpoints.t, bends))
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)

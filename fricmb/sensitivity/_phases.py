@@ -43,7 +43,10 @@ class Phases:
 
 
 def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats) -> Phases:
-    """Stretches of one piece of a run; ``row``: first rows of contacts; ``breakpoints``: of functions of time."""
+    """Stretches of one piece of a run; ``row``: first rows of contacts.
+
+    ``breakpoints``: times at which functions of time, or slopes of friction, break.
+    """
     trajectory = piece.trajectory
     if isinstance(trajectory, KeptTrajectory):
         raise SceneError("sensitivities: a run without dense output has none; simulate with dense=True")

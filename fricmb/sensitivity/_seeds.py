@@ -13,6 +13,9 @@ from fricmb.scene import Scene
 from fricmb.sensitivity._dual import Dual
 from fricmb.values import Declaration, Parameter, is_expression, parameters_in, value_of
 
+#: Part by which a number is changed to find a slope, a power of 2; shares of it, and weights of Richardson's difference.
+_LITTLE = 2.0**-10
+_WEIGHTS = ((1.0, -1.0 / 6.0), (0.5, 4.0 / 3.0), (-0.5, -4.0 / 3.0), (-1.0, 1.0 / 6.0))
 #: Stands for all initial values.
 STATE = "state"
 
@@ -51,10 +54,11 @@ class Seeds:
     ----------
     columns : dict of str to int
         Column of each parameter.
+    scene : Scene
     """
 
-    def __init__(self, columns: dict[str, int]) -> None:
-        self.columns = columns
+    def __init__(self, columns: dict[str, int], scene: Scene) -> None:
+        self.columns, self.scene = columns, scene
 
     def dual(self, value: Any, name: str) -> Dual:
         """A slot's value, whose own name is ``name`` ("k1x.stiffness")."""
@@ -84,6 +88,21 @@ class Seeds:
         for path, value in part.slots().items():
             named = [p.name for p in parameters_in(value)] or [f"{part.name}.{path}"]
             found += [name for name in named if name in self.columns]
+        return found
+
+
+    def varied(self, part: Any) -> dict[int, list[tuple[float, Any]]]:
+        """By column of the parameters that a part holds: that part at other values, with weights.
+
+        Weighted sums of what they say are Richardson's differences, to 1e-9: exact for what is linear in a parameter.
+        """
+        found = {}
+        for name in dict.fromkeys(self.touch(part)):
+            p = float(value_of(self.scene.parameters[name]))
+            h = _LITTLE * (abs(p) or 1.0)
+            found[self.columns[name]] = [
+                (weight / h, self.scene.with_parameters({name: p + share * h})[part.name]) for share, weight in _WEIGHTS
+            ]
         return found
 
 

@@ -13,6 +13,7 @@ from fricmb.stated._statements import (
     place,
     place_motion,
     reads,
+    scale,
     smooth,
 )
 
@@ -29,5 +30,6 @@ __all__ = [
     "place",
     "place_motion",
     "reads",
+    "scale",
     "smooth",
 ]

@@ -150,6 +150,18 @@ def coefficient(law: Any) -> Statement:
     return Statement(key=("coefficient", structure(law)), make=make)
 
 
+def scale(law: Any) -> Statement:
+    """Factors of the directions of an anisotropic law, of the law's numbers."""
+
+    def make() -> tuple[Sequence[Any], Sequence[Any]]:
+        from fricmb.values import symbolic
+
+        stand = symbolic(law)
+        return list(stand.flat), list(stand.standin.axis_scale())
+
+    return Statement(key=("scale", structure(law)), make=make)
+
+
 def smooth(law: Any, d: int) -> Statement:
     """Force, then rate of the states, of a law that is a force: of v, N, z and the law's numbers."""
 

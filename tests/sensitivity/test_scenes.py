@@ -108,11 +108,48 @@ def test_frequencies_of_modes():
     assert max(found.values()) < 1e3, found
 
 
+@pytest.mark.parametrize("N", [1.0, 5.0])
+def test_shapes_of_modes(N):
+    """A point that sticks, slips and sticks; and one that sticks from 0.02 on while the body vibrates on."""
+    shape, belt = fm.parameter("shape", 0.6), fm.Driven("belt", velocity={"x": 0.3})
+    plate = fm.ModalBody(
+        "plate", frequencies=[1.0, 2.5], damping_ratios=[0.02, 0.02], shapes={"tip": [[1.0, shape]]},
+        position={"mode1": 0.1}, velocity={"mode1": 0.2},
+    )  # fmt: skip
+    push = fm.Force("push", plate.point("tip"), axis="x", value=0.1)
+    rub = fm.Contact("rub", plate.point("tip"), belt, law=fm.laws.Coulomb(mu_s=0.9, mu_k=0.6), normal_force=N)
+    found = worst(fm.Scene("plate", [belt, plate, push, rub]), ("shape", "belt.velocity.x"), rtol=1e-8, t_end=8.0)
+    assert "shape" in found
+    assert max(found.values()) < 1e3, found
+
+
+def held_block(law):
+    belt, mass = fm.Driven("belt", velocity={"x": 0.3}), fm.Body("mass", mass=1.0, velocity={"x": 0.1})
+    rub = fm.Contact("rub", mass, belt, law=law, normal_force=1.0)
+    return fm.Scene("block", [belt, mass, fm.Spring("k", mass, axis="x", stiffness=1.0), rub])
+
+
+def test_entries_of_a_table():
+    """The slope of friction bends at every knot of the table."""
+    a, b = fm.parameter("a", 0.7), fm.parameter("b", 0.45)
+    scene = held_block(fm.laws.Tabulated(speed=(0.0, 0.1, 1.0, 3.0), mu=(a, b, 0.3, 0.35)))
+    found = worst(scene, ("a", "b", "k.stiffness", "mass.mass"), rtol=1e-8, t_end=15.0)
+    assert {"a", "b"} <= set(found)
+    assert max(found.values()) < 1e3, found
+
+
+def test_a_law_with_kinks():
+    """Steps end where a straight piece of a regularised law begins."""
+    scene = held_block(fm.laws.LinearRegularised(mu=0.5, v_reg=0.05))
+    found = worst(scene, ("k.stiffness", "mass.mass"), rtol=1e-8, t_end=6.0)
+    assert len(found) == 2
+    assert max(found.values()) < 1e3, found
+
+
 def test_what_is_not_covered_says_so():
     with pytest.raises(fm.SceneError, match=r"'top\.spin' of a body in space is not covered"):
         fm.simulate(fm.models.heavy_top(), t_end=0.1, sensitivities=("top.spin",))
-    shape = fm.parameter("shape", 0.6)
-    plate = fm.ModalBody("plate", frequencies=[1.0, 2.0], damping_ratios=[0.0, 0.0], shapes={"tip": [[1.0, shape]]})
-    push = fm.Force("push", plate.point("tip"), axis="x", value=1.0)
-    with pytest.raises(fm.SceneError, match="'shape' of shapes of modes is not covered"):
-        fm.simulate(fm.Scene("plate", [plate, push]), t_end=0.1, sensitivities=("shape",))
+    block = fm.Body("block", mass=1.0, axes="xyz", velocity={"x": 1.0})
+    rub = fm.Contact("rub", block, law=fm.laws.Contensou.example(), normal_force=1.0, axes="xyz")
+    with pytest.raises(fm.SceneError, match="which brings compiled code is not covered"):
+        fm.simulate(fm.Scene("puck", [block, rub]), t_end=0.1, sensitivities=("block.mass",))

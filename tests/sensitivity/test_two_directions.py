@@ -70,6 +70,15 @@ def test_landing_whose_direction_hardly_settles():
     assert max(found.values()) < 1e3
 
 
+def test_anisotropic_friction():
+    """Half as much friction again along y; the ratio of the axes is a parameter as well."""
+    scene = puck(fm.laws.Elliptic(law=fm.laws.Coulomb(mu_s=0.6, mu_k=0.4), ratio=1.5))
+    names = ("rub.law.ratio", "rub.law.law.mu_k", "rub.law.law.mu_s", "belt.velocity.x", "block.mass")
+    found = worst(scene, names, rtol=1e-8, t_end=12.0)
+    assert set(found) == set(names)
+    assert max(found.values()) < 1e3
+
+
 #: Derivatives of the time of the last landing, by Richardson's differences of runs at 1e-12; surer than 3e-7.
 SLOW = {
     0: {"c0.law.mu_k": -0.05122584356851546, "b0.position.y": -0.02627608549620354, "b0.mass": 0.8483062822538415},

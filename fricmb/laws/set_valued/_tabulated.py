@@ -64,6 +64,10 @@ class Tabulated(FrictionLaw):
         speed, mu = numbers["speed"], numbers["mu"]
         return np.concatenate([[len(speed)], speed, mu, pchip_slopes(speed, mu)])
 
+    def knots(self) -> tuple[float, ...]:
+        """The speeds of the table."""
+        return tuple(float(r) for r in self.numeric_slots()["speed"])
+
     def slip_limit(self, normal_force: float = 1.0) -> float:
         """The first coefficient of the table."""
         return float(self.numeric_slots()["mu"][0])

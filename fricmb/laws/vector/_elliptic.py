@@ -75,6 +75,10 @@ class Elliptic(FrictionLaw):
         """That of the law inside."""
         return float(self.law.slip_limit(normal_force))
 
+    def knots(self) -> tuple[float, ...]:
+        """Those of the law inside, of the scaled speed."""
+        return tuple(self.law.knots())
+
     def compiled_coefficient(self) -> Callable[..., None] | None:
         """That of the law inside."""
         function: Callable[..., None] | None = self.law.compiled_coefficient()
