@@ -173,7 +173,7 @@ def motion_of(system: System, seen: Solution) -> tuple[Floats, Floats]:
 
 def _grid(sol: Solution) -> Floats:
     """Accepted steps and transitions, long ones cut."""
-    t = np.unique(np.concatenate([piece.rows().t for piece in sol.run.pieces]))
+    t = np.unique(np.concatenate([piece.row_motion().t for piece in sol.run.pieces]))
     longest = (t[-1] - t[0]) / _STRETCHES
     parts = np.maximum(1, np.ceil(np.diff(t) / longest)).astype(np.int64)
     first = np.cumsum(parts) - parts

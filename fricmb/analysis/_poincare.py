@@ -102,7 +102,7 @@ def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool |
         seen = sol.at(t)
         return (seen.velocity(dof) if name.endswith(".velocity") else seen[dof]) - level
 
-    rows = sol.run.rows().samples.t
+    rows = sol.run.row_motion().samples.t
     t = np.unique(np.concatenate([np.linspace(begin, sol.t_end, _POINTS), rows[rows >= begin]]))
     x = value(t)
     up = (x[:-1] < 0.0) & (x[1:] >= 0.0)

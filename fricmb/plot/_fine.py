@@ -88,7 +88,7 @@ def period_of(sol: Solution, signals: Signals, t_start: float, t_end: float) -> 
 
     Taken from the last steps of the stretch, which resolve whatever swings.
     """
-    steps = np.unique(sol.t if sol.has_rows else sol.run.rows().samples.t)
+    steps = np.unique(sol.t if sol.has_rows else sol.run.row_motion().samples.t)
     steps = steps[(steps >= t_start) & (steps <= t_end)]
     begin = max(t_start, float(steps[-_STEPS])) if steps.size > _STEPS else t_start
     for low in (begin, t_start):

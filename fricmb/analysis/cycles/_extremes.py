@@ -28,7 +28,7 @@ def extremes(sol: Solution, name: str) -> tuple[Extreme, Extreme]:
     """Lowest and highest point of a dof or point."""
     from scipy.optimize import brentq
 
-    t = np.unique(np.concatenate([np.linspace(sol.t_start, sol.t_end, _POINTS), sol.run.rows().samples.t]))
+    t = np.unique(np.concatenate([np.linspace(sol.t_start, sol.t_end, _POINTS), sol.run.row_motion().samples.t]))
     seen = sol.at(t)
     x, v = seen[name], seen.velocity(name)
     found: list[Extreme] = []
