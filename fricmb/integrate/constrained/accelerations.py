@@ -250,7 +250,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     last = np.inf
     # where everything comes to rest, round-off is that of what has been
-    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[0])
+    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[1])
     for iteration in range(ITERATIONS):
         if stopped():
             return False
@@ -293,7 +293,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
     else:
         return False
     # of what has been found: iterates on the way there may be anything
-    k.borne[0] = max(k.borne[0], largest(y.lam), largest(y.F), largest_load(mech, y))
+    k.borne[0] = max(k.borne[1], largest(y.lam), largest(y.F), largest_load(mech, y))
     instant_residual(mech, k, w, y, mech.address)
     powers(mech, k, y.F, y.g, y.N, y.rate, mech.address)
     return True

@@ -26,8 +26,12 @@ SMALLEST = 1e-14
 
 
 @kernel
-def grow(c: Control, out: Watch, y: State) -> None:
-    """Running maxima."""
+def grow(c: Control, out: Watch, k: Moving, y: State) -> None:
+    """Running maxima, with a state that has been reached.
+
+    Forces of modes that were tried and did not hold may be a thousand times larger, and are no measure of what is light.
+    """
+    k.borne[1] = max(k.borne[0], k.borne[1])
     for i in range(y.v.shape[0]):
         c.v[i] = max(c.v[i], abs(y.v[i]))
     for i in range(y.z.shape[0]):
@@ -125,7 +129,7 @@ def radau_step(
     remember(c, y, st, h)
     c.counts[0] += 1
     copy_state(end, y, mech.address)
-    grow(c, out, y)
+    grow(c, out, k, y)
     if worst < 0 and (h < left or factor < 1.0):
         c.h[0] = h * min(3.0, max(0.3, factor))
     if near_singular(mech, k, w, y, out, h):

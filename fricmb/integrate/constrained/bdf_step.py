@@ -226,7 +226,7 @@ def multistep(
     copy_state(end, y, mech.address)
     c.counts[0] += 1
     c.h[1] = 0.0
-    grow(c, out, y)
+    grow(c, out, k, y)
     if near_singular(mech, k, w, y, out, h):
         return FAIL_SINGULAR
     select_order(y, c, past, formula, error)

@@ -48,6 +48,7 @@ def instants(
         follow(mech, k, y, small)
         if not react(mech, k, w, y, False, mech.address):
             failed += 1
+        k.borne[1] = max(k.borne[0], k.borne[1])
         for j in range(m):
             lam[i, j] = y.lam[j]
         for j in range(y.a.shape[0]):

@@ -49,7 +49,7 @@ def begin(
     # what sticks moves by nothing, not by the round-off of velocities that have been given or projected
     if not (project_velocities(mech, k, w, y, False, True, mech.address) and react(mech, k, w, y, False, mech.address)):
         return FAIL_MODES
-    grow(c, out, y)
+    grow(c, out, k, y)
     if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
         return FAIL_MARGIN
     out.sigma[0] = out.sigma[1]
