@@ -29,7 +29,7 @@ SMALLEST = 1e-14
 def grow(c: Control, out: Watch, k: Moving, y: State) -> None:
     """Running maxima, with a state that has been reached.
 
-    Forces of modes that were tried and did not hold may be a thousand times larger, and are no measure of what is light.
+    Forces of modes that were tried and do not hold may be a thousand times larger: no measure of what is light.
     """
     k.borne[1] = max(k.borne[0], k.borne[1])
     for i in range(y.v.shape[0]):

@@ -65,7 +65,8 @@ def locate_trigger(
             j = worst
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
             continue
-        if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t[0]), abs(h)):
+        # where a step begins beyond by what `violated` takes for nothing, no shorter one comes nearer
+        if abs(value) <= (limit if f_low > 0.0 else 10.0 * limit) or high - low <= 8.0 * EPS * max(abs(y.t[0]), abs(h)):
             break
         if value < 0.0 or worst >= 0:
             high, f_high = step, min(value, 0.0)
