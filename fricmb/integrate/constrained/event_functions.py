@@ -95,15 +95,18 @@ def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages
     if out.opened[0] > 0:
         gaps(mech, k, end, out)
     for i in range(s):
-        last = i == s - 1
-        if last:
-            triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
-        else:
-            triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
+        triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
         out.inner[i + 1] = out.trigger
-        for j in range(out.trigger.shape[0]):
-            value = out.trigger[j]
-            limit = 10.0 * grain(mech, out, j, end)
+    out.rough[:] = out.trigger
+    triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
+    out.inner[s] = out.trigger
+    for j in range(out.trigger.shape[0]):
+        # forces of stages are of lower order, and in a short step the round-off of velocities over the step: at its end
+        # those that follow from accelerations show by how much
+        rough = 2.0 * abs(out.trigger[j] - out.rough[j])
+        limit = 10.0 * grain(mech, out, j, end)
+        for i in range(s):
+            value = out.inner[i + 1, j] + (rough if i < s - 1 else 0.0)
             if value < -limit and value / max(limit, 1e-290) < least:
                 worst, least = j, value / max(limit, 1e-290)
     return worst if worst >= 0 else first_between(mech, k, out, y, st)

@@ -22,10 +22,10 @@ class Watch(NamedTuple):
     ``sigma`` (4,): least singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak``
     (m,) its direction.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
-    stages of a step, ``where`` (1,) the part of the step at which only the polynomial through these is below 0, else 1;
-    ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,) of open joints, ``opened`` (1,) how many
-    there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,): see ``load_kinks``; ``size`` (3,) running
-    maxima of slip velocity, force and position.
+    stages of a step, ``rough`` by the forces of the last stage, ``where`` (1,) the part of the step at which only the
+    polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
+    of open joints, ``opened`` (1,) how many there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,):
+    see ``load_kinks``; ``size`` (3,) running maxima of slip velocity, force and position.
     """
 
     margin: Floats
@@ -39,6 +39,7 @@ class Watch(NamedTuple):
     weak: Floats
     trigger: Floats
     inner: Floats2
+    rough: Floats
     where: Floats
     values: Floats
     series: Floats
@@ -60,7 +61,8 @@ def watch_of(problem: Problem, stages: int) -> Watch:
         np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4, np.int32), np.zeros(MANY, np.int32),
         np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
-        np.ones((stages + 1, count)), np.ones(1), np.zeros(stages), np.zeros(stages + 1), np.zeros(len(m.joints.port)),
+        np.ones((stages + 1, count)), np.ones(count), np.ones(1), np.zeros(stages),
+        np.zeros(stages + 1), np.zeros(len(m.joints.port)),
         np.array([int((m.joints.dropped == 2).sum())]), np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), np.zeros(3),
         np.zeros(m.n_rows + 1),
