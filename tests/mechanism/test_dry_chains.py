@@ -182,3 +182,14 @@ def test_long_chains_swing(start):
     for i in range(n):
         assert (np.abs(sol.force(f"pin{i}")[0]) <= 0.5 * sol.normal_force(f"pin{i}") + 1e-6 * G).all()
     np.testing.assert_allclose(sol.q[:, -1], finer.q[:, -1], rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize("seed", [8, 29, 33, 44, 70, 75, 130])
+def test_pins_that_bear_next_to_nothing_do_not_end_a_run(seed):
+    """Far ends of crooked chains fall almost freely: their loads are a part in 1e10 of the first, and jump."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(10, 45))
+    angles, rate, radius = rng.uniform(-1, 1, n), rng.choice([0.0, 0.5]), rng.choice([0.01, 0.03, 0.08])
+    sol, finer = (fm.simulate(chain(angles, rate, radius=radius), t_end=0.3, rtol=rtol) for rtol in (1e-6, 1e-8))
+    np.testing.assert_allclose(sol.q[:, -1], finer.q[:, -1], rtol=0, atol=1e-5)
+    assert np.abs(finer.energy.residual).max() < 1e-7
