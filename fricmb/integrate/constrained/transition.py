@@ -53,15 +53,17 @@ def bears(k: Moving, y: State, i: int) -> bool:
 
 
 @kernel
-def turn_with_slip(mech: Mech, y: State, small: float) -> None:
+def turn_with_slip(mech: Mech, k: Moving, y: State, size: float, but: int) -> None:
     """Give ports the direction of their slip: almost without load they may have turned, and a transition may load them.
 
-    In one direction; ``small``: slip that may be round-off, and tells no direction.
+    In one direction; ``size``: largest slip velocity, of which slip under a load may be round-off to 1e-11 and tells no
+    direction then; ``but``: a port that is left as it is.
     """
     for i in range(y.mode.shape[0]):
         a = mech.port.row[i]
-        if y.mode[i] == SLIP and not plane(mech, i) and mech.port.law[i] != LAW_SMOOTH and y.n[a] * y.g[a] < -small:
-            y.n[a] = -y.n[a]
+        if i != but and y.mode[i] == SLIP and not plane(mech, i) and mech.port.law[i] != LAW_SMOOTH:
+            small = (1e-11 if bears(k, y, i) else 1e-13) * size
+            y.n[a] = -y.n[a] if y.n[a] * y.g[a] < -small else y.n[a]
 
 
 @kernel
@@ -94,7 +96,7 @@ def change_modes(
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
-    turn_with_slip(mech, y, 1e-11 * out.size[0])
+    turn_with_slip(mech, k, y, out.size[0], j // 2 if j < 2 * n_c else -1)
     copy_state(y, before, mech.address)
     if j >= 2 * n_c:
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
