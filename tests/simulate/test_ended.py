@@ -17,10 +17,12 @@ from scipy.integrate import solve_ivp
 import fricmb as fm
 from fricmb._simulate import _arguments
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.integrator import Integrator
+from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.radau import Radau
+from fricmb.integrate.problem import Start
 from fricmb.integrate.run import memory
 from fricmb.integrate.run.stop import Watch, stopped, watched, watching
+from fricmb.system import build
 
 METHODS = ("auto", "bdf", "radau", "collocation", "taylor", "timestepping", "bdf2-paper")
 VALUES = {
@@ -298,3 +300,16 @@ def test_a_time_limit_is_a_positive_number():
         with pytest.raises(fm.SceneError, match="time_limit"):
             fm.simulate(endless(), t_end=1.0, time_limit=wrong)
     assert fm.simulate(endless(), t_end=1.0, time_limit=100.0).t[-1] == 1.0
+
+
+@pytest.mark.parametrize("method", ["bdf", "radau", "collocation", "taylor", "timestepping"])
+def test_a_run_that_is_ended_before_its_first_step_has_its_start(method):
+    problem = build(fm.models.stick_slip_chain(3)).problem
+    start = Start(t=0.0, q=np.zeros(problem.n), v=np.zeros(problem.n), z=np.zeros(0))
+    watch = Watch()
+    watch.interrupt(KeyboardInterrupt())
+    with watching(watch):
+        run = fm.integrators[method]().integrate(problem, start, 10.0, tolerance=Tolerance(rtol=1e-4))
+    assert run.failure == watch.reason
+    assert run.ends == (0.0, 0.0)
+    assert not run.rows().q.any()

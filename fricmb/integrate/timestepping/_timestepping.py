@@ -120,13 +120,14 @@ class TimeStepping(Integrator):
         chunks: list[dict[str, Any]] = []
         held = 0
         code = FULL
-        # once at least: a run that was ended before its first step has its start
-        while code == FULL and (not chunks or ((memory is None or held < memory) and ended() is None)):
+        while code == FULL and (memory is None or held < memory) and ended() is None:
             code = watched(drive, run)
             chunks.append(_emptied(run))
             held += 8 * width * len(chunks[-1]["row_t"])
             if progress is not None:
                 progress(float(run.x[TIME]))
+        if held == 0:  # ended before its first step
+            chunks.append(_start_alone(run))
         failure = None if code == DONE else ended() or FAILURES.get(code)
         promised = np.inf if self.fixed_step else tolerance.rtol
         return _trajectory(problem, run, chunks, failure, promised)
@@ -186,6 +187,16 @@ def _emptied(run: Run) -> dict[str, Any]:
     taken["event"] = run.event[:events].copy()
     run.i[N_ROWS], run.i[N_EVENTS] = 0, 0
     return taken
+
+
+def _start_alone(run: Run) -> dict[str, Any]:
+    """The start as the one row of a run."""
+    run.row_t[0], run.row_F[0] = run.x[TIME], run.ends[HERE]
+    for name in ("q", "v", "g", "mode"):
+        getattr(run, f"row_{name}")[0] = getattr(run, name)[HERE]
+    run.row_N[0], run.row_loss[0], run.row_x[0] = np.where(run.var == 1, 0.0, run.N), 0.0, 0.0
+    run.i[N_ROWS] = 1
+    return _emptied(run)
 
 
 def _trajectory(
