@@ -13,7 +13,7 @@ from fricmb.scene import Scene
 from fricmb.sensitivity._dual import Dual
 from fricmb.values import Declaration, Parameter, is_expression, parameters_in, value_of
 
-#: Part by which a number is changed to find a slope, a power of 2; shares of it, and weights of Richardson's difference.
+#: Part by which a number is changed to find a slope, a power of 2; shares of it, weights of Richardson's difference.
 _LITTLE = 2.0**-10
 _WEIGHTS = ((1.0, -1.0 / 6.0), (0.5, 4.0 / 3.0), (-0.5, -4.0 / 3.0), (-1.0, 1.0 / 6.0))
 #: Stands for all initial values.
