@@ -88,9 +88,9 @@ def compiled_force(law: FrictionLaw, d: int) -> tuple[Callable[[Floats], tuple[F
     rows, columns = d + n_z, d + n_z + 1
 
     def evaluate(x: Floats) -> tuple[Floats, Floats]:
-        out = np.full(rows * (columns + 1), np.nan)
+        out = np.full(rows * (columns + 1) + 1, np.nan)  # behind: a switch, where the law states one
         compiled(np.ascontiguousarray(x), p, out)
-        return out[:rows].copy(), out[rows:].reshape(rows, columns).copy()
+        return out[:rows].copy(), out[rows:-1].reshape(rows, columns).copy()
 
     return evaluate, n_z
 

@@ -56,7 +56,7 @@ def derive_law(law: Any, d: int) -> tuple[dict[str, Any], str | None]:
     title = type(law).__name__
     if d:
         v, N, z, force, rate = force_expression(law, stand, d)
-        return derive_smooth(force, rate, v, N, z, stand.flat, title)
+        return derive_smooth(force, rate, v, N, z, stand.flat, title, None if z else stand.standin.define_switch(v, N))
     r, N, mu = coefficient_expression(law, stand)
     return derive_coefficient(mu, r, N, stand.flat, title)
 
@@ -65,4 +65,5 @@ def law_text(law: Any, d: int) -> str:
     """What a friction law states, in one string, for a key."""
     stand = symbolic(law)
     stated = force_expression(law, stand, d) if d else coefficient_expression(law, stand)
-    return str(sympy.srepr((stand.flat, stated)))
+    switch = stand.standin.define_switch(stated[0], stated[1]) if d and not stated[2] else None
+    return str(sympy.srepr((stand.flat, stated, *(() if switch is None else (switch,)))))

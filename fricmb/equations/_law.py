@@ -92,17 +92,21 @@ def derive_smooth(
     z: Sequence[Any],
     parameters: Sequence[Any],
     title: str,
+    switch: Any | None = None,
 ) -> tuple[dict[str, Any], str]:
-    """Facts and kernel of a smooth law: x = [v, N, z], out = [F, z', Jacobian by rows]."""
+    """Facts and kernel of a smooth law: x = [v, N, z], out = [F, z', Jacobian by rows, switch where there is one]."""
     values = [sympy.sympify(e) for e in (*force, *rate)]
     arguments = [*v, N, *z]
     for expression in values:
         _code.check(expression, title)
-    facts = {"kind": "smooth", "n_z": len(z)}
-    rename, reads = _code.read_arguments(arguments, parameters, values)
+    facts = {"kind": "smooth", "n_z": len(z), **({} if switch is None else {"switch": True})}
+    more = [] if switch is None else [sympy.sympify(switch)]
+    rename, reads = _code.read_arguments(arguments, parameters, [*values, *more])
     # no product of velocities overflows
     cut = [f"x{i} = min(max(x[{i}], {-FASTEST!r}), {FASTEST!r})" for i in range(len(v))]
     taken = tuple(f"x{i} =" for i in range(len(v)))
     lines = [*(line for line in reads if not line.startswith(taken)), *cut]
-    lines += Tape(arguments, rename).outputs(values, len(arguments))
+    tape = Tape(arguments, rename)
+    told = [f"out[{len(values) * (1 + len(arguments))}] = {tape.value(e)}" for e in more]
+    lines += [*tape.outputs(values, len(arguments)), *told]
     return facts, _code.module(title, lines)

@@ -82,6 +82,14 @@ class FrictionLaw(Regimes, Declaration):
         """Time derivative of the states ``z`` (a tuple of the same length), in SymPy."""
         raise LawError(f"{type(self).__name__}: has the states {', '.join(self.states)} but defines no rate")
 
+    def define_switch(self, v: tuple[Any, ...], N: Any) -> Any | None:
+        """Where a force law without states goes over from one formula to another with a jump in some derivative.
+
+        An expression of the size of a force that changes its sign there, in SymPy; None: nowhere.  Runs of mechanisms
+        end a step there.
+        """
+        return None
+
     def copies(self) -> Mapping[str, int]:
         """How many times a name in ``states`` occurs per direction, where that is not once (sliders side by side)."""
         return {}

@@ -87,10 +87,20 @@ class ShenHedrickElkins(CreepLaw):
         import sympy
 
         along, across = self.linear(v)
-        size, limit = norm((along, across)), sympy.Max(self.mu * N, sympy.Float(LEAST))
+        size, limit = norm((along, across)), self._limit(N)
         e = size / limit
         part = sympy.Piecewise((1 - e / 3 + e**2 / 27, size < 3 * limit), (limit / size, True))
         return -part * along, -part * across
+
+    def define_switch(self, v: tuple[Any, ...], N: Any) -> Any:
+        """Where it saturates: the third derivative jumps."""
+        return 3 * self._limit(N) - norm(self.linear(v))
+
+    def _limit(self, N: Any) -> Any:
+        """What it saturates at, kept above 0."""
+        import sympy
+
+        return sympy.Max(self.mu * N, sympy.Float(LEAST))
 
     @classmethod
     def example(cls) -> Self:

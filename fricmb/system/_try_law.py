@@ -43,7 +43,9 @@ def try_law(law: Any, what: str, template: Any, p: Sequence[float], d: int, n_z:
     if key in _good:
         return
     smooth = template.facts["kind"] == "smooth"
-    for fault in (_smooth if smooth else _coefficient)(template.address, np.array(p, dtype=float), d, n_z):
+    numbers, more = np.array(p, dtype=float), int("switch" in template.facts)
+    found = _smooth(template.address, numbers, d, n_z, more) if smooth else _coefficient(template.address, numbers)
+    for fault in found:
         raise LawError(f"{what}: its law {type(law).__name__} {fault}")
     if len(_good) > 4096:
         _good.clear()
@@ -68,20 +70,20 @@ def _faults(out: Floats, beyond: bool, rows: str, at: str) -> Iterator[str]:
         yield f"is not finite at {at}: out[{bad[0]}] of {rows} is {out[bad[0]]}"
 
 
-def _coefficient(address: int, p: Floats, d: int, n_z: int) -> Iterator[str]:
+def _coefficient(address: int, p: Floats) -> Iterator[str]:
     for r in SPEEDS:
         out, beyond = _call(address, np.array([r, 1.0]), p, 3)
         yield from _faults(out, beyond, "[mu, d mu/dr, d mu/dN]", f"slip speed {r:g}, normal force 1")
 
 
-def _smooth(address: int, p: Floats, d: int, n_z: int) -> Iterator[str]:
+def _smooth(address: int, p: Floats, d: int, n_z: int, more: int) -> Iterator[str]:
     rows, columns = d + n_z, d + 1 + n_z
     for r in SPEEDS:
         for a in range(d):
             for sign in (1.0, -1.0):
                 x = np.zeros(columns)
                 x[a], x[d] = sign * r, 1.0
-                out, beyond = _call(address, x, p, rows * (columns + 1))
+                out, beyond = _call(address, x, p, rows * (columns + 1) + more)
                 at = f"v = {x[:d].tolist()}, normal force 1{', states 0' if n_z else ''}"
                 yield from _faults(out, beyond, "[force, rates of states, Jacobian by rows]", at)
                 if 0.0 < r <= DRIVES and out[a] * sign > 1e-12 * np.abs(out[:d]).max():

@@ -6,6 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import call_joint, is_open, move
+from fricmb.integrate.constrained.load_kinks import BEFORE, BEHIND, law_side
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.slip_rows import lack, slip_speed, spare
 from fricmb.integrate.constrained.stages import Stages
@@ -57,7 +58,10 @@ def triggers(
     kinks = 2 * n_c + joint.port.shape[0]
     for c in range(n_c):
         out.trigger[kinks + c] = 1.0
-        if out.kinked[c] != 0:
+        if out.kinked[c] == BEFORE or out.kinked[c] == BEHIND:
+            side = law_side(mech, k, c, g, N)
+            out.trigger[kinks + c] = side if out.kinked[c] == BEFORE else -side
+        elif out.kinked[c] != 0:
             j, value = port.joint[c], 0.0
             for r in range(joint.row[j], joint.row[j + 1]):
                 value += out.kink[r] * lam[r]

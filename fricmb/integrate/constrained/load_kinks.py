@@ -1,7 +1,8 @@
-"""Where the load of a joint has a kink: a reaction passes through 0 that friction takes by its magnitude.
+"""Where the load of a joint has a kink, or a smooth law goes over to another formula.
 
-Guides and points on surfaces are loaded by sums of magnitudes, N = sum_i |s_i . lam|: linear in the reactions lam until
-one of them changes its sign.  A formula of high order has its order on either side alone, so a step ends there.
+A reaction passes through 0 that friction takes by its magnitude: guides and points on surfaces are loaded by sums of
+magnitudes, N = sum_i |s_i . lam|, linear in the reactions lam until one of them changes its sign.  Formulas of high
+order have their order on either side alone, so a step ends there.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from fricmb.integrate.constrained.forces import call_joint, directions, friction
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.problem import SLIP, Floats
+from fricmb.integrate.model.law_values import smooth_force
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 
 #: Directions of the reactions in which slopes of a load are compared.
 DIRECTIONS = 8
@@ -20,6 +22,26 @@ DIRECTIONS = 8
 SAME = 1e-9
 #: Reactions that are not 0 only by the round-off of locating where they are, beside the largest force.
 LEFT = 1e-11
+
+
+#: Sides of a smooth law's switch, beside 1 for the kink of a load.
+BEFORE, BEHIND = 2, 3
+
+
+@kernel
+def law_side(mech: Mech, k: Moving, c: int, g: Floats, N: Floats) -> float:
+    """What tells formulas of the smooth law of port c apart (``FrictionLaw.define_switch``); 1 of one that has none.
+
+    It is behind all else that the law puts out, and laws with states have none.
+    """
+    port = mech.port
+    first, a0 = port.row[c], port.z_start[c]
+    d = port.row[c + 1] - first
+    if port.z_start[c + 1] > a0:
+        return 1.0
+    k.s.out[d * (d + 2)] = 1.0
+    smooth_force(port.laws, c, k.s, g, first, d, N[c], g, 0, 0)
+    return float(k.s.out[d * (d + 2)])
 
 
 @kernel
@@ -54,11 +76,21 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
     """Kinks of loads within the step from y whose stages are solved: ``kink . lam`` passes from above to below 0 there.
 
     It is the slope of the load at the start less that at the first stage where it is another.  Where a step has just
-    ended at a kink, that at the start is what round-off makes of it, and the first stage serves instead.
+    ended at a kink, that at the start is what round-off makes of it, and the first stage serves instead.  The same of
+    what tells the formulas of a smooth law apart: BEFORE is above 0 at the start, BEHIND below.
     """
     joint = mech.joint
     for c in range(y.mode.shape[0]):
         out.kinked[c] = 0
+        if mech.port.law[c] == LAW_SMOOTH:
+            side = law_side(mech, k, c, y.g, y.N)
+            for i in range(st.tab.c.shape[0]):
+                now = law_side(mech, k, c, st.g[i], st.N[i])
+                if abs(side) <= LEFT * out.size[1]:
+                    side = now
+                elif side * now < 0.0 and y.mode[c] == SLIP:
+                    out.kinked[c] = BEFORE if side > 0.0 else BEHIND
+            continue
         j = mech.port.joint[c]
         if j < 0 or y.mode[c] != SLIP or out.bends[j] == 0:
             continue
