@@ -13,10 +13,11 @@ A, C, H, R = 0.16, 0.32, 0.02, 0.13
 N0, K, D, KT, DT, SPEED = 3e3, 6e6, 5.0, 1.88e7, 0.1, 50.0
 
 
-def linear(mu, speed=SPEED):
+def linear(mu, speed=SPEED, preload=N0):
     """Matrix of the tilts a, b and their rates, from the sum of torques to first order (derived with SymPy)."""
-    damping = [[DT + 2 * D * R**2 + mu * N0 * H**2 / (2 * speed * R), C * speed], [-C * speed - mu * D * H * R, DT]]
-    stiffness = [[KT + 2 * K * R**2 + N0 * H, mu * N0 * H**2 / (2 * R)], [-mu * K * H * R, KT + N0 * H]]
+    moment = mu * preload * H**2 / (2 * R)
+    damping = [[DT + 2 * D * R**2 + moment / speed, C * speed], [-C * speed - mu * D * H * R, DT]]
+    stiffness = [[KT + 2 * K * R**2 + preload * H, moment], [-mu * K * H * R, KT + preload * H]]
     return np.block([
         [np.zeros((2, 2)), np.eye(2)],
         [-np.array(stiffness) / A, -np.array(damping) / A],
@@ -47,12 +48,7 @@ def test_run_grows_as_the_eigenvalue_says():
     """From a kick so small that nothing is left but the linear theory; the growth of a long run beside Re(lambda)."""
     scene = fm.models.wobbling_disc_brake(kick=1e-3, mu=3.0, speed=200.0, preload=300.0)
     sol = fm.simulate(scene, t_end=0.05, rtol=1e-9)
-    global N0
-    try:
-        held, N0 = N0, 300.0
-        matrix = linear(3.0, 200.0)
-    finally:
-        N0 = held
+    matrix = linear(3.0, 200.0, preload=300.0)
     t = np.linspace(0.0, 0.05, 11)
     seen = sol.at(t)
     exact = np.array([expm(matrix * s) @ [0.0, 0.0, 1e-3, 0.0] for s in t])
