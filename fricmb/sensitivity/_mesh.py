@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,7 +27,7 @@ _LOST = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """Steps in time order: begins, lengths, stretches they lie in, and maps (n_t, n_y, n_y + n_p).
+    """Steps in time order: begins, lengths, and stretches they lie in.
 
     ``left_out`` (n_k,): time before the end of a stretch in which slip in two directions ends that is not used, else 0.
     """
@@ -34,7 +35,6 @@ class Mesh:
     t: Floats
     h: Floats
     phase: Ints
-    maps: Floats
     left_out: Floats
 
 
@@ -60,6 +60,12 @@ class Stepper:
             slopes, rates = self._slopes(formula.c, t[own], h[own], phase[own])
             found.append(step_maps(formula, h[own], slopes, rates, e.n, e.n_y))
         return np.concatenate(found) if found else np.zeros((0, e.n_y, e.columns - 1))
+
+    def each(self, mesh: Mesh) -> Iterator[Floats]:
+        """Maps (n_y, n_y + n_p) of the steps of a mesh in turn, of which few are held at once."""
+        formula = radau(STAGES)
+        for own in self._parts(STAGES, mesh.t.size):
+            yield from self.maps(formula, mesh.t[own], mesh.h[own], mesh.phase[own])
 
     def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> tuple[Floats, Any]:
         """How far the maps of two coarse formulas are apart (n_t,), and where steps are so long that this says nothing.
@@ -131,7 +137,7 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     t, h, phase = (np.concatenate([part[i] for part in kept]) for i in range(3))
     order = np.argsort(t, kind="stable")
     t, h, phase = t[order], h[order], phase[order]
-    return Mesh(t=t, h=h, phase=phase, maps=stepper.maps(fine, t, h, phase), left_out=rest)
+    return Mesh(t=t, h=h, phase=phase, left_out=rest)
 
 
 def _divided(t: Floats, h: Floats, phase: Ints, parts: Ints) -> tuple[Floats, Floats, Ints]:

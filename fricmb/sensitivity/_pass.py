@@ -22,8 +22,8 @@ from fricmb.sensitivity._sizes import sizes
 from fricmb.sensitivity._starts import held, one_sided
 from fricmb.sensitivity._transitions import Transitions
 
-#: More states than this are not carried: maps of steps are dense.
-MOST = 120
+#: More states than this are not carried: maps of steps are dense, and take a third of a second each at this size.
+MOST = 300
 
 
 #: Of bodies that turn names of initial values as they are declared.
@@ -98,11 +98,10 @@ class Tangent:
         """From step to step and over the transitions."""
         n_y, n_s = self.equations.n_y, len(self.states)
         at = {one.phase: i for i, one in enumerate(transitions.happened)}
-        maps, given = self.mesh.maps[..., :n_y], self.mesh.maps[..., n_y:]
         self.moved, self.transversality = np.zeros((n_events, len(self.columns))), np.full(n_events, np.inf)
         self.before: dict[float, Floats] = {}
         found, last = np.empty((self.mesh.t.size + 1, n_y, len(self.columns))), 0
-        for k, phase in enumerate(self.mesh.phase.tolist()):
+        for k, (phase, map_) in enumerate(zip(self.mesh.phase.tolist(), self.stepper.each(self.mesh), strict=True)):
             if phase != last and phase in at:
                 i = at[phase]
                 one = transitions.happened[i]
@@ -113,8 +112,8 @@ class Tangent:
                 transitions.say_unsafe(i)
             last = phase
             found[k] = S
-            S = maps[k] @ S
-            S[:, n_s:] += given[k]
+            S = map_[:, :n_y] @ S
+            S[:, n_s:] += map_[:, n_y:]
         found[-1] = S
         self.S, self.unsafe = found, tuple(sorted(transitions.unsafe))
 

@@ -153,3 +153,20 @@ def test_what_is_not_covered_says_so():
     rub = fm.Contact("rub", block, law=fm.laws.Contensou.example(), normal_force=1.0, axes="xyz")
     with pytest.raises(fm.SceneError, match="which brings compiled code is not covered"):
         fm.simulate(fm.Scene("puck", [block, rub]), t_end=0.1, sensitivities=("block.mass",))
+
+
+def test_many_states():
+    """Seventy blocks on a belt, 140 states: maps of the steps are not all held."""
+    rng, belt = np.random.default_rng(3), fm.Driven("belt", velocity={"x": 0.5})
+    blocks = [fm.Body(f"b{i}", mass=1.0, velocity={"x": 0.5}) for i in range(70)]
+    law = fm.laws.Coulomb(mu_s=1.2, mu_k=0.8)
+    own, loads = rng.uniform(0.5, 2.0, 70).tolist(), rng.uniform(0.5, 2.0, 70).tolist()
+    parts = [fm.Spring(f"k{i}", blocks[i], axis="x", stiffness=own[i]) for i in range(70)]
+    parts += [fm.Spring(f"s{i}", blocks[i - 1], blocks[i], axis="x", stiffness=0.5) for i in range(1, 70)]
+    parts += [fm.Contact(f"c{i}", blocks[i], belt, law=law, normal_force=loads[i]) for i in range(70)]
+    names = ("b35.mass", "k10.stiffness", "c20.normal_force")
+    scene = fm.Scene("row", [belt, *blocks, *parts])
+    found = worst(scene, names, rtol=1e-8, step=2e-4, t_end=1.5)
+    assert set(found) == set(names)
+    assert max(found.values()) < 1e3, found
+    assert len(fm.simulate(scene, t_end=1.5).events) > 5
