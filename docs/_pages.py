@@ -28,7 +28,8 @@ DIMENSIONS = {
     "mu_k_N": "force", "mu_s_N": "force", "speed": "length/time", "belt": "length/time", "velocity": "length/time",
     "v0": "length/time", "u0": "length/time", "table": "length/time", "rotor_velocity": "modal",
     "frequency": "rad/time", "spin": "rad/time", "angular_velocity": "rad/time", "rates": "rad/time",
-    "turning": "rad/time",
+    "turning": "rad/time", "thickness": "length", "bearing_stiffness": "force length/rad",
+    "bearing_damping": "force length time/rad",
 }  # fmt: skip
 NUMBERS = [
     "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",
@@ -48,6 +49,8 @@ OTHERWISE = {
     ("drive_train", "stiffness"): "force length/rad",
     ("drive_train", "damping"): "force length time/rad",
     ("sprag_slip", "stiffness"): "force length/rad",
+    ("wobbling_disc_brake", "speed"): "rad/time",
+    ("wobbling_disc_brake", "kick"): "rad/time",
 }
 # The dimensions of parameters of laws; what is not named is a number without one.
 LAW_DIMENSIONS = {
