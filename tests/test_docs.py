@@ -1,5 +1,7 @@
 """The README and the pages of the documentation: their code and commands run, and people can read them."""
 
+import ast
+import inspect
 import os
 import re
 import shlex
@@ -9,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+import fricmb as fm
 from fricmb.cli import main
 
 ROOT = Path(__file__).parents[1]
@@ -88,6 +91,18 @@ def test_pictures_say_what_they_show(page):
 def test_readme_has_exactly_two_set_up_commands():
     fenced = re.findall(r"^```\n(.*?)\n```$", (ROOT / "README.md").read_text().partition("## A scene")[0], re.MULTILINE)
     assert fenced == ["pip install . && fricmb run brake4dof", 'pip install ".[test]" && pytest']
+
+
+def test_page_of_models_knows_the_unit_of_each_argument():
+    """Where it does not, the pages are not built."""
+    tables = {
+        held.targets[0].id: ast.literal_eval(held.value)
+        for held in ast.parse((ROOT / "docs" / "_pages.py").read_text(encoding="utf-8")).body
+        if isinstance(held, ast.Assign) and held.targets[0].id in ("DIMENSIONS", "NUMBERS")
+    }
+    known = {*tables["DIMENSIONS"], *tables["NUMBERS"]}
+    builds = [model.build for model in fm.models.catalogue.values()]
+    assert {argument for build in builds for argument in inspect.signature(build).parameters} - known == set()
 
 
 def test_reference_names_all_that_is_public():
