@@ -105,7 +105,7 @@ def _exact(problem: Problem, s: int) -> Exact:
                            part.force_1 @ problem.linear.M]),
         "MB": (Minv @ forms.B).T, "nd": table.nd, "mo": table.mo, "cx": table.cx, "tb": tb, "tk": tk,
         "ladder": 2.0 ** (0.25 * (np.arange(RUNGS) - UNIT_RUNG)), "slots": slots,
-        "kappa": np.zeros((b, TERMS)), "terms": np.zeros(b, np.int64), "wk": np.zeros((3, s + 1, s + 1)),
+        "kappa": np.zeros((b + 1, TERMS)), "terms": np.zeros(b, np.int64), "wk": np.zeros((3, s + 1, s + 1)),
         "bs": np.zeros((8, b)), "xf": np.zeros((n_o, s)), "x": np.zeros((n_o, s)), "P": np.zeros((n_in, s)),
         "now": np.zeros(n_in), "weight": np.zeros(n_in), "low": np.zeros((2, n + 1)), "end": np.zeros((2, n)),
         "node": np.zeros((2, s, n)), "f": np.zeros(n), "slot": np.zeros(1, np.int64),

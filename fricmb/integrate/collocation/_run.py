@@ -17,7 +17,8 @@ class Run(NamedTuple):
     ``dof`` (3, n, n), ``vec`` (3, n) the structure; ``lim`` (3+m,), ``flags`` (5,).  ``nd`` (4, s+1, s+1), ``mo``
     (TERMS, s+1, s), ``cx`` (3, l, s): tables of the nodes.  ``tb`` (slots, 6, n, s), ``tk`` (slots, m m, s, s): weights
     by step size, slot 0 for steps off the ``ladder``; ``slots``: slot of a rung or -1, then how many were used.
-    ``bx`` (14, n), ``nx`` (3, m, s), ``kappa`` (n, TERMS), ``terms`` (n,), ``wk`` (3, lines, s+1): work.
+    ``bx`` (14, n), ``nx`` (3, m, s), ``kappa`` (n + 1, TERMS; its last row is work), ``terms`` (n,), ``wk``
+    (3, lines, s+1): work.
     ``sd`` (4, n), ``sm`` (2, m), ``sx`` (5,), ``si`` (8,): the state between phases.  ``steps``, ``kinds``,
     ``phases``, ``events``: rows of what is kept.  ``places``: table of the blocks.
     """

@@ -36,6 +36,7 @@ from fricmb.integrate.collocation._layout import (
     S,
 )  # fmt: skip
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats, Floats2
 
 
 @kernel
@@ -125,42 +126,71 @@ def stiff_tables(run: Any, w2: float, d: float, j: int, h: float, slot: int) -> 
 
 
 @kernel
+def pair_moments(run: Any, z: int, modal: bool, h: float, a: int, b: int, weight: Floats) -> int:
+    """Weights of the moments in output a per input b, into ``weight``; returns how many matter."""
+    co, ci = run.co, run.ci
+    most = 0
+    weight[:] = 0.0
+    for j in range(run.blk.shape[2]):
+        b1 = ci[B1, b, j]
+        if modal:
+            gain = co[C1, a, j] * b1
+            if gain != 0.0:
+                kappa = run.kappa[j, : run.terms[j]]
+                most = max(most, kappa.shape[0])
+                for m in range(kappa.shape[0]):
+                    weight[m] += gain * kappa[m]
+            continue
+        most = max(most, run.terms[j])
+        b0 = ci[B0, b, j]
+        w2 = run.blk[z, W2, j]
+        for m in range(run.terms[j]):
+            weight[m] += co[C1, a, j] * b1 * run.kappa[j, m]
+            if m == 0:
+                weight[m] += co[C0, a, j] * b0
+            else:
+                weight[m] += (co[C0, a, j] * b1 - co[C1, a, j] * b0 * w2) * (h * run.kappa[j, m - 1])
+            if m > 1:
+                weight[m] -= co[C0, a, j] * b0 * w2 * h * h * run.kappa[j, m - 2]
+    return most
+
+
+@kernel
+def sum_moments(mo: Floats2, weight: Floats, most: int, h: float, out: Floats) -> None:
+    """Add the moments (rows of ``mo``) by their weights, four at a time: what is summed is loaded and kept less often.
+
+    The order of the sum is that of the moments.
+    """
+    n = out.shape[0]
+    m = 0
+    while m + 4 <= most:
+        y0, y1, y2, y3 = h * weight[m], h * weight[m + 1], h * weight[m + 2], h * weight[m + 3]
+        m0, m1, m2, m3 = mo[m, :n], mo[m + 1, :n], mo[m + 2, :n], mo[m + 3, :n]
+        for x in range(n):
+            out[x] = (((out[x] + y0 * m0[x]) + y1 * m1[x]) + y2 * m2[x]) + y3 * m3[x]
+        m += 4
+    while m < most:
+        y = h * weight[m]
+        line = mo[m, :n]
+        for x in range(n):
+            out[x] += y * line[x]
+        m += 1
+
+
+@kernel
 def port_weights(run: Any, z: int, modal: bool, h: float, slot: int) -> None:
     """Outputs at the nodes per node value of inputs, into ``slot`` of tk, after :func:`free_weights`."""
-    co = run.co
-    ci = run.ci
-    kappa = run.kappa
-    tk = run.tk
     s = run.nx.shape[2]
-    for a in range(co.shape[1]):
-        for b in range(ci.shape[1]):
-            for i in range(s):
-                for l in range(s):
-                    tk[slot, run.flags[ROWS] * a + b, i, l] = 0.0
+    mo = run.mo.reshape(run.mo.shape[0], (s + 1) * s)
+    weight = run.kappa[run.blk.shape[2]]
+    for a in range(run.co.shape[1]):
+        for b in range(run.ci.shape[1]):
+            out = run.tk[slot, run.flags[ROWS] * a + b].reshape(s * s)
+            out[:] = 0.0
             if run.linked[a, b] == 0.0:
                 continue
-            most = 0
-            for j in range(run.blk.shape[2]):
-                if co[C1, a, j] * ci[B1, b, j] != 0.0 or not modal:
-                    most = max(most, run.terms[j])
-            for m in range(most):
-                y = 0.0
-                for j in range(run.blk.shape[2]):
-                    if m < run.terms[j]:
-                        y += co[C1, a, j] * ci[B1, b, j] * kappa[j, m]
-                        if not modal:
-                            w2 = run.blk[z, W2, j]
-                            if m == 0:
-                                y += co[C0, a, j] * ci[B0, b, j]
-                            else:
-                                before = h * kappa[j, m - 1]
-                                y += (co[C0, a, j] * ci[B1, b, j] - co[C1, a, j] * ci[B0, b, j] * w2) * before
-                            if m > 1:
-                                y -= co[C0, a, j] * ci[B0, b, j] * w2 * h * h * kappa[j, m - 2]
-                y *= h
-                for i in range(s):
-                    for l in range(s):
-                        tk[slot, run.flags[ROWS] * a + b, i, l] += y * run.mo[m, i, l]
+            most = pair_moments(run, z, modal, h, a, b, weight)
+            sum_moments(mo, weight, most, h, out)
             for j in range(run.blk.shape[2]):
                 if run.terms[j] == 0:
                     stiff_pair(run, z, j, a, b, h, slot)

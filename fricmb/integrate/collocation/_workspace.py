@@ -104,7 +104,7 @@ def _made(p: Model, s: int) -> Run:
     tables = np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, s)), np.zeros(RUNGS + 1), slots
     # the last line of wk has a name (CHANGE): few nodes need as many lines
     lines = (3, max(s, CHANGE) + 1, s + 1)
-    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n, TERMS), lines))
+    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n + 1, TERMS), lines))
     state = np.zeros((4, n)), np.zeros((2, m)), np.zeros(5), np.zeros(8, dtype=np.int64)
     work: list[Any] = [bx, nx, kappa, np.zeros(n, np.int64), wk, *state]
     own = [array.copy() for array in p]

@@ -99,11 +99,11 @@ def solve_real(address: int, a: Floats, b: Floats, n: int, sizes: Any, pivots: A
         _gesv(address, sizes, pivots, a, b)
         return int(sizes[2])
     for k in range(n):
-        best = k
+        best, top = k, abs(a[k * n + k])
         for i in range(k + 1, n):
-            if abs(a[i * n + k]) > abs(a[best * n + k]):
-                best = i
-        if a[best * n + k] == 0.0:
+            if abs(a[i * n + k]) > top:
+                best, top = i, abs(a[i * n + k])
+        if top == 0.0:
             return k + 1
         if best != k:
             for j in range(k, n):
@@ -113,11 +113,14 @@ def solve_real(address: int, a: Floats, b: Floats, n: int, sizes: Any, pivots: A
             x = b[k]
             b[k] = b[best]
             b[best] = x
+        pivot = a[k * n + k]
+        line = a[k * n + k + 1 : k * n + n]
         for i in range(k + 1, n):
-            x = a[i * n + k] / a[k * n + k]
+            x = a[i * n + k] / pivot
             if x != 0.0:
-                for j in range(k + 1, n):
-                    a[i * n + j] -= x * a[k * n + j]
+                row = a[i * n + k + 1 : i * n + n]
+                for j in range(line.shape[0]):
+                    row[j] -= x * line[j]
                 b[i] -= x * b[k]
     for i in range(n - 1, -1, -1):
         x = b[i]

@@ -38,12 +38,14 @@ def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
                 x = a[k, j]
                 a[k, j] = a[best, j]
                 a[best, j] = x
+        line = a[k, k + 1 :]
         for i in range(k + 1, n):
             x = a[i, k] / a[k, k]
             a[i, k] = x
             if x != 0.0:
-                for j in range(k + 1, n):
-                    a[i, j] -= x * a[k, j]
+                row = a[i, k + 1 :]
+                for j in range(line.shape[0]):
+                    row[j] -= x * line[j]
     return True
 
 

@@ -22,6 +22,21 @@ from fricmb.integrate.step.contact_unknowns import PortState
 
 
 @kernel
+def dot(a: Floats, b: Floats) -> float:
+    """Inner product, in four sums side by side."""
+    x0, x1, x2, x3 = 0.0, 0.0, 0.0, 0.0
+    whole = b.shape[0] // 4 * 4
+    for i in range(0, whole, 4):
+        x0 += a[i] * b[i]
+        x1 += a[i + 1] * b[i + 1]
+        x2 += a[i + 2] * b[i + 2]
+        x3 += a[i + 3] * b[i + 3]
+    for i in range(whole, b.shape[0]):
+        x0 += a[i] * b[i]
+    return (x0 + x1) + (x2 + x3)
+
+
+@kernel
 def plain_outputs(ports: Ports, w: PortState, mode: Codes) -> None:
     """Forces of slip from directions; relative velocities g under all forces; slip speeds r = n . g."""
     n_s = w.F.shape[0]
@@ -33,14 +48,13 @@ def plain_outputs(ports: Ports, w: PortState, mode: Codes) -> None:
         for i in range(n_s):
             for a in range(ports.row[k], ports.row[k + 1]):
                 w.F[i, a] = -load * w.N[i, k] * w.n[i, a]
-    g, F, Fo, G = w.g, w.F, w.Fo, w.G
+    dF = w.dF
+    for j in range(n_s):
+        for c in range(m):
+            dF[j * m + c] = w.F[j, c] - w.Fo[j, c]
     for i in range(n_s):
         for a in range(m):
-            value = w.gb[i, a]
-            for j in range(n_s):
-                for c in range(m):
-                    value += G[i * m + a, j * m + c] * (F[j, c] - Fo[j, c])
-            g[i, a] = value
+            w.g[i, a] = w.gb[i, a] + dot(w.G[i * m + a], dF)
     for k in range(mode.shape[0]):
         if mode[k] == SLIP:
             for i in range(n_s):
@@ -59,57 +73,75 @@ def unknowns(ports: Ports, mode: Codes, k: int) -> int:
 
 
 @kernel
-def push_of(ports: Ports, w: PortState, mode: Codes, j: int, k: int, x: int, b: int) -> float:
-    """Change of force b of contact k at stage j with its unknown x."""
-    if mode[k] == STICK:
-        return 1.0 if x == b else 0.0
-    size = ports.mu_0[k] * w.N[j, k]
-    row0 = ports.row[k]
-    return float(size * w.n[j, row0 + 1] if b == 0 else -size * w.n[j, row0])
+def put_pushes(ports: Ports, w: PortState, mode: Codes) -> None:
+    """Change of every force with the unknown of its contact at its stage, into ``gbuf``."""
+    for k in range(mode.shape[0]):
+        row0 = ports.row[k]
+        slips = mode[k] == SLIP and ports.row[k + 1] - row0 == 2
+        for j in range(w.F.shape[0]):
+            if slips:
+                size = ports.mu_0[k] * w.N[j, k]
+                w.gbuf[j, row0] = size * w.n[j, row0 + 1]
+                w.gbuf[j, row0 + 1] = -size * w.n[j, row0]
+            else:
+                for a in range(row0, ports.row[k + 1]):
+                    w.gbuf[j, a] = 1.0 if mode[k] == STICK else 0.0
+
+
+@kernel
+def put_line(ports: Ports, mode: Codes, gains: Floats, n_s: int, line: Floats) -> None:
+    """A line of the Jacobian: what forces at all stages do (``gains``) by the unknowns, contact by contact."""
+    m = ports.row[mode.shape[0]]
+    at = 0
+    for k in range(mode.shape[0]):
+        row0 = ports.row[k]
+        d = ports.row[k + 1] - row0
+        if mode[k] == STICK:
+            for a in range(d):
+                into = line[at + a * n_s : at + (a + 1) * n_s]
+                for j in range(n_s):
+                    into[j] = gains[j * m + row0 + a]
+            at += d * n_s
+        elif mode[k] == SLIP and d == 2:
+            into = line[at : at + n_s]
+            for j in range(n_s):
+                into[j] = gains[j * m + row0] + gains[j * m + row0 + 1]
+            at += n_s
 
 
 @kernel
 def assemble_plain(ports: Ports, w: PortState, mode: Codes, size: int) -> None:
-    """Residuals (negated) and Jacobian, contact by contact."""
+    """Residuals (negated) and Jacobian; unknowns contact by contact, each stage by stage."""
     n_s = w.F.shape[0]
     m = w.F.shape[1]
-    G, J = w.G, w.J.reshape(w.J.size)
+    G, J, gains = w.G, w.J.reshape(w.J.size), w.dF
+    put_pushes(ports, w, mode)
+    push = w.gbuf.reshape(w.gbuf.size)
     at = 0
     for k in range(mode.shape[0]):
-        u = unknowns(ports, mode, k)
         row0 = ports.row[k]
-        for i in range(n_s):
-            for y in range(u):
-                row = at + i * u + y
-                slips = mode[k] == SLIP
-                t0 = -w.n[i, row0 + 1] if slips else 1.0
-                t1 = w.n[i, row0] if slips else 0.0
-                o = i * m + row0 + (0 if slips else y)
-                w.rhs[row] = -(t0 * w.g[i, row0] + t1 * w.g[i, row0 + 1]) if slips else -w.g[i, row0 + y]
-                column = 0
-                for c in range(mode.shape[0]):
-                    uc = unknowns(ports, mode, c)
-                    if uc == 0:
-                        continue
-                    c0 = ports.row[c]
-                    dc = ports.row[c + 1] - c0
-                    for j in range(n_s):
-                        for x in range(uc):
-                            value = 0.0
-                            for b in range(dc):
-                                gain = t0 * G[o, j * m + c0 + b]
-                                if slips:
-                                    gain += t1 * G[o + 1, j * m + c0 + b]
-                                value += gain * push_of(ports, w, mode, j, c, x, b)
-                            J[row * size + column + j * uc + x] = value
-                    column += n_s * uc
-                if slips:
+        for y in range(unknowns(ports, mode, k)):
+            for i in range(n_s):
+                line = J[at * size : (at + 1) * size]
+                o = i * m + row0 + y
+                first = G[o]
+                if mode[k] == SLIP:
+                    t0, t1 = -w.n[i, row0 + 1], w.n[i, row0]
+                    second = G[o + 1]
+                    for x in range(gains.shape[0]):
+                        gains[x] = (t0 * first[x] + t1 * second[x]) * push[x]
+                    put_line(ports, mode, gains, n_s, line)
                     # softened: of redundant contacts at r = 0 only the sum of the forces is determined
-                    load = ports.mu_0[k] * w.N[i, k] * ports.soft[0] * (abs(G[o, o]) + abs(G[o + 1, o + 1]))
-                    J[row * size + row] -= w.r[i, k] + load
+                    load = ports.mu_0[k] * w.N[i, k] * ports.soft[0] * (abs(first[o]) + abs(second[o + 1]))
+                    line[at] -= w.r[i, k] + load
+                    w.rhs[at] = -(t0 * w.g[i, row0] + t1 * w.g[i, row0 + 1])
                 else:
-                    J[row * size + row] += ports.soft[0] * G[o, o]
-        at += n_s * u
+                    for x in range(gains.shape[0]):
+                        gains[x] = first[x] * push[x]
+                    put_line(ports, mode, gains, n_s, line)
+                    line[at] += ports.soft[0] * first[o]
+                    w.rhs[at] = -w.g[i, row0 + y]
+                at += 1
 
 
 @kernel
@@ -121,19 +153,19 @@ def move_plain(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> tuple[fl
     change = 0.0
     turn = 0.0
     for k in range(mode.shape[0]):
-        u = unknowns(ports, mode, k)
         row0 = ports.row[k]
-        for i in range(n_s):
-            if u == 0:
-                continue
-            o = i * m + row0
-            if mode[k] == STICK:
-                for a in range(u):
-                    moved = abs(w.rhs[at + i * u + a] * w.G[o + a, o + a])
-                    w.F[i, row0 + a] += w.rhs[at + i * u + a]
+        if mode[k] == STICK:
+            for a in range(row0, ports.row[k + 1]):
+                for i in range(n_s):
+                    moved = abs(w.rhs[at] * w.G[i * m + a, i * m + a])
+                    w.F[i, a] += w.rhs[at]
                     change = max(change, moved / tol[k]) if moved < np.inf else np.inf
-                continue
-            angle = w.rhs[at + i]
+                    at += 1
+            continue
+        for i in range(n_s if unknowns(ports, mode, k) > 0 else 0):
+            o = i * m + row0
+            angle = w.rhs[at]
+            at += 1
             grain = 2e-15 * (abs(w.r[i, k]) + ports.mu_0[k] * w.N[i, k] * abs(w.G[o, o]))
             moved = abs(angle) * ports.mu_0[k] * w.N[i, k] * max(abs(w.G[o, o]), abs(w.G[o + 1, o + 1]))
             change = max(change, moved / max(tol[k], grain)) if moved < np.inf else np.inf
@@ -144,7 +176,6 @@ def move_plain(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> tuple[fl
             size = 1.0 / np.sqrt(x * x + y * y)
             w.n[i, row0] = x * size
             w.n[i, row0 + 1] = y * size
-        at += n_s * u
     return change, turn
 
 
