@@ -16,7 +16,7 @@ from fricmb._simulate._result import not_there
 from fricmb.analysis import AnalysisError
 from fricmb.integrate.collocation import _collocation
 from fricmb.integrate.run import memory, stop
-from fricmb.integrate.taylor import _taylor
+from fricmb.integrate.taylor import integrator as _taylor
 
 BLAME = (blame, _law_without_value, fm.space.OnPlane.undefined)
 ROOT = Path(__file__).parents[1]

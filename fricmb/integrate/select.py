@@ -18,7 +18,7 @@ from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.taylor import Taylor
-from fricmb.integrate.taylor._prepare_coupled import is_coupled
+from fricmb.integrate.taylor.prepare_groups import is_coupled
 from fricmb.integrate.timestepping import TimeStepping
 from fricmb.integrate.trajectory import Trajectory
 

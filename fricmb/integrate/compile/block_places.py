@@ -95,10 +95,6 @@ FURTHER = (
     "take_step",
     *MECHANISM_STEPS,
     "multistep",
-    "coupled_series",
-    "coupled_change",
-    "coupled_settle",
-    "coupled_pay",
     "dgbtrf",
     "dgbtrs",
 )

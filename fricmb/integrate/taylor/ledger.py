@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, STICK
-from fricmb.integrate.taylor._layout import DAMPING, INPUT, STEP, WATCH, WORK, WORK2
-from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._series import belt_value, force_row, horner, horner_rate, polynomial
+from fricmb.integrate.taylor.layout import DAMPING, INPUT, STEP, UNTIL, WATCH, WORK, WORK2
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import horner, horner_rate, polynomial
 
 
 @kernel
@@ -57,18 +57,17 @@ def signal_power(net: Net, s: float, weight: float) -> None:
 
 @kernel
 def count_rest(net: Net, s0: float, sign: float) -> None:
-    """Add ``sign`` times what dampers and prescribed motions do from s0 to the end of the step, contacts apart."""
-    if net.coupled.F.shape[0] > 0:
-        return  # see _account
+    """Add ``sign`` times what dampers and prescribed motions do from s0 to where the step ends, contacts apart."""
     if net.damped[0] == 0 and net.series.shape[0] == 0:
         return
     n = net.q.shape[0]
     h = net.x[STEP]
     q, v = net.flat[WORK], net.flat[WORK2]
     last = net.Q.shape[0] - 1
+    length = net.x[UNTIL] - s0
     for g in range(net.gauss.shape[1]):
-        s = s0 + (1.0 - s0) * net.gauss[0, g]
-        weight = sign * h * (1.0 - s0) * net.gauss[1, g]
+        s = s0 + length * net.gauss[0, g]
+        weight = sign * h * length * net.gauss[1, g]
         horner_rate(net.Q, last, s, h, v)
         if net.damped[0] == 1:
             lost = 0.0
@@ -91,9 +90,10 @@ def count_local(net: Net, count: int, s0: float, sign: float) -> None:
     if net.damped[0] == 0 and net.series.shape[0] == 0:
         return
     h = net.x[STEP]
+    length = net.x[UNTIL] - s0
     for g in range(net.gauss.shape[1]):
-        s = s0 + (1.0 - s0) * net.gauss[0, g]
-        weight = sign * h * (1.0 - s0) * net.gauss[1, g]
+        s = s0 + length * net.gauss[0, g]
+        weight = sign * h * length * net.gauss[1, g]
         for a in range(count):
             j = net.local[a]
             v = speed(net, j, s)
@@ -105,36 +105,20 @@ def count_local(net: Net, count: int, s0: float, sign: float) -> None:
                     force += net.c[e] * speed(net, i, s) * (1.0 if net.place[i] >= 0 else 2.0)
                 net.x[DAMPING] += weight * net.mass[j] * v * force
             if net.in_start[j] < net.in_start[j + 1]:
-                driven_power(net, j, polynomial(net, 0, j, s), v, s, weight)
-
-
-@kernel
-def moving_belts(net: Net, s0: float) -> float:
-    """Work that belts of varying velocity bring in from s0 to the end of the step (of coupled ones: see _account)."""
-    total = 0.0
-    h = net.x[STEP]
-    if net.coupled.F.shape[0] > 0:
-        return 0.0
-    for g in range(net.gauss.shape[1] if net.special.shape[0] > 0 else 0):
-        s = s0 + (1.0 - s0) * net.gauss[0, g]
-        for i in range(net.special.shape[0]):
-            c = net.special[i]
-            force = 0.0
-            for k in range(net.R.shape[0] - 1, -1, -1):
-                force = force * s + force_row(net, c, k, h)
-            total += net.gauss[1, g] * (1.0 - s0) * h * force * belt_value(net, c, s)
-    return float(total)
+                driven_power(net, j, polynomial(net.Q, j, s), v, s, weight)
 
 
 @kernel
 def belt_work(net: Net, s: float) -> float:
-    """Work that belts bring in from s to the end of the step, as the polynomials now are."""
+    """Work that belts bring in through plain contacts from s to where the step ends, as the polynomials now are."""
     total = 0.0
+    until = net.x[UNTIL]
     weights = net.old[WATCH]
-    power = s
+    power, beyond = s, until
     for k in range(net.R.shape[0]):
-        weights[k] = (1.0 - power) / (k + 1)
+        weights[k] = (beyond - power) / (k + 1)
         power *= s
+        beyond *= until
     part = net.flat[WORK]
     for c in range(net.mode.shape[0]):
         part[c] = 0.0
@@ -143,11 +127,19 @@ def belt_work(net: Net, s: float) -> float:
         if net.mode[c] == STICK:
             part[c] = -net.belt[c] * net.row_coef[net.row_start[c]] / net.compliance[c]
         elif net.mode[c] == SLIP:
-            total -= net.belt[c] * net.slip[c] * net.sigma[c] * (1.0 - s)
+            total -= net.belt[c] * net.slip[c] * net.sigma[c] * (until - s)
     dof = net.first_dof
     for k in range(net.R.shape[0]):
         row = net.R[k]
         weight = weights[k]
         for c in range(net.mode.shape[0]):
             total += weight * part[c] * row[dof[c]]
-    return float(total * net.x[STEP] + moving_belts(net, s))
+    return float(total * net.x[STEP])
+
+
+@kernel
+def shorten_account(net: Net, until: float) -> None:
+    """Let the step end at ``until``; behind it corrections that come are no good, so nothing is counted there."""
+    net.x[INPUT] -= belt_work(net, until)
+    count_rest(net, until, -1.0)
+    net.x[UNTIL] = until

@@ -11,9 +11,9 @@ import math
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK, Floats, Ints
-from fricmb.integrate.taylor._layout import N_SEARCHES, NOISE, SHIFTED, STEP, SUM, WATCH, WORK2, WORK3
-from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._series import belt_at, force_row
+from fricmb.integrate.taylor.layout import N_SEARCHES, NOISE, SHIFTED, STEP, SUM, WATCH, WORK2, WORK3
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import force_row, relative_row, shift_one
 
 #: Intervals in which a root is looked for (a step is at most about half a period of the fastest mode).
 PIECES = 4
@@ -29,11 +29,8 @@ GROWS = 1e-9
 def watch_row(net: Net, c: int, k: int, h: float) -> float:
     """Coefficient k of what is watched of contact c."""
     if net.mode[c] == STICK:
-        return force_row(net, c, k, h) if k < net.R.shape[0] else 0.0
-    value = -belt_at(net, c, k)
-    for e in range(net.row_start[c], net.row_start[c + 1]):
-        value += net.row_coef[e] * (k + 1) * net.Q[k + 1, net.row_dof[e]] / h
-    return float(value * net.sigma[c])
+        return force_row(net, c, k) if k < net.R.shape[0] else 0.0
+    return float(relative_row(net, c, k, h) * net.sigma[c])
 
 
 @kernel
@@ -63,8 +60,8 @@ def bounds(net: Net) -> None:
     above = net.Q[last + 1]
     for c in range(m):
         total[c] += abs((last + 1.0) * moved[c] * above[dof[c]])
-    for i in range(net.special.shape[0]):
-        c = net.special[i]
+    for i in range(net.grouped.shape[0]):
+        c = net.grouped[i]
         for k in range(3, last + 1):
             total[c] += abs(watch_row(net, c, k, h))
     for c in range(m):
@@ -75,14 +72,6 @@ def bounds(net: Net) -> None:
             net.slack[c] = net.stick[c] - max(abs(y0), abs(y0 + y1 + y2), abs(dip)) - total[c]
         else:
             net.slack[c] = min(y0, y0 + y1 + y2, dip) - total[c]
-
-
-@kernel
-def shift_one(y: Floats, last: int, by: float) -> None:
-    """Powers of s become powers of s - by."""
-    for i in range(last):
-        for k in range(last - 1, i - 1, -1):
-            y[k] += by * y[k + 1]
 
 
 @kernel
@@ -175,7 +164,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
     if net.mode[c] == STICK:
         last -= 1
         for k in range(last + 1):
-            y[k] = force_row(net, c, k, h)
+            y[k] = force_row(net, c, k)
         limit = net.stick[c]
         here, rise = 0.0, 0.0
         for k in range(last, -1, -1):

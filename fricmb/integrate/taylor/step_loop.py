@@ -7,14 +7,14 @@ import math
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import STICK
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.taylor._account import coupled_pay
-from fricmb.integrate.taylor._change import hold_force, taylor_change
-from fricmb.integrate.taylor._heap import pop_due, push_due
-from fricmb.integrate.taylor._layout import (
+from fricmb.integrate.taylor.account import pay_groups
+from fricmb.integrate.taylor.change import taylor_change
+from fricmb.integrate.taylor.event_heap import pop_due, push_due
+from fricmb.integrate.taylor.event_search import bounds, taylor_search
+from fricmb.integrate.taylor.layout import (
     ALLOWED,
     END,
     INPUT,
-    JUMP,
     LIMIT,
     LONGEST,
     N_EVENTS,
@@ -33,20 +33,13 @@ from fricmb.integrate.taylor._layout import (
     UNTIL,
     WORK,
 )  # fmt: skip
-from fricmb.integrate.taylor._ledger import belt_work, count_rest
-from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._sample import sample
-from fricmb.integrate.taylor._search import bounds, taylor_search
-from fricmb.integrate.taylor._series import (
-    ROUNDING,
-    belt_value,
-    horner,
-    horner_rate,
-    rescale,
-    signal_series,
-    taylor_series,
-)  # fmt: skip
-from fricmb.integrate.taylor._settle import EPS, set_window, settle
+from fricmb.integrate.taylor.ledger import belt_work, count_rest
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate, rescale
+from fricmb.integrate.taylor.sample import sample
+from fricmb.integrate.taylor.series import taylor_series
+from fricmb.integrate.taylor.signals import ROUNDING, belt_value, signal_series
+from fricmb.integrate.taylor.starting_modes import EPS, set_window, settle
 
 #: Why a run came back.
 DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT = range(8)
@@ -92,8 +85,8 @@ def idle_step(net: Net, left: float) -> float:
     h = net.x[STEP]
     found = left
     for c in range(net.mode.shape[0]):
-        force = hold_force(net, c, 0.0, h)
-        rate = (hold_force(net, c, 1.0, h) - force) / h
+        force = hold_force(net, c, 0.0)
+        rate = (hold_force(net, c, 1.0) - force) / h
         if rate != 0.0:
             found = min(found, max(0.0, (math.copysign(net.stick[c], rate) - force) / rate))
     return float(found)
@@ -220,10 +213,10 @@ def go_through(net: Net) -> int:
 
 
 @kernel
-def end_early(net: Net) -> None:
-    """Close the account where contacts are coupled; what lies behind the point where the step is to end is given up."""
+def end_account(net: Net) -> None:
+    """Close the account of groups; what lies behind the point where the step is to end is given up."""
     until = net.x[UNTIL]
-    coupled_pay(net, until, net.places)
+    pay_groups(net, until)
     if until < 1.0:
         net.i[N_SHORTER] += 1
         rescale(net, until)
@@ -234,8 +227,7 @@ def end_early(net: Net) -> None:
 def finish_step(net: Net) -> int:
     """The state at the end of the step."""
     n = net.q.shape[0]
-    if net.coupled.F.shape[0] > 0:
-        end_early(net)
+    end_account(net)
     h = net.x[STEP]
     last = net.Q.shape[0] - 1
     horner(net.Q, last, 1.0, net.q)
@@ -248,17 +240,6 @@ def finish_step(net: Net) -> int:
         if net.mode[c] == STICK and net.plain[c] == 1:
             e = net.row_start[c]
             net.v[net.row_dof[e]] = belt_value(net, c, 1.0) / net.row_coef[e]
-    for u in range(net.series.shape[0]):
-        for k in range(net.rates.shape[1]):
-            net.travel[u] += h * net.rates[u, k] / (k + 1)
-    fastest = 0.0
-    for j in range(n):
-        fastest = max(fastest, net.top[j])
-    error = net.x[JUMP] / (net.x[TOL] * fastest + 1e-300)
-    net.x[JUMP] = 0.0
-    if error > 1.0:
-        # corrections are not taken back: their error is kept down in the steps that follow
-        net.x[NEXT] = min(net.x[NEXT], h * max(0.3, 0.9 * error ** (-1.0 / (last - 1.0))))
     at = net.i[N_STEPS]
     net.steps[at, 0] = net.x[TIME]
     net.steps[at, 1] = h

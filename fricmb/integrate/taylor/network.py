@@ -6,7 +6,9 @@ With n dofs, m contacts of one row each, polynomials of degree P in s = (t - t0)
     R_j(s) = sum_k R[k, j] s^k           M^-1 (f - K q - C v): acceleration but for the contact's own force
     (k+1)(k+2) Q[k+2, j] = h^2 (R[k, j] + push_j F_k)
 
-and for a contact of row W, compliance D = W^T M^-1 W, belt w: slip has F constant, stick ``F = -(W^T R - w')/D``.
+A *plain* contact is of one dof that no other contact is of, against a belt of constant velocity, under a constant
+coefficient: with its row W and compliance D = W^T M^-1 W, slip has F constant and stick ``F = -W^T R/D``, which is not
+kept.  All other contacts are in groups (see groups).
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from typing import NamedTuple
 
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints
-from fricmb.integrate.taylor._coupled import Coupled
+from fricmb.integrate.taylor.groups import Groups
 
 
 class Net(NamedTuple):
@@ -27,18 +29,18 @@ class Net(NamedTuple):
     signals that are no motions; ``mass`` (n,); ``drivers`` (3, n_u, n_u): K, C and, in the first column, f of the
     signals; ``gauss`` (2, 8) nodes and weights; ``damped`` (1,).
     Contacts: ``row_start``, ``row_dof``, ``row_coef``, ``push`` (M^-1 W); ``compliance``, ``belt``, ``stick``, ``slip``
-    (m,): D, w, mu_s N, mu_k N; ``wu_start``, ``wu_signal``, ``wu_coef``: Wu; ``owner`` (n,): contact of a dof or -1;
-    ``plain`` (m,): whether a contact is of one dof against a constant belt, ``special`` those that are not,
-    ``first_dof`` (m,); ``free`` (n,): 0 for a dof that a plain contact holds, else 1.
+    (m,): D, w, mu_s N, mu_k N; ``wu_start``, ``wu_signal``, ``wu_coef``: Wu; ``owner`` (n,): plain contact of a dof or
+    -1; ``plain`` (m,): whether a contact is, ``grouped`` those that are not, ``first_dof`` (m,); ``free`` (n,): 0 for a
+    dof that a plain contact holds, else 1.
     Signals: ``signals``, ``series``, ``rates`` (n_u, P+3) powers of s of u and u', ``large`` (2, n_u) their running
     maxima, ``window``, ``fit``.
     State: ``q``, ``v``, ``top`` (n,) running maxima of |v|; ``mode``, ``sigma``, ``loss``, ``mark`` (m,) with the
-    relative displacement at which a slip began; ``travel`` (n_u,): integrals of u'; ``x``, ``i``: see _layout.
+    relative displacement at which a slip of a plain contact began; ``x``, ``i``: see _layout.
     Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (4, n).
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
     is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.  ``places``: table of blocks.
-    ``coupled``: what contacts need that touch each other or whose friction depends on slip speed.
+    ``groups``: what contacts need that are not plain.
     """
 
     offset: Ints
@@ -72,7 +74,7 @@ class Net(NamedTuple):
     damped: Ints
     owner: Ints
     plain: Codes
-    special: Ints
+    grouped: Ints
     first_dof: Ints
     free: Floats
     signals: Table
@@ -88,7 +90,6 @@ class Net(NamedTuple):
     sigma: Floats
     loss: Floats
     mark: Floats
-    travel: Floats
     x: Floats
     i: Ints
     Q: Floats2
@@ -119,4 +120,4 @@ class Net(NamedTuple):
     out_x: Floats2
     stops: Floats
     places: Ints
-    coupled: Coupled
+    groups: Groups

@@ -13,19 +13,7 @@ import numpy as np
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
-from fricmb.integrate.taylor._drive import (
-    CROWDED,
-    DONE,
-    FULL,
-    NOT_FINITE,
-    PAUSE,
-    SETTLE,
-    TOO_SHORT,
-    WIDE,
-    drive_taylor,
-)  # fmt: skip
-from fricmb.integrate.taylor._layout import (
-    CUT,
+from fricmb.integrate.taylor.layout import (
     END,
     LIMIT,
     LONGEST,
@@ -41,10 +29,21 @@ from fricmb.integrate.taylor._layout import (
     TIME,
     TOL,
 )  # fmt: skip
-from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._prepare import fastest, net_of, no_samples, refusal, with_arrays
-from fricmb.integrate.taylor._settle import settle_start
-from fricmb.integrate.taylor._trajectory import Checkpoints, TaylorRun
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.prepare import fastest, net_of, no_samples, refusal, with_arrays
+from fricmb.integrate.taylor.starting_modes import settle_start
+from fricmb.integrate.taylor.step_loop import (
+    CROWDED,
+    DONE,
+    FULL,
+    NOT_FINITE,
+    PAUSE,
+    SETTLE,
+    TOO_SHORT,
+    WIDE,
+    drive_taylor,
+)  # fmt: skip
+from fricmb.integrate.taylor.trajectory import Checkpoints, TaylorRun
 from fricmb.integrate.trajectory import Counters, Trajectory
 
 FAILURES = {
@@ -140,13 +139,13 @@ def set_start(
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
     net.x[:] = 0.0
     net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest
-    net.x[TOL], net.x[CUT] = 0.1 * tolerance.rtol, 0.0
+    net.x[TOL] = 0.1 * tolerance.rtol
     net.x[STEP] = longest
     net.x[NOISE] = 1e-13 * speed
     net.i[:] = 0
     net.i[LIMIT] = crowd * problem.n_c + 1000
     net.i[PHASE] = SETTLE
-    net.loss[:], net.travel[:], net.large[:] = 0.0, 0.0, 0.0
+    net.loss[:], net.large[:] = 0.0, 0.0
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
     if start.mode is not None:

@@ -1,6 +1,6 @@
-"""Arrays of contacts that are coupled, or whose friction depends on slip speed.
+"""Arrays of contacts that touch the same bodies, of one between two bodies, on a belt that moves, under a law of speed.
 
-Forces of all contacts are polynomials ``F_c(s) = sum_k F[k, c] s^k`` here.  In slip ``F = -sigma N mu(r)``,
+Their forces are polynomials ``F_c(s) = sum_k F[k, c] s^k`` here.  In slip ``F = -sigma N mu(r)``,
 ``r = sigma g``; what sticks together on bodies that touch is solved together, group by group:
 
     G F = -(W^T A - w'),    G = W^T M^-1 W over the contacts of the group that stick,
@@ -16,10 +16,10 @@ from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 
 
-class Coupled(NamedTuple):
-    """Empty (``F`` without rows) in scenes that need none of it.
+class Groups(NamedTuple):
+    """All contacts that are not plain, those on common dofs together; most of it is empty where all are plain.
 
-    Groups: contacts on common dofs.  ``group`` (m,); ``group_start``, ``group_contact``; ``dof_start``, ``group_dof``:
+    Groups: ``group`` (m,) or -1; ``group_start``, ``group_contact``; ``dof_start``, ``group_dof``:
     dofs of a group; ``dof_group`` (n,): or -1; ``at``: where a group's matrix begins in ``G`` and in ``L`` (its
     triangular factor over ``stuck``, the ``n_stuck`` contacts of the group that stick under the modes ``factored``);
     ``rhs`` (m,).
@@ -27,9 +27,11 @@ class Coupled(NamedTuple):
     ``curve`` (., D+1): mu on ``middle`` +- ``half`` in Chebyshev polynomials, of which ``terms`` count; ``rough``:
     what is left beyond them, relative to what is allowed; ``nodes``, ``fit`` (D+1, D+1); ``b`` (., D+3, P+1): sums of
     Clenshaw's recursion by powers of s, in the last row the argument.
-    Account: ``paid`` (m,), ``paid_dof`` (n,): s up to which losses and work are counted; ``rule`` (2, P): Gauss's.
-    Corrections: ``slot`` (m,) of a contact or -1; ``here``: contact of a slot; ``groups``: groups touched; ``was``:
-    forces before; ``dF``; ``local_b``: as b; ``first``: order from which a slot's argument changes.
+    Account: ``paid`` (m,): s up to which losses and work are counted; ``rule`` (2, P): Gauss's.
+    Start: ``rests``, ``before`` (m,): whether a contact has no slip speed, its direction of slip before (0 in stick).
+    Corrections: ``slot`` (m,) of a contact or -1; ``here``: contact of a slot; ``reached``: groups touched; ``touched``
+    (.): whether one is; ``was``: forces before; ``dF``; ``local_b``: as b; ``first``: order from which its argument
+    changes.
     """
 
     F: Floats2
@@ -60,11 +62,12 @@ class Coupled(NamedTuple):
     work: Floats
     b: Floats3
     paid: Floats
-    paid_dof: Floats
     rule: Floats2
+    rests: Codes
+    before: Codes
     slot: Ints
     here: Ints
-    groups: Ints
+    reached: Ints
     touched: Codes
     was: Floats2
     dF: Floats2

@@ -6,30 +6,21 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.compile.block_places import PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.problem_cache import kept
-from fricmb.integrate.taylor import _coupled_change  # noqa: F401  # defines blocks that are called by name alone
-from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._prepare_coupled import (
-    against_groups,
-    coupled_arrays,
-    coupled_statics,
-    is_coupled,
-    nothing_coupled,
-)  # fmt: skip
+from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.prepare_groups import against_groups, group_arrays, group_statics, plain_contacts, solid
 
 #: A structure of at most so many diagonals is kept by diagonals.
 DIAGONALS = 9
 #: Most dofs that the correction of one transition may touch.
 WIDEST = 8192
 BLOCKS = ("taylor_series", "taylor_search", "taylor_change")
-#: The same where contacts are coupled: the first and the last stand where the loop of a run calls those above.
-COUPLED = ("coupled_series", "taylor_search", "coupled_change", "coupled_settle", "coupled_pay")
 
 
 def refusal(problem: Problem) -> str | None:
@@ -49,11 +40,6 @@ def _refusal(problem: Problem) -> str | None:
         return "coefficients of friction that depend on slip speed must be formulas"
     if problem.m != problem.n_c:
         return "every contact must slide along one direction"
-    if len(problem.signals.breakpoints) and len(contacts.csr("Wu").rows) and is_coupled(problem):
-        return (
-            "where functions of time have breakpoints and bodies are driven, contacts need a constant coefficient "
-            "each, and bodies of their own"
-        )
     if not linear.csr("M").is_diagonal():
         return "the mass matrix must be diagonal"
     if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
@@ -154,15 +140,15 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     Wu = contacts.csr("Wu")
     push = inverse[rows.index] * rows.value
     compliance = np.bincount(rows.rows, rows.value * push, m).astype(float)
+    plain = plain_contacts(problem)
     owner = np.full(n, -1, dtype=np.int64)
-    owner[rows.index] = rows.rows
-    plain = (np.diff(rows.start) == 1) & (np.diff(Wu.start) == 0) & (not is_coupled(problem))
+    owner[rows.index] = np.where(plain, np.arange(m), -1)[rows.rows]
     N = contacts.N
     return {
         "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
         "compliance": compliance, "belt": contacts.w, "stick": np.abs(contacts.mu_s) * N, "slip": contacts.mu_0 * N,
         "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "owner": owner,
-        "plain": plain.astype(np.int8), "special": np.flatnonzero(~plain),
+        "plain": plain.astype(np.int8), "grouped": np.flatnonzero(~plain),
         "first_dof": rows.index[rows.start[:-1]],
     }  # fmt: skip
 
@@ -187,40 +173,24 @@ def net_of(problem: Problem, degree: int) -> Net:
 def _net(problem: Problem, P: int) -> Net:
     n, m, n_u = problem.n, problem.n_c, problem.n_u
     statics = kept(problem, "taylor statics", lambda: _statics(problem))
-    widest = _widest(statics, n, P)
     # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
     wide = 8 * ((n + 7) // 8 | 1)
     i, z = np.int64, np.zeros
-    coupled = is_coupled(problem)
-    if coupled:
-        groups = coupled_statics(problem, 1.0 / statics["mass"])
-        widest = min(n + 8, WIDEST, widest * max(1, int(np.diff(groups["dof_start"]).max(initial=1))))
-        more = coupled_arrays(problem, P, widest, groups)
-    else:
-        more = nothing_coupled()
+    largest = int(np.diff(group_statics(problem)["dof_start"]).max(initial=1))
+    widest = min(n + 8, WIDEST, largest * _widest(statics, n, P))
+    groups = room(group_arrays(problem, P, widest))
     arrays = {
-        **statics,
+        **statics, **no_samples(n, m),
         "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit(),
         "q": z(n), "v": z(n), "top": z(n), "mode": z(m, np.int8), "sigma": np.ones(m), "loss": z(m), "mark": z(m),
-        "travel": z(n_u), "free": np.ones(n), "x": z(16), "i": z(16, i), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
+        "free": np.ones(n), "x": z(16), "i": z(16, i), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
         "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
         "flat": z((5, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
-        "place": np.full(n, -1, dtype=i),
-        "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)), "stops": z(1),
-        "places": _places(coupled), "coupled": room(more), **no_samples(n, m), "events": z((max(64, 4 * m), 3)),
-        "steps": z((256, 2)),
+        "place": np.full(n, -1, dtype=i), "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)),
+        "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)), "stops": z(1), "places": addresses(*BLOCKS),
+        "groups": groups,
     }  # fmt: skip
-    return room(Net(**{name: _solid(arrays[name]) for name in Net._fields}))
-
-
-def _places(coupled: bool) -> Ints:
-    """Table of blocks."""
-    if not coupled:
-        return addresses(*BLOCKS)
-    table = addresses(*COUPLED).copy()
-    for name, other in zip(BLOCKS, COUPLED, strict=False):
-        table[PLACES.index(name)] = table[PLACES.index(other)]
-    return table
+    return room(Net(**{name: solid(arrays[name]) for name in Net._fields}))
 
 
 def _widest(statics: dict[str, Any], n: int, degree: int) -> int:
@@ -240,12 +210,6 @@ def _widest(statics: dict[str, Any], n: int, degree: int) -> int:
                 break
         largest = max(largest, int(inside.sum()))
     return min(2 * largest + 8, WIDEST)
-
-
-def _solid(x: Any) -> Any:
-    if not isinstance(x, np.ndarray):
-        return x
-    return np.ascontiguousarray(x, dtype=None if x.dtype in (np.int8, np.float64) else np.int64)
 
 
 def no_samples(n: int, m: int, count: int = 0) -> dict[str, Any]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.taylor._layout import N_HEAP
-from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor.layout import N_HEAP
+from fricmb.integrate.taylor.network import Net
 
 
 @kernel

@@ -11,8 +11,8 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import Floats, Floats2
-from fricmb.integrate.taylor._layout import TOL
-from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor.layout import TOL
+from fricmb.integrate.taylor.network import Net
 
 #: Parts of the tolerance that may be missing in a coefficient of friction.
 SHARE = 0.1
@@ -21,9 +21,9 @@ SHARE = 0.1
 @kernel
 def coefficient_at(net: Net, c: int, r: float) -> float:
     """mu(r) of contact c, for r < 0 that of 0."""
-    work, laws = net.coupled.work, net.coupled.laws
+    work, laws = net.groups.work, net.groups.laws
     work[0] = max(r, 0.0)
-    work[1] = net.coupled.N[c]
+    work[1] = net.groups.N[c]
     call(laws.address[c], work, 0, laws.p, laws.p_start[c], work, 2)
     return float(work[2])
 
@@ -31,17 +31,17 @@ def coefficient_at(net: Net, c: int, r: float) -> float:
 @kernel
 def fit_curve(net: Net, c: int, low: float, high: float) -> None:
     """The coefficient of contact c between two slip speeds."""
-    at = net.coupled.lawful[c]
-    nodes, values, fit = net.coupled.nodes, net.coupled.values, net.coupled.fit
+    at = net.groups.lawful[c]
+    nodes, values, fit = net.groups.nodes, net.groups.values, net.groups.fit
     low = max(low, 0.0)
     middle = 0.5 * (low + high)
     half = max(0.5 * (high - low), 1e-12 * high + 1e-300)
-    net.coupled.middle[at] = middle
-    net.coupled.half[at] = half
+    net.groups.middle[at] = middle
+    net.groups.half[at] = half
     count = nodes.shape[0]
     for a in range(count):
         values[a] = coefficient_at(net, c, middle + half * nodes[a])
-    row = net.coupled.curve[at]
+    row = net.groups.curve[at]
     size = 0.0
     for j in range(count):
         value = 0.0
@@ -50,7 +50,7 @@ def fit_curve(net: Net, c: int, low: float, high: float) -> None:
         row[j] = value
         size = max(size, abs(value))
     allowed = max(SHARE * net.x[TOL], 2e-15) * size + 1e-300
-    net.coupled.rough[at] = (abs(row[count - 1]) + abs(row[count - 2])) / allowed
+    net.groups.rough[at] = (abs(row[count - 1]) + abs(row[count - 2])) / allowed
     terms = count
     left = 0.0
     while terms > 1:
@@ -58,7 +58,7 @@ def fit_curve(net: Net, c: int, low: float, high: float) -> None:
         if left > allowed:
             break
         terms -= 1
-    net.coupled.terms[at] = terms
+    net.groups.terms[at] = terms
 
 
 @kernel
@@ -67,17 +67,17 @@ def fit_around(net: Net, c: int, r: float, below: float, above: float) -> None:
 
     Exact at r: where slip begins without a jump of the force, a trace of one would end it at once.
     """
-    at = net.coupled.lawful[c]
+    at = net.groups.lawful[c]
     for _ in range(30):
         fit_curve(net, c, r - below, r + above)
-        if net.coupled.rough[at] <= 1.0:
+        if net.groups.rough[at] <= 1.0:
             break
         below *= 0.5
         above *= 0.5
-    row = net.coupled.curve[at]
-    x = (max(r, 0.0) - net.coupled.middle[at]) / net.coupled.half[at]
+    row = net.groups.curve[at]
+    x = (max(r, 0.0) - net.groups.middle[at]) / net.groups.half[at]
     one, two = 0.0, 0.0
-    for j in range(net.coupled.terms[at] - 1, 0, -1):
+    for j in range(net.groups.terms[at] - 1, 0, -1):
         one, two = row[j] + 2.0 * x * one - two, one
     row[0] += coefficient_at(net, c, r) - (row[0] + x * one - two)
 
@@ -114,7 +114,7 @@ def holds_at(x: Floats, last: int, s: float, closed: bool) -> bool:
 @kernel
 def within(net: Net, at: int, x: Floats, last: int, length: float) -> float:
     """Part of ``length`` in which the argument x(s) stays where the curve holds, 1.0 if in all of it."""
-    closed = net.coupled.middle[at] > 1.001 * net.coupled.half[at]
+    closed = net.groups.middle[at] > 1.001 * net.groups.half[at]
     for i in range(1, 13):
         if not holds_at(x, last, length * i / 12.0, closed):
             if i > 1:

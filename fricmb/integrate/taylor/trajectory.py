@@ -9,10 +9,10 @@ import numpy as np
 
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
 from fricmb.integrate.run.stop import watched
-from fricmb.integrate.taylor._drive import PAUSE, drive_taylor
-from fricmb.integrate.taylor._layout import END, N_SAMPLES
-from fricmb.integrate.taylor._net import Net
-from fricmb.integrate.taylor._prepare import net_of, no_samples, with_arrays
+from fricmb.integrate.taylor.layout import END, N_SAMPLES
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.prepare import net_of, no_samples, with_arrays
+from fricmb.integrate.taylor.step_loop import PAUSE, drive_taylor
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
 #: Numbers that checkpoints and rows may hold altogether.
@@ -20,7 +20,7 @@ NUMBERS, ROWS = 3_000_000, 20_000_000
 #: Steps at a time on the way to samples.
 STRIDE = 16
 #: Arrays of the state.
-STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "travel", "large", "free", "x", "i", "stops")
+STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "large", "free", "x", "i", "stops")
 
 
 class Checkpoints:
@@ -119,7 +119,7 @@ class TaylorRun(Trajectory):
         net = net_of(problem, self._degree)
         if len(t) == 0:
             return _samples(problem, with_arrays(net, **no_samples(problem.n, problem.n_c)), slice(0, 0))
-        from fricmb.integrate.taylor._taylor import _running
+        from fricmb.integrate.taylor.integrator import _running
 
         with _running:
             state = self._state_before(float(t[0]))

@@ -6,15 +6,15 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK
-from fricmb.integrate.taylor._net import Net
+from fricmb.integrate.taylor.network import Net
 
 
 @kernel
 def factor_group(net: Net, gi: int) -> None:
     """Cholesky's factor of a group's matrix under the present modes, unless it is there."""
-    start, contacts = net.coupled.group_start, net.coupled.group_contact
-    factored, stuck, L, G = net.coupled.factored, net.coupled.stuck, net.coupled.L, net.coupled.G
-    first, size, at = start[gi], start[gi + 1] - start[gi], net.coupled.at[gi]
+    start, contacts = net.groups.group_start, net.groups.group_contact
+    factored, stuck, L, G = net.groups.factored, net.groups.stuck, net.groups.L, net.groups.G
+    first, size, at = start[gi], start[gi + 1] - start[gi], net.groups.at[gi]
     same = True
     for a in range(first, first + size):
         same = same and factored[a] == net.mode[contacts[a]]
@@ -27,7 +27,7 @@ def factor_group(net: Net, gi: int) -> None:
         if net.mode[c] == STICK:
             stuck[first + count] = a
             count += 1
-    net.coupled.n_stuck[gi] = count
+    net.groups.n_stuck[gi] = count
     for i in range(count):
         row = at + stuck[first + i] * size
         for j in range(i + 1):
@@ -40,9 +40,9 @@ def factor_group(net: Net, gi: int) -> None:
 @kernel
 def solve_group(net: Net, gi: int) -> None:
     """Forces of the contacts of a group that stick from the right-hand side, both in ``rhs`` from its start on."""
-    first, at = net.coupled.group_start[gi], net.coupled.at[gi]
-    size, count = net.coupled.group_start[gi + 1] - first, net.coupled.n_stuck[gi]
-    L, b = net.coupled.L, net.coupled.rhs
+    first, at = net.groups.group_start[gi], net.groups.at[gi]
+    size, count = net.groups.group_start[gi + 1] - first, net.groups.n_stuck[gi]
+    L, b = net.groups.L, net.groups.rhs
     for i in range(count):
         value = b[first + i]
         for k in range(i):
@@ -58,5 +58,11 @@ def solve_group(net: Net, gi: int) -> None:
 @kernel
 def stuck_contact(net: Net, gi: int, i: int) -> int:
     """Contact i of those of a group that stick."""
-    first = net.coupled.group_start[gi]
-    return int(net.coupled.group_contact[first + net.coupled.stuck[first + i]])
+    first = net.groups.group_start[gi]
+    return int(net.groups.group_contact[first + net.groups.stuck[first + i]])
+
+
+@kernel
+def is_held(net: Net, gi: int) -> bool:
+    """Whether as many contacts of a group stick as it has dofs: these move as the belts do."""
+    return bool(net.groups.n_stuck[gi] == net.groups.dof_start[gi + 1] - net.groups.dof_start[gi])

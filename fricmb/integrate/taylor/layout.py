@@ -1,0 +1,14 @@
+"""Names of places in the arrays of a run (see _net)."""
+
+# x: time; size of the present step; longest step; tolerance; totals of input and damping; end of the run; speeds
+# below NOISE are round-off; next step; the part of the step (s) that
+# counts, and that in which friction curves hold; largest speed
+TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST = range(12)
+# i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
+# phase of the step, next stop; contacts and groups that a correction touches; steps in a row that did not move the time
+N_STEPS, N_SHORTER, N_EVENTS, N_SAMPLES, N_HEAP, N_SEARCHES, N_HERE, LIMIT, PHASE, N_STOP = range(10)
+N_TOUCHED, N_GROUPS, STALLED = range(10, 13)
+# flat[.]: rows of work
+SUM, WORK, WORK2, WORK3 = range(4)
+# old[.]: polynomials of one contact: watched; shifted to where y = 0, or change of force; force or acceleration before
+WATCH, SHIFTED, BEFORE = range(3)

@@ -1,0 +1,157 @@
+"""Which contacts are plain; the groups of all others, laws of slip speed, and the arrays for both."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import connected_components
+
+from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.taylor.groups import Groups
+
+#: Most contacts of a group: its matrix is factorised as a full one whenever one of them changes its mode.
+LARGEST = 200
+#: A group's contacts that share their forces in more than one way: least pivot relative to the diagonal.
+INDEPENDENT = 1e-9
+
+
+def _labels(problem: Problem) -> tuple[int, Ints]:
+    """Number of sets of contacts on common dofs, and the set of every contact."""
+    W = problem.contacts.csr("W")
+    n, m = problem.n, problem.n_c
+    if not (np.bincount(W.rows, minlength=1) > 1).any():
+        return m, np.arange(m)
+    graph = csr_array((np.ones(len(W.value)), (W.rows, n + W.index)), shape=(n + m, n + m))
+    _, label = connected_components(graph, directed=False)
+    found, group = np.unique(label[n:], return_inverse=True)
+    return len(found), group.astype(np.int64)
+
+
+def plain_contacts(problem: Problem) -> NDArray[np.bool_]:
+    """Contacts of one dof each, that no other is of, against belts of constant velocity, of constant coefficients."""
+    return kept(problem, "taylor plain", lambda: _plain_contacts(problem))
+
+
+def _plain_contacts(problem: Problem) -> NDArray[np.bool_]:
+    contacts, m = problem.contacts, problem.n_c
+    W, Wu = contacts.csr("W"), contacts.csr("Wu")
+    _, label = kept(problem, "taylor labels", lambda: _labels(problem))
+    plain = (np.bincount(W.index, minlength=m) == 1) & (np.diff(Wu.start) == 0) & (contacts.law == LAW_CONSTANT)
+    return np.asarray(plain & (np.bincount(label)[label] == 1))
+
+
+def is_coupled(problem: Problem) -> bool:
+    """Whether contacts touch each other, or friction depends on slip speed."""
+    count, _ = kept(problem, "taylor labels", lambda: _labels(problem))
+    return count < problem.n_c or bool((problem.contacts.law != LAW_CONSTANT).any())
+
+
+def against_groups(problem: Problem) -> str | None:
+    """What stands against taking the contacts in groups, or None."""
+    parts = group_statics(problem)
+    sizes = np.diff(parts["group_start"])
+    if (sizes > LARGEST).any():
+        return f"{sizes.max()} contacts hold each other through common bodies (at most {LARGEST})"
+    for gi in np.flatnonzero(sizes > 1):
+        size = int(sizes[gi])
+        G = parts["G"][parts["at"][gi] : parts["at"][gi] + size * size].reshape(size, size)
+        scale = 1.0 / np.sqrt(np.diag(G))
+        if np.linalg.eigvalsh(G * scale * scale[:, None])[0] < INDEPENDENT:
+            return "contacts between the same bodies share their forces in more than one way"
+    return None
+
+
+def _lists(label: Ints, count: int) -> tuple[Ints, Ints]:
+    """Members of every label: start, members."""
+    start = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(np.bincount(label[label >= 0], minlength=count), out=start[1:])
+    order = np.argsort(label, kind="stable")
+    return start, order[np.count_nonzero(label < 0) :]
+
+
+def group_statics(problem: Problem) -> dict[str, Any]:
+    """Groups with their matrices, laws with their places."""
+    return kept(problem, "taylor groups", lambda: _group_statics(problem))
+
+
+def _groups(problem: Problem) -> tuple[int, Ints]:
+    """Number of groups, and the group of every contact, -1 of plain ones."""
+    group = np.full(problem.n_c, -1, dtype=np.int64)
+    others = ~plain_contacts(problem)
+    _, label = kept(problem, "taylor labels", lambda: _labels(problem))
+    found, group[others] = np.unique(label[others], return_inverse=True)
+    return len(found), group
+
+
+def _group_statics(problem: Problem) -> dict[str, Any]:
+    contacts, n, m = problem.contacts, problem.n, problem.n_c
+    inverse = 1.0 / problem.linear.csr("M").diagonal()
+    count, group = _groups(problem)
+    W = contacts.csr("W")
+    dof_group = np.full(n, -1, dtype=np.int64)
+    dof_group[W.rows] = group[W.index]
+    group_start, group_contact = _lists(group, count)
+    dof_start, group_dof = _lists(dof_group, count)
+    at = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(np.diff(group_start) ** 2, out=at[1:])
+    place = np.zeros(m, dtype=np.int64)
+    place[group_contact] = np.arange(len(group_contact)) - np.repeat(group_start[:-1], np.diff(group_start))
+    G = np.zeros(at[-1])
+    if count:
+        rows = csr_array((W.value, (W.rows, W.index)), shape=(n, m))
+        product = coo_array(rows.T @ csr_array((inverse[W.rows] * W.value, (W.rows, W.index)), shape=(n, m)))
+        both = group[product.row] >= 0
+        one, other = product.row[both], product.col[both]
+        size = np.diff(group_start)[group[one]]
+        G[at[group[one]] + place[one] * size + place[other]] = product.data[both]
+    lawful = np.full(m, -1, dtype=np.int64)
+    chosen = np.flatnonzero(contacts.law == LAW_COEFFICIENT)
+    lawful[chosen] = np.arange(len(chosen))
+    return {
+        "group": group, "group_start": group_start, "group_contact": group_contact, "dof_start": dof_start,
+        "group_dof": group_dof, "dof_group": dof_group, "at": at, "G": G, "lawful": lawful,
+        "laws": _table(contacts.law_table), "N": np.asarray(contacts.N, dtype=float),
+    }  # fmt: skip
+
+
+def _interpolation(degree: int) -> tuple[Floats, Floats]:
+    """Chebyshev points, and the matrix from values there to coefficients."""
+    angle = (np.arange(degree + 1) + 0.5) * np.pi / (degree + 1)
+    fit = 2.0 / (degree + 1) * np.cos(np.outer(np.arange(degree + 1), angle))
+    fit[0] *= 0.5
+    return np.cos(angle), fit
+
+
+def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
+    """All of it for polynomials of degree P and corrections of at most ``widest`` dofs."""
+    statics = group_statics(problem)
+    i, z, m = np.int64, np.zeros, problem.n_c
+    at, weights = np.polynomial.legendre.leggauss(P)
+    nodes, fit = _interpolation(P)
+    lawful = int(np.count_nonzero(statics["lawful"] >= 0))
+    count, grouped = len(statics["group_start"]) - 1, len(statics["group_contact"])
+    most = min(grouped, 4 * widest)
+    sums = (P + 3, P + 1)
+    arrays: dict[str, Any] = {
+        **statics, "F": z((P - 1, m if grouped else 0)), "L": z(len(statics["G"])), "stuck": z(grouped, i),
+        "n_stuck": z(count, i), "factored": np.full(grouped, -1, np.int8), "rhs": z(grouped),
+        "curve": z((lawful, P + 1)), "middle": z(lawful), "half": z(lawful), "terms": z(lawful, i),
+        "rough": z(lawful), "nodes": nodes, "fit": fit, "values": z(P + 1), "work": z(8), "b": z((lawful, *sums)),
+        "paid": z(m), "rule": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "rests": z(m, np.int8),
+        "before": z(m, np.int8), "slot": np.full(m, -1, i), "here": z(most, i), "reached": z(count, i),
+        "touched": z(count, np.int8), "was": z((most, P + 1)), "dF": z((P + 1, most)),
+        "local_b": z((most if lawful else 0, *sums)), "first": z(most, i),
+    }  # fmt: skip
+    return Groups(**{name: solid(array) for name, array in arrays.items()})
+
+
+def solid(x: Any) -> Any:
+    """An array as kernels take it."""
+    if not isinstance(x, np.ndarray):
+        return x
+    return np.ascontiguousarray(x, dtype=None if x.dtype in (np.int8, np.float64) else np.int64)

@@ -1,0 +1,52 @@
+"""What is kept at wanted times."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP
+from fricmb.integrate.taylor.account import displacement, pay_groups
+from fricmb.integrate.taylor.layout import DAMPING, INPUT, N_SAMPLES, STEP, WORK
+from fricmb.integrate.taylor.ledger import belt_work, count_rest
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate
+from fricmb.integrate.taylor.signals import belt_value
+
+
+@kernel
+def sample(net: Net, s: float) -> None:
+    """State, forces and energies at s."""
+    at = net.i[N_SAMPLES]
+    last = net.Q.shape[0] - 1
+    q, v, response = net.out_q[at], net.out_v[at], net.flat[WORK]
+    horner(net.Q, last, s, q)
+    horner_rate(net.Q, last, s, net.x[STEP], v)
+    horner(net.R, last - 2, s, response)
+    pay_groups(net, s)
+    for c in range(net.mode.shape[0]):
+        plain, slips = net.plain[c] == 1, net.mode[c] == SLIP
+        e, j = net.row_start[c], net.first_dof[c]
+        net.out_mode[at, c] = net.mode[c]
+        net.out_g[at, c] = slip_speed(net, c, s, at) if slips else 0.0
+        net.out_loss[at, c] = net.loss[c]
+        if not plain:
+            net.out_F[at, c] = hold_force(net, c, s)
+        elif slips:
+            net.out_F[at, c] = -net.slip[c] * net.sigma[c]
+            net.out_loss[at, c] += net.slip[c] * abs(displacement(net, c, q[j], s) - net.mark[c])
+        else:
+            net.out_F[at, c] = -net.row_coef[e] * response[j] / net.compliance[c]
+    brought, lost = net.x[INPUT], net.x[DAMPING]
+    count_rest(net, s, -1.0)
+    net.out_x[at, 0] = net.x[INPUT] - belt_work(net, s)
+    net.out_x[at, 1] = net.x[DAMPING]
+    net.x[INPUT], net.x[DAMPING] = brought, lost
+    net.i[N_SAMPLES] = at + 1
+
+
+@kernel
+def slip_speed(net: Net, c: int, s: float, at: int) -> float:
+    """Relative velocity of contact c at s, from the velocities of sample ``at``."""
+    g = -belt_value(net, c, s)
+    for e in range(net.row_start[c], net.row_start[c + 1]):
+        g += net.row_coef[e] * net.out_v[at, net.row_dof[e]]
+    return float(g)

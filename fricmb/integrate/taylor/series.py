@@ -1,0 +1,220 @@
+"""The Taylor polynomials of all dofs under their contacts' present modes."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.integrate.taylor.friction_curve import coefficient_at, compose, fit_around, within
+from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
+from fricmb.integrate.taylor.layout import ALLOWED, FASTEST
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import relative_row
+from fricmb.integrate.taylor.signals import add_signals, belt_rate, belt_value
+
+#: Speeds below this part of what friction may bring in the step are those of slip that begins.
+UNMOVED = 1e-3
+
+
+@kernel
+def three_diagonals(table: Floats, x: Floats, factor: float, out: Floats) -> None:
+    """Subtract factor times a tridiagonal matrix times x."""
+    n = table.shape[1]
+    under, middle, over = table[0], table[1], table[2]
+    out[0] -= factor * (middle[0] * x[0] + over[0] * x[1])
+    for j in range(1, n - 1):
+        out[j] -= factor * (under[j] * x[j - 1] + middle[j] * x[j] + over[j] * x[j + 1])
+    out[n - 1] -= factor * (under[n - 1] * x[n - 2] + middle[n - 1] * x[n - 1])
+
+
+@kernel
+def structure_row(net: Net, k: int, h: float, out: Floats) -> None:
+    """Coefficient k of M^-1 (f - K q - C v) into out (n,)."""
+    n = net.q.shape[0]
+    q = net.Q[k]
+    p = net.Q[k + 1]
+    rate = (k + 1) / h
+    if k == 0:
+        for j in range(n):
+            out[j] = net.load[j]
+    else:
+        for j in range(n):
+            out[j] = 0.0
+    damped = net.visc.shape[0] > 0
+    if net.tridiagonal[0] == 1:
+        three_diagonals(net.stiff, q, 1.0, out)
+        if damped:
+            three_diagonals(net.visc, p, rate, out)
+        add_signals(net, k, out)
+        return
+    for d in range(net.offset.shape[0]):
+        off = net.offset[d]
+        low = max(0, -off)
+        high = min(n, n - off)
+        a = net.stiff[d]
+        shifted = q[low + off : high + off]
+        part = a[low:high]
+        target = out[low:high]
+        for j in range(high - low):
+            target[j] -= part[j] * shifted[j]
+        if damped:
+            shifted = p[low + off : high + off]
+            part = net.visc[d][low:high]
+            for j in range(high - low):
+                target[j] -= part[j] * shifted[j] * rate
+    if net.offset.shape[0] == 0:
+        for j in range(n):
+            value = out[j]
+            for e in range(net.start[j], net.start[j + 1]):
+                value -= net.k[e] * q[net.neighbour[e]] + net.c[e] * p[net.neighbour[e]] * rate
+            out[j] = value
+    add_signals(net, k, out)
+
+
+@kernel
+def slip_force(net: Net, c: int, k: int, h: float) -> float:
+    """Coefficient k of the force of contact c of a group, which slips; its motion is known up to order k + 1."""
+    at = net.groups.lawful[c]
+    if at < 0:
+        return float(-net.slip[c] * net.sigma[c]) if k == 0 else 0.0
+    b = net.groups.b[at]
+    x = b[b.shape[0] - 1]
+    x[k] = net.sigma[c] * relative_row(net, c, k, h)
+    if k == 0:
+        mu = coefficient_at(net, c, x[0])
+    else:
+        if k == 1:
+            pad = 0.3 * abs(x[1]) + 0.05 * abs(x[0]) + 0.01 * net.x[FASTEST]
+            reach = net.compliance[c] * net.groups.N[c] * coefficient_at(net, c, x[0]) * h
+            if pad < UNMOVED * reach:
+                # slip that begins does not tell yet where it goes: as far as friction may bring it
+                pad = reach
+            fit_around(net, c, x[0], pad - min(0.0, x[1]), pad + max(0.0, x[1]))
+            x[0] = (x[0] - net.groups.middle[at]) / net.groups.half[at]
+            compose(net.groups.curve[at], net.groups.terms[at], x, b, 0)
+        x[k] /= net.groups.half[at]
+        mu = compose(net.groups.curve[at], net.groups.terms[at], x, b, k)
+    return float(-net.sigma[c] * net.groups.N[c] * mu)
+
+
+@kernel
+def push_slipping(net: Net, k: int, h: float, factor: float) -> None:
+    """Coefficient k of the forces of all contacts that slip into the displacements."""
+    target = net.Q[k + 2]
+    if k == 0:
+        for c in range(net.mode.shape[0]):
+            if net.plain[c] == 1 and net.mode[c] == SLIP:
+                e = net.row_start[c]
+                target[net.row_dof[e]] += factor * net.push[e] * (-net.slip[c] * net.sigma[c])
+    for i in range(net.grouped.shape[0]):
+        c = net.grouped[i]
+        if net.mode[c] != SLIP:
+            continue
+        force = slip_force(net, c, k, h)
+        net.groups.F[k, c] = force
+        if force != 0.0:
+            for e in range(net.row_start[c], net.row_start[c + 1]):
+                target[net.row_dof[e]] += factor * net.push[e] * force
+
+
+@kernel
+def hold_groups(net: Net, k: int, h: float, factor: float) -> None:
+    """Coefficient k of the forces of all contacts of groups that stick, and of what they add to the displacements.
+
+    These are ``factor`` times the accelerations.
+    """
+    F, rhs, n_stuck, target = net.groups.F, net.groups.rhs, net.groups.n_stuck, net.Q[k + 2]
+    for gi in range(n_stuck.shape[0]):
+        first = net.groups.group_start[gi]
+        still = is_held(net, gi)
+        for i in range(n_stuck[gi]):
+            c = stuck_contact(net, gi, i)
+            value = factor * belt_rate(net, c, k, h)
+            still = still and value == 0.0
+            for e in range(net.row_start[c], net.row_start[c + 1]):
+                value -= net.row_coef[e] * target[net.row_dof[e]]
+            rhs[first + i] = value
+        solve_group(net, gi)
+        for i in range(n_stuck[gi]):
+            c = stuck_contact(net, gi, i)
+            F[k, c] = rhs[first + i] / factor
+            for e in range(net.row_start[c], net.row_start[c + 1]):
+                j = net.row_dof[e]
+                target[j] = 0.0 if still else target[j] + net.push[e] * rhs[first + i]
+
+
+@kernel
+def hold_velocities(net: Net) -> None:
+    """Take out of the velocities what round-off and the powers of s of belts have left of slip where contacts stick."""
+    rhs, n_stuck = net.groups.rhs, net.groups.n_stuck
+    for gi in range(n_stuck.shape[0]):
+        first = net.groups.group_start[gi]
+        for i in range(n_stuck[gi]):
+            c = stuck_contact(net, gi, i)
+            value = belt_value(net, c, 0.0)
+            for e in range(net.row_start[c], net.row_start[c + 1]):
+                value -= net.row_coef[e] * net.v[net.row_dof[e]]
+            rhs[first + i] = value
+        solve_group(net, gi)
+        for i in range(n_stuck[gi]):
+            c = stuck_contact(net, gi, i)
+            for e in range(net.row_start[c], net.row_start[c + 1]):
+                net.v[net.row_dof[e]] += net.push[e] * rhs[first + i]
+
+
+@kernel
+def begin_groups(net: Net) -> None:
+    """Factors under the present modes, velocities that keep to them, the account at its beginning."""
+    for gi in range(net.groups.n_stuck.shape[0]):
+        factor_group(net, gi)
+    hold_velocities(net)
+    fastest = 1e-300
+    for j in range(net.top.shape[0]):
+        fastest = max(fastest, net.top[j])
+    net.x[FASTEST] = fastest
+    for i in range(net.grouped.shape[0]):
+        net.groups.paid[net.grouped[i]] = 0.0
+
+
+@kernel
+def curves_hold(net: Net) -> float:
+    """The part of the step in which all slip speeds stay where their curves hold, and these are good enough."""
+    allowed = 1.0
+    last = net.groups.F.shape[0] - 1
+    for i in range(net.grouped.shape[0]):
+        c = net.grouped[i]
+        at = net.groups.lawful[c]
+        if at < 0 or net.mode[c] != SLIP:
+            continue
+        b = net.groups.b[at]
+        allowed = min(allowed, within(net, at, b[b.shape[0] - 1], last, 1.0))
+        if net.groups.rough[at] > 1.0:
+            allowed = min(allowed, 0.7 * net.groups.rough[at] ** (-1.0 / (net.groups.nodes.shape[0] - 1.0)))
+    return float(allowed)
+
+
+@block
+def taylor_series(net: Net, h: float, places: Ints) -> bool:
+    """Fill Q, R and the groups' forces for a step h from the state; returns whether anything accelerates."""
+    n = net.q.shape[0]
+    free = net.free
+    begin_groups(net)
+    for j in range(n):
+        net.Q[0, j] = net.q[j]
+        net.Q[1, j] = net.v[j] * h
+    busy = False
+    for k in range(net.Q.shape[0] - 2):
+        row, target = net.R[k], net.Q[k + 2]
+        structure_row(net, k, h, row)
+        factor = h * h / ((k + 1) * (k + 2))
+        for j in range(n):
+            target[j] = factor * row[j] * free[j]
+        push_slipping(net, k, h, factor)
+        hold_groups(net, k, h, factor)
+        if not busy:
+            for j in range(n):
+                if target[j] != 0.0:
+                    busy = True
+                    break
+    net.x[ALLOWED] = curves_hold(net)
+    return busy

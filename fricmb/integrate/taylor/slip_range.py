@@ -1,0 +1,71 @@
+"""Over which slip speeds friction curves have to hold behind a transition, and where a correction ceases to be good."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import SLIP
+from fricmb.integrate.taylor.friction_curve import coefficient_at, fit_around, range_of, within
+from fricmb.integrate.taylor.layout import FASTEST, N_TOUCHED, TOL, UNTIL
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import relative_row
+
+
+@kernel
+def first_curve(net: Net, c: int, held: float, tau: float, h: float) -> None:
+    """A curve for a contact that begins to slip, over the speeds that it may reach in the rest of the step."""
+    at = net.groups.lawful[c]
+    if at < 0 or net.mode[c] != SLIP:
+        return
+    rest = (1.0 - tau) * h
+    jump = abs(abs(held) - net.groups.N[c] * coefficient_at(net, c, 0.0))
+    slope = 0.0
+    for k in range(net.groups.F.shape[0] - 1, 0, -1):
+        slope = slope * tau + k * net.groups.F[k, c]
+    reach = net.compliance[c] * rest * (jump + abs(slope) * (1.0 - tau)) + abs(relative_row(net, c, 1, h)) * (1.0 - tau)
+    fit_around(net, c, 0.0, 0.0, 1.5 * reach + 0.01 * net.x[FASTEST])
+
+
+@kernel
+def widen(net: Net, tau: float) -> bool:
+    """Fit anew what left the range of its curve behind tau; returns whether anything did."""
+    groups = net.groups
+    again = False
+    last = groups.F.shape[0] - 1
+    for slot in range(net.i[N_TOUCHED]):
+        c = groups.here[slot]
+        at = groups.lawful[c]
+        if at < 0 or net.mode[c] != SLIP:
+            continue
+        b = groups.local_b[slot]
+        x = b[b.shape[0] - 1]
+        if within(net, at, x, last, 1.0 - tau) < 1.0:
+            middle, half = groups.middle[at], groups.half[at]
+            above = min(8.0, 1.2 * range_of(x, last, 1.0 - tau, True) - x[0])
+            below = min(8.0, x[0] - 1.2 * range_of(x, last, 1.0 - tau, False))
+            fit_around(net, c, middle + x[0] * half, max(0.1, below) * half, max(0.1, above) * half)
+            again = again or groups.half[at] > 1.05 * half
+    return again
+
+
+@kernel
+def good_until(net: Net, count: int, tau: float, h: float) -> float:
+    """Where the correction is no longer good: by its last coefficients and by the curves' ranges."""
+    groups = net.groups
+    last = net.Q.shape[0] - 1
+    reach = (1.0 - tau) ** (last - 1)
+    error = 0.0
+    for a in range(count):
+        tail = last * abs(net.dQ[last, a]) + (last - 1) * abs(net.dQ[last - 1, a])
+        error = max(error, tail * reach / (h * (net.top[net.local[a]] + 0.01 * net.x[FASTEST])))
+    error /= net.x[TOL]
+    part = 1.0 if error <= 1.0 else 0.9 * error ** (-1.0 / (last - 1.0))
+    for slot in range(net.i[N_TOUCHED]):
+        c = groups.here[slot]
+        at = groups.lawful[c]
+        if at < 0 or net.mode[c] != SLIP:
+            continue
+        b = groups.local_b[slot]
+        part = min(part, within(net, at, b[b.shape[0] - 1], groups.F.shape[0] - 1, 1.0 - tau))
+        if groups.rough[at] > 1.0:
+            part = min(part, 0.7 * groups.rough[at] ** (-1.0 / (groups.nodes.shape[0] - 1.0)))
+    return float(min(net.x[UNTIL], tau + (1.0 - tau) * part))

@@ -1,0 +1,135 @@
+"""Modes at the start of a run and where something prescribed jumps."""
+
+from __future__ import annotations
+
+import math
+
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
+from fricmb.integrate.taylor.account import displacement, lose_sliding
+from fricmb.integrate.taylor.layout import LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import hold_force, relative_row
+from fricmb.integrate.taylor.series import taylor_series
+from fricmb.integrate.taylor.signals import belt_grain, belt_value, signal_series
+from fricmb.integrate.taylor.turning import MARGIN, keep_event, set_mode
+
+EPS = 2.3e-16
+
+
+@kernel
+def set_window(net: Net) -> None:
+    """Functions of time are evaluated between the stops around the present time."""
+    t = net.x[TIME]
+    low = net.stops[net.i[N_STOP] - 1] if net.i[N_STOP] > 0 else t
+    high = net.stops[net.i[N_STOP]]
+    net.window[0] = low + 2.0 * EPS * abs(low) + 1e-300
+    net.window[1] = high - 2.0 * EPS * abs(high) - 1e-300
+
+
+@kernel
+def look_at_speeds(net: Net, given: bool, before_it: float) -> None:
+    """Modes from velocities alone: what moves slips, what has no slip speed rests for now.
+
+    ``before_it``: length of the step before.
+    """
+    for c in range(net.mode.shape[0]):
+        g = -belt_value(net, c, 0.0)
+        for e in range(net.row_start[c], net.row_start[c + 1]):
+            g += net.row_coef[e] * net.v[net.row_dof[e]]
+        # a belt that starts from rest does so at a time that is round-off away
+        noise = net.x[NOISE] + 1e-12 * (abs(belt_value(net, c, 0.5)) + abs(belt_value(net, c, 1.0)))
+        stuck = net.mode[c] == STICK
+        if given and stuck:
+            # it has moved with the belt as powers of s have
+            noise += belt_grain(net, c, before_it)
+        net.groups.before[c] = STICK if stuck else int(net.sigma[c])
+        rests = abs(g) <= noise
+        net.groups.rests[c] = 1 if rests else 0
+        set_mode(net, c, STICK if rests else SLIP, net.sigma[c] if rests else math.copysign(1.0, g))
+
+
+@kernel
+def release_plain(net: Net) -> None:
+    """Let go plain contacts that rest and hold more than they can."""
+    for c in range(net.mode.shape[0]):
+        if net.plain[c] == 1 and net.mode[c] == STICK:
+            held = hold_force(net, c, 0.0)
+            if not abs(held) <= net.stick[c] * (1.0 + MARGIN):
+                set_mode(net, c, SLIP, -math.copysign(1.0, held))
+
+
+@kernel
+def release_worst(net: Net, gi: int, again: bool) -> bool:
+    """Let go the contact of a group that rests and exceeds its cone most; whether any contact changed its mode.
+
+    ``again``: one that was let go and moves against its force is held again.
+    """
+    groups = net.groups
+    changed = False
+    worst, excess = -1, 1.0 + MARGIN
+    for a in range(groups.group_start[gi], groups.group_start[gi + 1]):
+        c = groups.group_contact[a]
+        if groups.rests[c] == 0:
+            continue
+        if net.mode[c] == SLIP and again:
+            if net.sigma[c] * relative_row(net, c, 1, net.x[STEP]) < 0.0:
+                net.mode[c] = STICK
+                changed = True
+        elif net.mode[c] == STICK and abs(groups.F[0, c]) > excess * net.stick[c]:
+            worst = c
+            excess = abs(groups.F[0, c]) / (net.stick[c] + 1e-300)
+    if worst >= 0:
+        set_mode(net, worst, SLIP, -math.copysign(1.0, groups.F[0, worst]))
+        changed = True
+    return changed
+
+
+@kernel
+def release_groups(net: Net) -> None:
+    """Let go, group by group, what exceeds its cone until nothing does."""
+    count = net.groups.n_stuck.shape[0]
+    largest = 1
+    for gi in range(count):
+        largest = max(largest, net.groups.group_start[gi + 1] - net.groups.group_start[gi])
+    for turn in range(4 * largest + 8 if count > 0 else 0):
+        taylor_series(net, net.x[STEP], net.places)
+        changed = False
+        for gi in range(count):
+            if release_worst(net, gi, turn < 2 * largest + 4):
+                changed = True
+        if not changed:
+            break
+
+
+@kernel
+def settle(net: Net, given: bool) -> None:
+    """Modes at the start and (``given``) behind a breakpoint, from velocities or, where these are 0, forces.
+
+    Changes behind a breakpoint are transitions.
+    """
+    before_it = net.x[STEP]
+    h = min(net.x[LONGEST], net.stops[net.i[N_STOP]] - net.x[TIME])
+    net.x[STEP] = h
+    for c in range(net.mode.shape[0]):
+        if net.plain[c] == 1 and given:
+            lose_sliding(net, c, net.q[net.first_dof[c]], 0.0)
+        elif net.plain[c] == 1:
+            net.mark[c] = displacement(net, c, net.q[net.first_dof[c]], 0.0)
+    signal_series(net, net.x[TIME], h)
+    look_at_speeds(net, given, before_it)
+    taylor_series(net, h, net.places)
+    release_plain(net)
+    release_groups(net)
+    for c in range(net.mode.shape[0]):
+        now, before = STICK if net.mode[c] == STICK else int(net.sigma[c]), net.groups.before[c]
+        if given and now != before:
+            kind = EVENT_STICK if now == STICK else (EVENT_SLIP if before == STICK else EVENT_REVERSAL)
+            keep_event(net, net.x[TIME], c, kind)
+
+
+@entry
+def settle_start(net: Net) -> None:
+    """Modes at the start of a run."""
+    set_window(net)
+    settle(net, False)
