@@ -17,7 +17,7 @@ from fricmb.plan._plan import Island, Plan
 from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
-from fricmb.plan._same import outline_of
+from fricmb.plan._same import common
 from fricmb.plan._tree import topology
 from fricmb.plan._truncate import truncated
 from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene
@@ -69,14 +69,14 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     return found
 
 
-#: Plans that scenes of one family keep together.
+#: Plans that scenes which differ in numbers alone keep together.
 MANY = 16
 
 
 def _plan_of(scene: Scene, wanted: Wanted | None) -> Plan:
-    """The plan, taken from another scene of the family where that has the same."""
-    plans: dict[Any, Plan] = scene._shared.setdefault("plans", {})
-    key = None if wanted is None else wanted.key, scene.name, outline_of(scene)
+    """The plan, taken from another scene where that has the same."""
+    plans: dict[Any, Plan] = common(scene).setdefault("plans", {})
+    key = None if wanted is None else wanted.key
     found = plans.get(key)
     if found is None:
         with no_collection(len(scene.parts)):

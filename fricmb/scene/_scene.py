@@ -166,6 +166,9 @@ class Scene:
         SceneError
             If one name stands for two places.
         """
+        known = self._cache.get("rigid points")
+        if known is not None:
+            return dict(known)
         bodies = [part for part in self.parts if isinstance(part, RigidBody)]
         found = {f"{body.name}.{point}": body.point(point) for body in bodies for point in body.points}
         for part in self.parts if bodies else ():
@@ -173,7 +176,8 @@ class Scene:
                 if isinstance(end, RigidPoint) and found.setdefault(end.end_name, end).offset != end.offset:
                     held = found[end.end_name].offset
                     raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
-        return found
+        self._cache["rigid points"] = found
+        return dict(found)
 
     @property
     def space_points(self) -> dict[str, SpacePoint]:
@@ -184,6 +188,9 @@ class Scene:
         SceneError
             If one name stands for two places.
         """
+        known = self._cache.get("space points")
+        if known is not None:
+            return dict(known)
         bodies = [part for part in self.parts if isinstance(part, SpaceBody)]
         found = {f"{body.name}.{name}": SpacePoint(body, name) for body in bodies for name in body.offsets}
         for part in self.parts if bodies else ():
@@ -191,7 +198,8 @@ class Scene:
                 if isinstance(end, SpacePoint) and found.setdefault(end.end_name, end).offset != end.offset:
                     held = found[end.end_name].offset
                     raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
-        return found
+        self._cache["space points"] = found
+        return dict(found)
 
     # -- motions ------------------------------------------------------------------------------------------------
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,7 +12,7 @@ from fricmb.equations import joint_template, numbers, place_template, signal_exp
 from fricmb.errors import SceneError
 from fricmb.integrate.mechanism import Entries, Joints, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
-from fricmb.plan import topology
+from fricmb.plan import common, topology
 from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
@@ -82,6 +82,15 @@ class JointArrays:
         )
 
 
+def _found_once(scene: Any, key: Any, find: Callable[[], list[Any]]) -> list[Any]:
+    """Names that do not depend on numbers, found once for scenes that differ in these alone."""
+    known = common(scene)
+    if key not in known:
+        known[key] = find()
+    found: list[Any] = known[key]
+    return found
+
+
 def _is_number(value: Any) -> bool:
     try:
         value_of(value)
@@ -93,10 +102,10 @@ def _is_number(value: Any) -> bool:
 def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     """The arrays of a scene with bodies that turn or joints."""
     dofs = scene.dof_names if plan is None else plan.dofs
-    kept = None if plan is None else set(plan.parts)
+    kept = None if plan is None else frozenset(plan.parts)
     parts = [part for part in scene.parts if kept is None or part.name in kept]
     n = len(dofs)
-    points = _used_points(scene, parts)
+    points = _found_once(scene, ("used points", kept), lambda: _used_points(scene, parts))
     extended = (*dofs, *(f"{point}.{c}" for point in points for c in "xy"))
     index = {name: i for i, name in enumerate(extended)}
     signals = _motions.Signals()
@@ -153,9 +162,10 @@ def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     """The problem with constraints marked that follow from others; friction needs reactions that are determined."""
     from fricmb.integrate.constrained.redundancy import redundancy
 
-    groups = _with_bodies(scene, topology(scene, problem.mechanism.joints.names).groups) if problem.mechanism else ()
-    found = redundancy(problem, start, groups)
     mechanism = problem.mechanism
+    names = () if mechanism is None else mechanism.joints.names
+    groups = _found_once(scene, ("groups", names), lambda: _with_bodies(scene, topology(scene, names).groups))
+    found = redundancy(problem, start, groups)
     if not found.rows.size or mechanism is None:
         return problem
     held = [name for name in found.joints if isinstance(scene[name], Joint)]

@@ -7,8 +7,10 @@ import pytest
 
 import fricmb as fm
 from fricmb.integrate.collocation import _structure, _workspace
+from fricmb.integrate.constrained import pattern
 from fricmb.integrate.model import problem_structs, structure
-from fricmb.plan import make_plan
+from fricmb.integrate.run import workspace
+from fricmb.plan import _same, make_plan
 from fricmb.plan._make import _make
 from fricmb.system import _spectrum
 
@@ -34,6 +36,8 @@ def several():
 SCENES = {
     "brake": (M.brake4dof, 2.0), "belt": (M.belt_oscillator, 20.0), "several": (several, 4.0),
     "stack": (M.block_stack, 0.5), "planar": (M.planar_oscillator, 4.0), "chain": (lambda: M.stick_slip_chain(5), 3.0),
+    "slider crank": (M.slider_crank, 0.05), "dry pendulum": (M.dry_pendulum, 0.3), "heavy top": (M.heavy_top, 0.02),
+    "rising top": (M.rising_top, 0.01), "ball": (M.ball_in_cylinder, 0.05), "rod": (M.painleve_rod, 0.02),
 }  # fmt: skip
 
 
@@ -54,7 +58,8 @@ def changes(scene, seed, count):
 
 def forget():
     """Nothing is left of runs before."""
-    _workspace._store.clear()
+    for store in (_workspace._store, workspace._store, pattern._store, _same._common, _same._known):
+        store.clear()
     for function in (
         _structure.blocks, problem_structs._softness, structure._dense_inverse, _spectrum.spectrum,
     ):  # fmt: skip
@@ -88,7 +93,7 @@ def test_other_values_give_what_a_scene_made_anew_gives(name):
     assert told > 4
 
 
-@pytest.mark.parametrize("name", [*SCENES, "pad_rotor", "slider_crank", "dry_pendulum"])
+@pytest.mark.parametrize("name", [*SCENES, "pad_rotor", "four_bar", "andrews"])
 def test_plans_of_a_family_are_those_of_each_scene(name):
     scene = SCENES[name][0]() if name in SCENES else getattr(M, name)()
     make_plan(scene)

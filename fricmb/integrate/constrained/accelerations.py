@@ -9,7 +9,6 @@ import numpy as np
 from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.forces import (
     bend,
@@ -54,16 +53,23 @@ class State(NamedTuple):
     rate: Floats
 
 
-def state_of(problem: Problem, start: Start) -> State:
-    """The state at a start, forces still to be found."""
-    m, nc, rows = mechanism_of(problem), problem.n_c, problem.m
-    mode = np.ones(nc, np.int8) if start.mode is None else np.array(start.mode, np.int8)
-    n = np.zeros(rows) if start.direction is None else np.array(start.direction, float)
-    q, v, z = (np.array(x, dtype=float) for x in (start.q, start.v, start.z))
-    return room(State(
-        np.array([float(start.t)]), q, v, z, np.zeros(m.n), np.zeros(m.n_rows), np.zeros(rows), np.zeros(nc),
-        np.zeros(rows), np.zeros(rows), np.zeros_like(z), mode, n, np.zeros(nc + 2), np.zeros(nc + 2),
-    ))  # fmt: skip
+def state_of(problem: Problem) -> State:
+    """An empty state: at the origin, at rest, slipping."""
+    m, nc, rows, nz = mechanism_of(problem), problem.n_c, problem.m, problem.n_z
+    return State(
+        np.zeros(1), np.zeros(m.n), np.zeros(m.n), np.zeros(nz), np.zeros(m.n), np.zeros(m.n_rows), np.zeros(rows),
+        np.zeros(nc), np.zeros(rows), np.zeros(rows), np.zeros(nz), np.ones(nc, np.int8), np.zeros(rows),
+        np.zeros(nc + 2), np.zeros(nc + 2),
+    )  # fmt: skip
+
+
+def set_out(y: State, start: Start) -> None:
+    """Bring an empty state to a start, forces still to be found."""
+    y.t[0], y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
+    if start.mode is not None:
+        y.mode[:] = start.mode
+    if start.direction is not None:
+        y.n[:] = start.direction
 
 
 class Instant(NamedTuple):
@@ -82,15 +88,15 @@ class Instant(NamedTuple):
 
 
 def instant_of(problem: Problem) -> Instant:
-    """Rooms for the problem."""
+    """Arrays for the problem."""
     order = mech_of(problem).order
     size, ldab = len(order.place), int(order.sizes[3])
     layers = Layers(np.zeros(size * ldab), np.zeros(size * ldab), np.zeros(size * ldab))
     m = mechanism_of(problem)
-    return room(Instant(
+    return Instant(
         layers, np.zeros(size * ldab), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(m.n_y),
         np.zeros(m.n),
-    ))  # fmt: skip
+    )  # fmt: skip
 
 
 #: What of friction the matrix of an instant holds.

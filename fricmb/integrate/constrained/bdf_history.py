@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained.accelerations import State, state_of
+from fricmb.integrate.constrained.accelerations import State, set_out, state_of
 from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.methods.backward_differences import Differences, begin_at
@@ -34,7 +34,8 @@ class Formula(NamedTuple):
 
 def formula_of(problem: Problem, start: Start) -> Formula:
     """Room for the steps of a run."""
-    base, one = state_of(problem, start), stages_of(problem, one_stage())
+    base, one = room(state_of(problem)), room(stages_of(problem, one_stage()))
+    set_out(base, start)
     q = np.array(start.q, float)
     return room(Formula(base, one, np.zeros(1), np.zeros(1), q, np.zeros_like(q)))
 

@@ -8,15 +8,16 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import bmat, csr_matrix, eye
 from scipy.sparse.linalg import splu
 
 from fricmb.integrate.constrained.instants import constraints
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained.pattern import of_pattern
+from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem
-from fricmb.integrate.run.problem_cache import kept
 
 #: What keeps the equations regular where constraints depend on one another, beside rows of length 1.
 REGULAR = 1e-10
@@ -40,13 +41,12 @@ def constraints_at(problem: Problem, t: float, q: Floats, v: Floats) -> Constrai
     mechanism, mech, nc = mechanism_of(problem), mech_of(problem), problem.n_c
     m = mechanism.n_rows
     phi, rate = np.zeros(m), np.zeros(m)
-    count = kept(problem, "entries of G", lambda: _entries(mech, mechanism))
+    count = of_pattern(problem, "entries of G", lambda: _entries(mech, mechanism))
     row, column, value = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count)
     F, N, g = np.zeros(problem.m), np.zeros(nc), np.zeros(problem.m)
     q, v = (np.array(x, dtype=float) for x in (q, v))
-    used = constraints(
-        mech, moving_of(problem), float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value
-    )  # fmt: skip
+    with evaluation(problem) as rooms:
+        used = constraints(mech, rooms.k, float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value)
     if m + problem.n <= DENSE:
         G = np.zeros((m, problem.n))
         np.add.at(G, (row[:used], column[:used]), value[:used])
@@ -104,8 +104,10 @@ class Least:
         self._solve: Callable[[Floats], Floats]
         if m + n <= DENSE:
             rows = dense(J)
-            factors = lu_factor(np.block([[np.eye(n), rows.T], [rows, -REGULAR * np.eye(m)]]), check_finite=False)
-            self._solve = partial(lu_solve, factors, check_finite=False)
+            matrix = np.zeros((n + m, n + m), order="F")
+            matrix[:n, n:], matrix[n:, :n] = rows.T, rows
+            matrix.ravel("K")[:: n + m + 1] = np.append(np.ones(n), np.full(m, -REGULAR))
+            self._solve = partial(_solved, *dgetrf(matrix, overwrite_a=True)[:2])
         else:
             self._solve = splu(bmat([[eye(n), J.T], [J, -REGULAR * eye(m)]], format="csc")).solve
 
@@ -125,3 +127,9 @@ class Least:
             y = self._solve(np.concatenate([np.zeros(n), y / np.linalg.norm(y)]))[n:]
         unit: Floats = y / np.linalg.norm(y)
         return unit
+
+
+def _solved(factors: Floats, pivots: Ints, r: Floats) -> Floats:
+    """The solution for one right-hand side."""
+    found: Floats = dgetrs(factors, pivots, r)[0]
+    return found

@@ -12,6 +12,7 @@ from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_STEPS, PL
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.loop_softness import softness
+from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.forces import Scratch
@@ -146,7 +147,8 @@ def _pack(problem: Problem) -> Mech:
     if (rows == 0).any():  # what presses and rubs without holding opens as a contact with a normal-force law does
         normal = np.where((port_joint >= 0) & (rows[port_joint] == 0), NORMAL_LAW, normal).astype(np.int8)
     port = Port(
-        port_joint, solid(contacts.row, np.int64), softness(problem, m, port_joint), _table(m.slip),
+        port_joint, solid(contacts.row, np.int64),
+        of_pattern(problem, "softness", lambda: softness(problem, m, port_joint)), _table(m.slip),
         solid(contacts.w), solid(contacts.law, np.int8),
         solid(contacts.mu_s),
         solid(contacts.mu_0), solid(contacts.z_start, np.int64), normal,
@@ -157,8 +159,10 @@ def _pack(problem: Problem) -> Mech:
         problem.elements.f_start, problem.elements.spread_start, problem.elements.spread_dof,
         np.append(problem.elements.spread_coefficient, 0.0),
     )  # fmt: skip
-    places = _places(m)
-    order, half = ordering(problem, m, places.y_start, places.y_dof)
+    p = m.places
+    rest = of_pattern(problem, "places", lambda: _place_rows(m))
+    places = Place(p.address, p.p_start, np.append(p.p, 0.0), p.dof_start, p.dof, p.first, *rest)
+    order, half = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
     size = m.n + int(rows.sum()) + problem.m + problem.n_z
     return room(Mech(
         linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread,
@@ -175,7 +179,8 @@ def masses(m: Mechanism) -> Floats:
     return np.maximum(mass, m.least_mass) if m.least_mass.size else mass
 
 
-def _places(m: Mechanism) -> Place:
+def _place_rows(m: Mechanism) -> tuple[Ints, ...]:
+    """Where derivatives of places begin, and the dofs that each extended coordinate moves with."""
     p = m.places
     count, across = np.diff(p.first), np.diff(p.dof_start)
     grad = np.concatenate(([0], np.cumsum(count * across))).astype(np.int64)
@@ -191,8 +196,7 @@ def _places(m: Mechanism) -> Place:
             dof.extend(mine)
             at.extend(int(grad[k]) + c * len(mine) + b for b in range(len(mine)))
             start.append(len(dof))
-    ints = [np.array(x, dtype=np.int64) for x in (start, dof, at)]
-    return Place(p.address, p.p_start, np.append(p.p, 0.0), p.dof_start, p.dof, p.first, grad, hess, *ints)
+    return (grad, hess, *[np.array(x, dtype=np.int64) for x in (start, dof, at)])
 
 
 def _blocks() -> tuple[str, ...]:
@@ -237,7 +241,7 @@ class Moving(NamedTuple):
     borne: Floats
 
 
-class _Lengths(NamedTuple):
+class Lengths(NamedTuple):
     """Of the rooms for calls: places and their rates, what goes into templates and comes out."""
 
     grad: int
@@ -248,7 +252,12 @@ class _Lengths(NamedTuple):
     n_out: int
 
 
-def _lengths(problem: Problem) -> _Lengths:
+def lengths(problem: Problem) -> Lengths:
+    """How long the rooms for calls have to be."""
+    return of_pattern(problem, "lengths", lambda: _lengths(problem))
+
+
+def _lengths(problem: Problem) -> Lengths:
     m, packed = mechanism_of(problem), mech_of(problem)
     widths = np.asarray(packed.joint.n_x, dtype=int)
     rows = np.diff(m.joints.row)
@@ -261,7 +270,7 @@ def _lengths(problem: Problem) -> _Lengths:
     for templates in (problem.elements.table, problem.contacts.normal_table):
         s_x = max(s_x, int(np.max(np.diff(templates.x_start), initial=0)))
     b = int(np.max(np.diff(m.places.dof_start), initial=1))
-    return _Lengths(
+    return Lengths(
         grad=int(packed.place.grad_start[-1]),
         hess=int(packed.place.hess_start[-1]),
         s_x=s_x,
@@ -272,17 +281,16 @@ def _lengths(problem: Problem) -> _Lengths:
 
 
 def moving_of(problem: Problem) -> Moving:
-    """Rooms for evaluating the problem."""
-    m, n_u = mechanism_of(problem), problem.n_u
-    size = kept(problem, "lengths of rooms", lambda: _lengths(problem))
+    """Arrays for evaluating the problem."""
+    m, n_u, size = mechanism_of(problem), problem.n_u, lengths(problem)
     scratch = Scratch(
         np.zeros(1 + 2 * m.n_y + 2 * n_u), np.zeros(n_u), np.zeros(size.s_x), np.zeros(size.s_out),
         np.array([-np.inf, np.inf]),
     )  # fmt: skip
-    return room(Moving(
+    return Moving(
         scratch, np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
         np.zeros(problem.n_c), np.ones(1), np.zeros(2),
-    ))  # fmt: skip
+    )  # fmt: skip
 

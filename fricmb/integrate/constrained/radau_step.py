@@ -8,7 +8,6 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.accelerations import Instant, State, powers, react
 from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
@@ -47,15 +46,14 @@ class Control(NamedTuple):
     weight: Floats2
 
 
-def control_of(problem: Problem, st: Stages, rtol: float, v: Floats, z: Floats, floor: Floats, span: Floats,
-               h: float, mass: Floats) -> Control:  # fmt: skip
-    """Step control at the start of a run."""
-    s, size = len(st.tab.c), len(st.x)
-    return room(Control(
-        np.array([rtol]), v, z, floor, np.array([h, 0.0, 0.0]), np.zeros((s + 1, size)), np.zeros(8, np.int64), span,
-        np.sort(np.asarray(problem.signals.breakpoints, float)), mass, np.zeros(2), np.zeros((s, problem.n_c + 2)),
-        np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-    ))  # fmt: skip
+def control_of(problem: Problem, st: Stages) -> Control:
+    """Arrays for step control."""
+    s, size, n, stops = len(st.tab.c), len(st.x), problem.n, problem.signals.breakpoints.size
+    return Control(
+        np.zeros(1), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), np.array([1.0, 0.0, 0.0]),
+        np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), np.zeros(stops), np.zeros(n), np.zeros(2),
+        np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
+    )  # fmt: skip
 
 
 @kernel

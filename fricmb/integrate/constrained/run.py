@@ -8,18 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.accelerations import State, instant_of, state_of
+from fricmb.integrate.constrained.accelerations import State, set_out
 from fricmb.integrate.constrained.bdf_history import formula_of, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
-from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of, moving_of
-from fricmb.integrate.constrained.radau_step import control_of
+from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of
 from fricmb.integrate.constrained.recorder import record_of
-from fricmb.integrate.constrained.stages import stages_of
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
-from fricmb.integrate.constrained.watch import watch_of
+from fricmb.integrate.constrained.workspace import Rooms, run_rooms
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import differences
@@ -27,7 +25,6 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
-from fricmb.integrate.step.tableau import radau
 
 CHUNK = 1024
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
@@ -57,50 +54,68 @@ def run_mechanism(
     whole = problem
     if mechanism_of(problem).joints.hands_over.any():
         problem = with_open(problem, away(problem, start))
-    m = mechanism_of(problem)
     start, notes = consistent_start(problem, start)
-    mech, k, w = mech_of(problem), moving_of(problem), instant_of(problem)
-    y, end, before = (state_of(problem, start) for _ in range(3))
-    st, out = stages_of(problem, radau(stages)), watch_of(problem, stages)
-    mass = masses(m)
-    if (m.joints.dropped == 1).any():
-        rows = np.flatnonzero(m.joints.dropped == 1).astype(np.int64)
-        listed = ", ".join(repr(name) for name in names_of_rows(m, rows))
-        text = f"redundant constraints: {len(rows)} of {listed} follow(s) from the others; reactions are of least norm"
-        notes = (*notes, text)
-    v, z = np.abs(np.asarray(start.v, float)), np.abs(np.asarray(start.z, float))
-    floor = np.zeros(m.n) if tolerance.atol_v is None else tolerance.atol_v / tolerance.rtol
-    span = np.array([start.t, t_end])
-    control = control_of(problem, st, tolerance.rtol, v, z, floor, span, 1.0, mass)
-    record = record_of(problem, stages, CHUNK)
-    part = np.zeros(problem.n_c, np.int8)
-    reach = _reach(problem, start, t_end)
-    small = 1e-12 * max(float(np.abs(v).max(initial=0.0)), reach)
-    if np.abs(v).max(initial=0.0) <= small:
-        y.v[:] = 0.0  # round-off of a start at rest
-    rooms = (mech, k, w, y, end, before, st, control, out, record, part)
-    go_on = _bdf_loop(problem, start, t_end, stages, rooms) if multistep else partial(drive, *rooms)
-    chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
-    code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
-    if code == DONE:
-        out.size[0] = max(float(out.size[0]), reach)
-        load = _load(m, y)
-        if not np.any(y.v) and (mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
-            to_come = _speed_to_come(problem, start, t_end, load, mass)
-            control.floor_v[:] = np.maximum(floor, to_come)
-            out.size[0] = max(float(out.size[0]), to_come)
-        control.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
-        code = chunks.fill(go_on, y.t, memory, progress)
-    chunks.take()
+    with run_rooms(problem, stages) as rooms:
+        small, reach = _set_up(rooms, problem, start, t_end, tolerance)
+        mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
+        k, w, y, end, before, st, out, control = rooms
+        given = (mech, k, w, y, end, before, st, control, out, record, part)
+        go_on = _bdf_loop(problem, start, t_end, stages, given) if multistep else partial(drive, *given)
+        chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
+        code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
+        if code == DONE:
+            _settle(rooms, problem, start, t_end, reach)
+            code = chunks.fill(go_on, y.t, memory, progress)
+        chunks.take()
+        failure = None if code == DONE else ended() or (None if code == FULL else failure_text(code, problem, y, out))
+        last, counts = end_of(y), control.counts.copy()
     values, span, force, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
-    failure = None if code == DONE else ended() or (None if code == FULL else failure_text(code, problem, y, out))
     if chunks.broken:
         failure = failure or FAILURES[FAIL_INFINITE]
-    notes = (*notes, *held_notes(problem, span[:, 0], mode, opened))
+    notes = (*notes, *_dropped_notes(mechanism_of(problem)), *held_notes(problem, span[:, 0], mode, opened))
     return StepTrajectory(
-        whole, span, values, force, mode, opened, after, chunks.transitions(), counters(control.counts, notes),
-        end_of(y), failure, nodes_of(stages),
+        whole, span, values, force, mode, opened, after, chunks.transitions(), counters(counts, notes), last, failure,
+        nodes_of(stages),
     )  # fmt: skip
+
+
+def _set_up(rooms: Rooms, problem: Problem, start: Start, t_end: float, tolerance: Tolerance) -> tuple[float, float]:
+    """Put start, times and tolerance into empty rooms; a speed of round-off, and that which loads would bring."""
+    m, y, c = mechanism_of(problem), rooms.y, rooms.control
+    for state in (y, rooms.end, rooms.before):
+        set_out(state, start)
+    c.rtol[0], c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
+    c.v[:], c.z[:] = np.abs(start.v), np.abs(start.z)
+    if tolerance.atol_v is not None:
+        c.floor_v[:] = tolerance.atol_v / tolerance.rtol
+    c.stops[:] = np.sort(problem.signals.breakpoints)
+    rooms.out.opened[0] = (m.joints.dropped == 2).sum()
+    reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
+    small = 1e-12 * max(top, reach)
+    if top <= small:
+        y.v[:] = 0.0  # round-off of a start at rest
+    return small, reach
+
+
+def _settle(rooms: Rooms, problem: Problem, start: Start, t_end: float, reach: float) -> None:
+    """What counts as 1, and the first step, from what is found at the start."""
+    y, out, c = rooms.y, rooms.out, rooms.control
+    out.size[0] = max(float(out.size[0]), reach)
+    load = _load(mechanism_of(problem), y)
+    if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
+        to_come = _speed_to_come(problem, start, t_end, load, c.mass)
+        c.floor_v[:] = np.maximum(c.floor_v, to_come)
+        out.size[0] = max(float(out.size[0]), to_come)
+    c.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
+
+
+def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
+    """That constraints follow from others, where they do."""
+    rows = np.flatnonzero(m.joints.dropped == 1).astype(np.int64)
+    if not rows.size:
+        return ()
+    listed = ", ".join(repr(name) for name in names_of_rows(m, rows))
+    return (f"redundant constraints: {len(rows)} of {listed} follow(s) from the others; reactions are of least norm",)
 
 
 #: Attempted steps of BDF for the time of one of the one-step method with five stages: 2.0 to 4.2, median 3.3, on six of

@@ -17,7 +17,6 @@ import numpy as np
 from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import forces, move, pull_back
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
@@ -60,19 +59,19 @@ class Stages(NamedTuple):
 
 
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
-    """Rooms for the stages of a tableau with an odd number of them."""
+    """Arrays for the stages of a tableau with an odd number of them."""
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
     size, ldab = len(order.place), int(order.sizes[3])
     band = size * ldab
     nc, rows, nz, count = problem.n_c, problem.m, problem.n_z, len(tab.lam)
-    return room(Stages(
+    return Stages(
         tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
         np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
         np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
         np.zeros((count, size), complex), np.zeros(nz), np.zeros(size), np.ones(m.n), np.zeros(1),
         turns_of(problem, s, size),
-    ))  # fmt: skip
+    )  # fmt: skip
 
 
 @block

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fricmb.integrate.constrained.accelerations import instant_of, state_of
 from fricmb.integrate.constrained.instants import instants
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
@@ -140,13 +140,12 @@ def complete_at(
     lam, a = np.zeros((count, m)), np.zeros((count, problem.n))
     mech = mech_of(problem)
     windows = _windows(mech.breakpoints, t)
-    start = Start(t=0.0, q=np.zeros(problem.n), v=np.zeros(problem.n), z=np.zeros(problem.n_z))
-    solid = np.ascontiguousarray
-    instants(
-        mech, moving_of(problem), instant_of(problem), state_of(problem, start), solid(t), q, v, z,
-        solid(mode, np.int8), solid(force, float), windows, 1e-11 * float(np.abs(v).max(initial=0.0)), F, N, g, lam, a,
-        project,
-    )  # fmt: skip
+    solid, still = np.ascontiguousarray, 1e-11 * float(np.abs(v).max(initial=0.0))
+    with evaluation(problem) as rooms:
+        instants(
+            mech, rooms.k, rooms.w, rooms.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float), windows,
+            still, F, N, g, lam, a, project,
+        )  # fmt: skip
     return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
 
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
 
@@ -47,17 +46,21 @@ class Turns(NamedTuple):
     pivots: Pivots
 
 
-def turns_of(problem: Problem, s: int, size: int) -> Turns:
-    """Rooms for the contacts in several directions with set-valued laws."""
+def turning_rows(problem: Problem) -> int:
+    """Rows in which contacts in several directions with set-valued laws turn, at most those that are kept."""
     contacts = problem.contacts
-    k = int(np.maximum(np.diff(contacts.row) - 1, 0)[contacts.law != LAW_SMOOTH].sum())
-    k = min(k, TOGETHER) if s > 1 else 0
+    return min(int(np.maximum(np.diff(contacts.row) - 1, 0)[contacts.law != LAW_SMOOTH].sum()), TOGETHER)
+
+
+def turns_of(problem: Problem, s: int, size: int) -> Turns:
+    """Arrays for the contacts in several directions with set-valued laws."""
+    k = turning_rows(problem) if s > 1 else 0
     full = k * s
-    return room(Turns(
+    return Turns(
         np.zeros(k, np.int64), np.zeros(k, np.int64), np.zeros(1, np.int64), np.zeros((k, 3)), np.zeros(k),
         np.zeros((full, s, size)), np.zeros((full, full)), np.zeros(full * full), np.zeros(full), np.zeros(full),
         np.zeros(4, np.int32), np.zeros(full, np.int32),
-    ))  # fmt: skip
+    )  # fmt: skip
 
 
 @kernel

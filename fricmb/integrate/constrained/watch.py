@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 
@@ -54,16 +53,16 @@ class Watch(NamedTuple):
 
 
 def watch_of(problem: Problem, stages: int) -> Watch:
-    """Rooms for the problem and steps of so many stages."""
+    """Arrays for the problem and steps of so many stages; no joint is open."""
     m = mechanism_of(problem)
     count = 3 * problem.n_c + len(m.joints.port)
-    return room(Watch(
+    return Watch(
         np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4, np.int32), np.zeros(MANY, np.int32),
         np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
         np.ones((stages + 1, count)), np.ones(count), np.ones(1), np.zeros(stages),
         np.zeros(stages + 1), np.zeros(len(m.joints.port)),
-        np.array([int((m.joints.dropped == 2).sum())]), np.zeros(len(m.joints.port), np.int64),
+        np.zeros(1, np.int64), np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), np.zeros(3),
         np.zeros(m.n_rows + 1),
-    ))  # fmt: skip
+    )  # fmt: skip

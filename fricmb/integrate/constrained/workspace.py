@@ -1,0 +1,69 @@
+"""Rooms that evaluations and runs of a mechanism work in, found again by their sizes."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import NamedTuple
+
+from fricmb.integrate.constrained.accelerations import Instant, State, instant_of, state_of
+from fricmb.integrate.constrained.pattern import of_pattern
+from fricmb.integrate.constrained.problem_structs import Moving, lengths, mech_of, mechanism_of, moving_of
+from fricmb.integrate.constrained.radau_step import Control, control_of
+from fricmb.integrate.constrained.stages import Stages, stages_of
+from fricmb.integrate.constrained.turning import turning_rows
+from fricmb.integrate.constrained.watch import Watch, watch_of
+from fricmb.integrate.problem import Problem
+from fricmb.integrate.run.workspace import lent
+from fricmb.integrate.step.tableau import radau
+
+
+class Evaluation(NamedTuple):
+    """For what is to be known at single instants."""
+
+    k: Moving
+    w: Instant
+    y: State
+
+
+class Rooms(NamedTuple):
+    """For a run: evaluation, the state, the end and the start of a step, stages, what is watched, step control."""
+
+    k: Moving
+    w: Instant
+    y: State
+    end: State
+    before: State
+    st: Stages
+    out: Watch
+    control: Control
+
+
+def evaluation(problem: Problem) -> AbstractContextManager[Evaluation]:
+    """Rooms for evaluating a problem; the state is empty."""
+    key = "mechanism at an instant", _sizes(problem)
+    return lent(key, lambda: Evaluation(moving_of(problem), instant_of(problem), state_of(problem)))
+
+
+def run_rooms(problem: Problem, stages: int) -> AbstractContextManager[Rooms]:
+    """Rooms for a run of so many stages; states are empty."""
+    return lent(("run of a mechanism", stages, _sizes(problem)), lambda: _made(problem, stages))
+
+
+def _made(problem: Problem, stages: int) -> Rooms:
+    y, end, before = (state_of(problem) for _ in range(3))
+    st = stages_of(problem, radau(stages))
+    return Rooms(
+        moving_of(problem), instant_of(problem), y, end, before, st, watch_of(problem, stages), control_of(problem, st)
+    )
+
+
+def _sizes(problem: Problem) -> tuple[int, ...]:
+    """All that the rooms of a problem are long."""
+    return of_pattern(problem, "sizes of rooms", lambda: _find_sizes(problem))
+
+
+def _find_sizes(problem: Problem) -> tuple[int, ...]:
+    m, order = mechanism_of(problem), mech_of(problem).order
+    own = problem.n, problem.n_u, problem.n_z, problem.m, problem.n_c, problem.signals.breakpoints.size
+    joints = m.n_y, m.n_rows, len(m.joints.port), turning_rows(problem)
+    return (*lengths(problem), *own, *joints, len(order.place), int(order.sizes[3]))
