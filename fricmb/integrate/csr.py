@@ -40,16 +40,21 @@ class Csr:
         first[1:] = (i[1:] != i[:-1]) | (j[1:] != j[:-1])
         place = np.cumsum(first) - 1
         total = np.bincount(place, v, int(first.sum())) if len(v) else np.zeros(0)
+        return cls.in_order(i[first], j[first], np.asarray(total, dtype=float), shape)
+
+    @classmethod
+    def in_order(cls, rows: _Ints, columns: _Ints, values: _Floats, shape: tuple[int, int]) -> Csr:
+        """From places that rise, row by row, each of them once, and their values."""
         start = np.zeros(shape[0] + 1, dtype=np.int64)
-        np.cumsum(np.bincount(i[first], minlength=shape[0]), out=start[1:])
-        return cls(shape, start, j[first], np.asarray(total, dtype=float))
+        np.cumsum(np.bincount(rows, minlength=shape[0]), out=start[1:])
+        return cls(shape, start, columns, values)
 
     @classmethod
     def of_dense(cls, matrix: Any) -> Csr:
         """The non-zeros of a dense matrix."""
         dense = np.asarray(matrix, dtype=float)
         rows, columns = np.nonzero(dense)
-        return cls.of_entries(rows, columns, dense[rows, columns], (dense.shape[0], dense.shape[1]))
+        return cls.in_order(rows, columns, dense[rows, columns], (dense.shape[0], dense.shape[1]))
 
     @property
     def rows(self) -> _Ints:
@@ -79,7 +84,7 @@ class Csr:
         (r0, r1, _), (c0, c1, _) = rows.indices(self.shape[0]), columns.indices(self.shape[1])
         i = self.rows
         keep = (i >= r0) & (i < r1) & (self.index >= c0) & (self.index < c1)
-        return Csr.of_entries(i[keep] - r0, self.index[keep] - c0, self.value[keep], (r1 - r0, c1 - c0))
+        return Csr.in_order(i[keep] - r0, self.index[keep] - c0, self.value[keep], (r1 - r0, c1 - c0))
 
     def diagonal(self) -> _Floats:
         """Entries on the diagonal."""

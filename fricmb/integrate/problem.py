@@ -86,6 +86,14 @@ class Templates:
     form_constant: Floats = field(default_factory=lambda: _f(0))
 
 
+def _sparse_of(held: Any, name: str) -> Csr:
+    """A matrix of frozen arrays as a sparse one, made once."""
+    made: dict[str, Csr] = vars(held).setdefault("_made", {})
+    if name not in made:
+        made[name] = Csr.of_dense(getattr(held, name))
+    return made[name]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Linear:
     """The constant part of the structure.
@@ -112,7 +120,7 @@ class Linear:
 
     def csr(self, name: str) -> Csr:
         """``M``, ``Kx``, ``Cx`` or ``B`` as a sparse matrix."""
-        return Csr.of_dense(getattr(self, name))
+        return _sparse_of(self, name)
 
 
 class SparseLinear(LazyMatrices, Linear):
@@ -194,7 +202,7 @@ class Contacts:
 
     def csr(self, name: str) -> Csr:
         """``W``, ``Wu`` or ``Wn`` as a sparse matrix."""
-        return Csr.of_dense(getattr(self, name))
+        return _sparse_of(self, name)
 
 
 class SparseContacts(LazyMatrices, Contacts):
