@@ -149,7 +149,12 @@ class Scene:
     @property
     def is_mechanism(self) -> bool:
         """Whether bodies turn or joints tie them, so that kinematics is not linear."""
-        return any(isinstance(part, RigidBody | SpaceBody | Joint) for part in self.parts)
+        found = self._cache.get("mechanism")
+        if found is None:
+            found = self._cache["mechanism"] = any(
+                isinstance(part, RigidBody | SpaceBody | Joint) for part in self.parts
+            )
+        return bool(found)
 
     @property
     def points(self) -> dict[str, Point]:

@@ -31,8 +31,11 @@ def evaluate(c: Floats, x: float) -> tuple[float, float, float]:
 
 
 @kernel
-def lowest_between(c: Floats, low: float, high: float) -> float:
-    """Where the polynomial has its minimum between two points, if it is negative there; else -1."""
+def lowest_between(c: Floats, low: float, high: float, within: float) -> float:
+    """Where the polynomial is found negative on the way to its minimum between two points; -1 where it is not.
+
+    The search ends where a step is at most ``within``.
+    """
     x = 0.5 * (low + high)
     for _ in range(30):
         value, slope, curve = evaluate(c, x)
@@ -45,15 +48,15 @@ def lowest_between(c: Floats, low: float, high: float) -> float:
         new = x - 0.5 * slope / curve if curve > 0.0 else low
         if not low < new < high:
             new = 0.5 * (low + high)
-        if abs(new - x) <= 1e-6 * high:
+        if abs(new - x) <= within:
             return -1.0
         x = new
     return -1.0
 
 
 @kernel
-def root_between(c: Floats, low: float, high: float) -> float:
-    """Root of the polynomial between a point where it is not negative and one where it is."""
+def root_between(c: Floats, low: float, high: float, within: float) -> float:
+    """Root of the polynomial between a point where it is not negative and one where it is, to a step ``within``."""
     x = 0.5 * (low + high)
     for _ in range(60):
         value, slope, _ = evaluate(c, x)
@@ -64,7 +67,7 @@ def root_between(c: Floats, low: float, high: float) -> float:
         new = x - value / slope if slope != 0.0 else low
         if not low < new < high:
             new = 0.5 * (low + high)
-        if abs(new - x) <= 1e-13 * high:
+        if abs(new - x) <= within:
             return new
         x = new
     return x
@@ -96,7 +99,7 @@ def first_below(tab: Tableau, first: float, values: Floats, series: Floats) -> t
         if i % 2 == 1:
             value = values[i // 2]
         if value >= 0.0 and falls and slope > 0.0:
-            bottom = lowest_between(series, before, x)
+            bottom = lowest_between(series, before, x, 1e-6 * x)
             if bottom > 0.0:
                 return before, bottom
         if value < 0.0:
@@ -112,7 +115,7 @@ def first_crossing(tab: Tableau, first: float, values: Floats, series: Floats) -
     above, below = first_below(tab, first, values, series)
     if below > 1.0:
         return 2.0
-    return root_between(series, above, below) if above > 0.0 or first > 0.0 else 0.0
+    return root_between(series, above, below, 1e-13 * below) if above > 0.0 or first > 0.0 else 0.0
 
 
 @kernel

@@ -11,7 +11,8 @@ import math
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK, Floats, Ints
-from fricmb.integrate.taylor.layout import N_SEARCHES, NOISE, SHIFTED, STEP, SUM, WATCH, WORK2, WORK3
+from fricmb.integrate.step.crossing import lowest_between, root_between
+from fricmb.integrate.taylor.layout import N_SEARCHES, NOISE, SHIFTED, STEP, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import force_row, relative_row, shift_one
 
@@ -19,6 +20,8 @@ from fricmb.integrate.taylor.polynomials import force_row, relative_row, shift_o
 PIECES = 4
 #: So near to its beginning, with a jump of acceleration and without one, a slip speed is less than round-off.
 NEAR = (1e-10, 1e-7)
+#: Where the search for a root, and for a minimum, ends.
+EXACT, DIP = 1e-15, 1e-9
 #: Relative excess of a holding force over its limit that is round-off: more than what settling takes for it.
 AT_LIMIT = 2e-11
 #: Part of the limit by which a force that grows does so in a step.
@@ -34,122 +37,96 @@ def watch_row(net: Net, c: int, k: int, h: float) -> float:
 
 
 @kernel
+def sum_magnitudes(net: Net, held: Floats, moved: Floats) -> None:
+    """Magnitudes of the terms of the accelerations, and of h times the velocities, of degree 3 and more, dof by dof."""
+    n = net.q.shape[0]
+    for j in range(n):
+        held[j] = 0.0
+        moved[j] = 0.0
+    for k in range(3, net.Q.shape[0] - 1):
+        rate = k + 1.0
+        row = net.Q[k + 1]
+        for j in range(n):
+            moved[j] += rate * abs(row[j])
+    for k in range(3, net.R.shape[0]):
+        row = net.R[k]
+        for j in range(n):
+            held[j] += abs(row[j])
+
+
+@kernel
 def bounds(net: Net) -> None:
     """Distance ``slack`` (m,) that every contact keeps from its end in the whole step at least.
 
     From the least value of the terms of degree 0 to 2 and the magnitudes of the others.
     """
     h = net.x[STEP]
-    m = net.mode.shape[0]
-    total, held, moved = net.flat[SUM], net.flat[WORK2], net.flat[WORK3]
-    for c in range(m):
-        e = net.row_start[c]
-        stuck = net.mode[c] == STICK
-        plain = net.plain[c] == 1
-        total[c] = 0.0
-        held[c] = net.row_coef[e] / net.compliance[c] if plain and stuck else 0.0
-        moved[c] = net.row_coef[e] / h if plain and not stuck else 0.0
-    dof = net.first_dof
     last = net.Q.shape[0] - 2
-    for k in range(3, last):
-        above, row = net.Q[k + 1], net.R[k]
-        rate = k + 1.0
-        for c in range(m):
-            j = dof[c]
-            total[c] += abs(held[c] * row[j] + rate * moved[c] * above[j])
-    above = net.Q[last + 1]
-    for c in range(m):
-        total[c] += abs((last + 1.0) * moved[c] * above[dof[c]])
-    for i in range(net.grouped.shape[0]):
-        c = net.grouped[i]
-        for k in range(3, last + 1):
-            total[c] += abs(watch_row(net, c, k, h))
-    for c in range(m):
-        y0, y1, y2 = watch_row(net, c, 0, h), watch_row(net, c, 1, h), watch_row(net, c, 2, h)
+    held, moved = net.flat[WORK2], net.flat[WORK3]
+    sum_magnitudes(net, held, moved)
+    q1, q2, q3, r0, r1, r2 = net.Q[1], net.Q[2], net.Q[3], net.R[0], net.R[1], net.R[2]
+    for c in range(net.mode.shape[0]):
+        e, j = net.row_start[c], net.first_dof[c]
+        if net.plain[c] == 0:
+            rest = 0.0
+            for k in range(3, last + 1):
+                rest += abs(watch_row(net, c, k, h))
+            y0, y1, y2 = watch_row(net, c, 0, h), watch_row(net, c, 1, h), watch_row(net, c, 2, h)
+        elif net.mode[c] == STICK:
+            by = net.row_coef[e] / net.compliance[c]
+            y0, y1, y2, rest = -by * r0[j], -by * r1[j], -by * r2[j], abs(by) * held[j]
+        else:
+            by = net.sigma[c] * net.row_coef[e] / h
+            y0 = by * q1[j] - net.sigma[c] * net.belt[c]
+            y1, y2, rest = 2.0 * by * q2[j], 3.0 * by * q3[j], abs(by) * moved[j]
         s = -0.5 * y1 / y2 if y2 != 0.0 else -1.0
         dip = y0 + s * (y1 + s * y2) if 0.0 < s < 1.0 else y0
         if net.mode[c] == STICK:
-            net.slack[c] = net.stick[c] - max(abs(y0), abs(y0 + y1 + y2), abs(dip)) - total[c]
+            net.slack[c] = net.stick[c] - max(abs(y0), abs(y0 + y1 + y2), abs(dip)) - rest
         else:
-            net.slack[c] = min(y0, y0 + y1 + y2, dip) - total[c]
+            net.slack[c] = min(y0, y0 + y1 + y2, dip) - rest
 
 
 @kernel
-def value_of(y: Floats, last: int, s: float, limit: float) -> float:
-    """y(s), or limit^2 - y(s)^2."""
-    value = 0.0
-    for k in range(last, -1, -1):
-        value = value * s + y[k]
-    return float(value if limit < 0.0 else (limit - value) * (limit + value))
+def multiply(y: Floats, by: float) -> None:
+    """Multiply in place."""
+    for k in range(y.shape[0]):
+        y[k] *= by
 
 
 @kernel
-def slope_of(y: Floats, last: int, s: float, limit: float) -> float:
-    """Its derivative."""
-    value = 0.0
-    rate = 0.0
-    for k in range(last, -1, -1):
-        rate = rate * s + value
-        value = value * s + y[k]
-    return float(rate if limit < 0.0 else -2.0 * value * rate)
+def first_root(y: Floats, limit: float, low: float, high: float) -> float:
+    """The first s in [low, high] at which y(s) is no longer positive; inf if there is none.
 
-
-@kernel
-def root_between(y: Floats, last: int, limit: float, low: float, high: float) -> float:
-    """The root between low, where the function is positive, and high, where it is not: Newton within the bracket."""
-    s = 0.5 * (low + high)
-    for _ in range(60):
-        f = value_of(y, last, s, limit)
-        if f > 0.0:
-            low = s
-        else:
-            high = s
-        d = slope_of(y, last, s, limit)
-        t = s - f / d if d != 0.0 else 0.5 * (low + high)
-        if not low < t < high:
-            t = 0.5 * (low + high)
-        if abs(t - s) <= 1e-15 or high - low <= 1e-15:
-            return float(t)
-        s = t
-    return float(s)
-
-
-@kernel
-def lowest_between(y: Floats, last: int, limit: float, low: float, high: float) -> float:
-    """Where a function that falls at low and rises at high is lowest, or where it is found not to be positive."""
-    for _ in range(40):
-        s = 0.5 * (low + high)
-        if value_of(y, last, s, limit) <= 0.0 or high - low < 1e-9:
-            return float(s)
-        if slope_of(y, last, s, limit) < 0.0:
-            low = s
-        else:
-            high = s
-    return float(0.5 * (low + high))
-
-
-@kernel
-def first_root(y: Floats, last: int, limit: float, low: float, high: float) -> float:
-    """The first s in [low, high] at which the function is no longer positive; inf if there is none."""
+    Where ``limit`` is not negative: at which ``|y(s)|`` reaches it.  Changes y.
+    """
     width = (high - low) / PIECES
-    s0 = low
-    d0 = 0.0
+    s0, d0 = low, 0.0
     for i in range(PIECES + 1):
         s = high if i == PIECES else low + i * width
-        f = 0.0
-        d = 0.0
-        for k in range(last, -1, -1):
+        f, d = 0.0, 0.0
+        for k in range(y.shape[0] - 1, -1, -1):
             d = d * s + f
             f = f * s + y[k]
+        sign = math.copysign(1.0, f)
         if limit >= 0.0:
-            d *= -2.0 * f
-            f = (limit - f) * (limit + f)
-        if f <= 0.0:
-            return root_between(y, last, limit, s0, s) if i > 0 else low
-        if i > 0 and d0 < 0.0 and d > 0.0:
-            dip = lowest_between(y, last, limit, s0, s)
-            if value_of(y, last, dip, limit) <= 0.0:
-                return root_between(y, last, limit, s0, dip)
+            f = limit - sign * f
+            d *= -sign
+        if f <= 0.0 and i == 0:
+            return low
+        dips = i > 0 and d0 < 0.0 and d > 0.0
+        if f <= 0.0 or dips:
+            if limit >= 0.0:
+                multiply(y, -sign)
+                y[0] += limit
+            if f <= 0.0:
+                return root_between(y, s0, s, EXACT)
+            dip = lowest_between(y, s0, s, DIP)
+            if dip > 0.0:
+                return root_between(y, s0, dip, EXACT)
+            if limit >= 0.0:
+                y[0] -= limit
+                multiply(y, -sign)
         s0, d0 = s, d
     return math.inf
 
@@ -173,7 +150,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         # what is held at its limit, by a force that does not grow, stays there to round-off
         if abs(here) >= limit * (1.0 - AT_LIMIT) and here * rise <= GROWS * limit * limit:
             limit *= 1.0 + AT_LIMIT
-        return first_root(y, last, limit, low, 1.0)
+        return first_root(y[: last + 1], limit, low, 1.0)
     size = 0.0
     for k in range(last + 1):
         y[k] = watch_row(net, c, k, h)
@@ -183,7 +160,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         # it began to slip at the end of the step before
         net.since[c] = since = 0.0
     if since < 0.0:
-        return first_root(y, last, -1.0, low, 1.0)
+        return first_root(y[: last + 1], -1.0, low, 1.0)
     z = net.old[SHIFTED]
     for k in range(last + 1):
         z[k] = y[k]
@@ -193,7 +170,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
     start = 2 if abs(z[1]) <= rounding and last > 1 else 1
     if low - since > NEAR[start - 1]:
         # corrections since then have changed the polynomial where it began: what is left there is no root
-        return first_root(y, last, -1.0, low, 1.0)
+        return first_root(y[: last + 1], -1.0, low, 1.0)
     for k in range(start, last + 1):
         z[k - start] = z[k]
-    return float(since) + first_root(z, last - start, -1.0, low - since, 1.0 - since)
+    return float(since) + first_root(z[: last - start + 1], -1.0, low - since, 1.0 - since)

@@ -9,6 +9,6 @@ TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FAST
 N_STEPS, N_SHORTER, N_EVENTS, N_SAMPLES, N_HEAP, N_SEARCHES, N_HERE, LIMIT, PHASE, N_STOP = range(10)
 N_TOUCHED, N_GROUPS, STALLED = range(10, 13)
 # flat[.]: rows of work
-SUM, WORK, WORK2, WORK3 = range(4)
+WORK, WORK2, WORK3 = range(3)
 # old[.]: polynomials of one contact: watched; shifted to where y = 0, or change of force; force or acceleration before
 WATCH, SHIFTED, BEFORE = range(3)

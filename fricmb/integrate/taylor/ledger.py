@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, STICK
-from fricmb.integrate.taylor.layout import DAMPING, INPUT, STEP, UNTIL, WATCH, WORK, WORK2
+from fricmb.integrate.taylor.layout import DAMPING, INPUT, STEP, UNTIL, WORK, WORK2
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import horner, horner_rate, polynomial
 
@@ -111,29 +111,26 @@ def count_local(net: Net, count: int, s0: float, sign: float) -> None:
 @kernel
 def belt_work(net: Net, s: float) -> float:
     """Work that belts bring in through plain contacts from s to where the step ends, as the polynomials now are."""
-    total = 0.0
     until = net.x[UNTIL]
-    weights = net.old[WATCH]
+    held = net.flat[WORK]
+    for j in range(net.q.shape[0]):
+        held[j] = 0.0
     power, beyond = s, until
     for k in range(net.R.shape[0]):
-        weights[k] = (beyond - power) / (k + 1)
+        row = net.R[k]
+        weight = (beyond - power) / (k + 1)
+        for j in range(net.q.shape[0]):
+            held[j] += weight * row[j]
         power *= s
         beyond *= until
-    part = net.flat[WORK]
+    total = 0.0
     for c in range(net.mode.shape[0]):
-        part[c] = 0.0
         if net.plain[c] == 0:
             continue
         if net.mode[c] == STICK:
-            part[c] = -net.belt[c] * net.row_coef[net.row_start[c]] / net.compliance[c]
+            total -= net.belt[c] * net.row_coef[net.row_start[c]] / net.compliance[c] * held[net.first_dof[c]]
         elif net.mode[c] == SLIP:
             total -= net.belt[c] * net.slip[c] * net.sigma[c] * (until - s)
-    dof = net.first_dof
-    for k in range(net.R.shape[0]):
-        row = net.R[k]
-        weight = weights[k]
-        for c in range(net.mode.shape[0]):
-            total += weight * part[c] * row[dof[c]]
     return float(total * net.x[STEP])
 
 

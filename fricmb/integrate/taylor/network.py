@@ -36,7 +36,7 @@ class Net(NamedTuple):
     maxima, ``window``, ``fit``.
     State: ``q``, ``v``, ``top`` (n,) running maxima of |v|; ``mode``, ``sigma``, ``loss``, ``mark`` (m,) with the
     relative displacement at which a slip of a plain contact began; ``x``, ``i``: see _layout.
-    Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (4, n).
+    Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (3, n).
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
     is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.  ``places``: table of blocks.

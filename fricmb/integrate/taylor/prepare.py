@@ -185,7 +185,7 @@ def _net(problem: Problem, P: int) -> Net:
         "q": z(n), "v": z(n), "top": z(n), "mode": z(m, np.int8), "sigma": np.ones(m), "loss": z(m), "mark": z(m),
         "free": np.ones(n), "x": z(16), "i": z(16, i), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
         "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
-        "flat": z((5, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
+        "flat": z((3, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
         "place": np.full(n, -1, dtype=i), "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)),
         "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)), "stops": z(1), "places": addresses(*BLOCKS),
         "groups": groups,
