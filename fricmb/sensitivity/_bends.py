@@ -3,36 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Floats
+from fricmb.integrate.problem import Floats, Ints
+from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._found import Found
 from fricmb.sensitivity._functions import Function, conditions_seen
 from fricmb.sensitivity._motions import Given
-from fricmb.sensitivity._phases import Phases
+from fricmb.sensitivity._phases import BEFORE, Phases
 
-#: Parts of a stretch in which passages are looked for; halvings of a part that has one; the share of a stretch, and
-#: of the largest value of a condition, that counts as nothing.
-_PARTS, _HALVINGS, _NOTHING, _ZERO = 4, 30, 1e-6, 1e-9
+#: Parts of a stretch in which passages are looked for; halvings of a part that has one, down to neighbouring numbers;
+#: the share of the largest value of a condition that counts as nothing.
+_PARTS, _HALVINGS, _ZERO = 4, 60, 1e-9
+
+#: Conditions at times (n_t,): values with slopes, always in the same order.
+Conditions = Callable[[Floats], list[Dual]]
 
 
-def bends_of(e: Equations, phases: Phases, sample: Any) -> Floats:
-    """Times within the stretches of a run at which its formulas switch."""
+@dataclass(frozen=True, kw_only=True)
+class Bends:
+    """Times (n,) within the stretches of a run at which its formulas switch, and by which of the conditions (n,)."""
+
+    t: Floats
+    which: Ints
+    conditions: Conditions
+
+
+def bends_of(e: Equations, phases: Phases, sample: Any) -> Bends:
+    """Where the formulas of a run switch."""
     knots = {k: contact.law.numeric().knots() for k, contact in e.touching.items()}
-    if not any(knots.values()) and not any(function.switches() for function in _functions(e)):
-        return np.zeros(0)
 
-    def conditions(t: Floats) -> Floats:
-        seen = sample(t)
+    def conditions(t: Floats) -> list[Dual]:
         at = phases.of(t)
-        found = _evaluated(e, seen, phases.mode[:, at], phases.sign[:, at])
-        found += [np.linalg.norm(seen.g[e.rows(k)], axis=0) - r for k, own in knots.items() for r in own if r > 0.0]
-        return np.array([np.broadcast_to(x, t.shape) for x in found]).reshape(-1, t.size)
+        seen, found = _evaluated(e, sample(t), phases.mode[:, at], phases.sign[:, at])
+        return seen + [Dual(value=_length(found.g[k]) - r) for k, own in knots.items() for r in own if r > 0.0]
 
-    return _apart(_passages(conditions, phases.t), phases.t)
+    nothing = Bends(t=np.zeros(0), which=np.zeros(0, dtype=np.int64), conditions=conditions)
+    if not any(knots.values()) and not any(function.switches() for function in _functions(e)):
+        return nothing
+    t, which = _passages(conditions, phases.t)
+    apart = _apart(t, phases.t)
+    return Bends(t=t[apart], which=which[apart], conditions=conditions)
+
+
+def _length(g: list[Dual]) -> Any:
+    """The slip speed."""
+    return np.sqrt(sum(np.square(x.value) for x in g))
 
 
 def _functions(e: Equations) -> Iterator[Function]:
@@ -45,34 +65,61 @@ def _functions(e: Equations) -> Iterator[Function]:
                 yield held.function
 
 
-def _evaluated(e: Equations, samples: Any, mode: Any, sign: Floats) -> list[Any]:
-    """Values of all conditions."""
+def _evaluated(e: Equations, samples: Any, mode: Any, sign: Floats) -> tuple[list[Dual], Found]:
+    """All conditions, and what parts say."""
     moment, found = e.moment(samples), Found(e.n, e.n_z, e.columns, samples.t.size)
     with conditions_seen() as seen:
         for part in e.linear.rest:
             part.add(moment, found)
         for k, contact in e.touching.items():
             contact.add(moment, found, mode[k], sign[e.rows(k)])
-    return seen
+    return seen, found
 
 
-def _passages(conditions: Callable[[Floats], Floats], ends: Floats) -> Floats:
-    """Times of changes of sign, by bisection; values that are round-off of 0 have none."""
+def _passages(conditions: Conditions, ends: Floats) -> tuple[Floats, Ints]:
+    """Times of changes of sign in order, by bisection, and of which condition; values that are round-off have none.
+
+    Steps that are rejected at a switch come to end beside it, so a value of 0 is passed over to the next one.  What is
+    found is the first number behind the switch: a slope from the other side at one node of a step would count.
+    """
+
+    def valued(t: Floats) -> Floats:
+        return np.array([np.broadcast_to(x.value, t.shape) for x in conditions(t)]).reshape(-1, t.size)
+
     t = np.append(ends[:-1, None] + np.diff(ends)[:, None] * np.arange(_PARTS) / _PARTS, ends[-1])
-    values = np.nan_to_num(conditions(t))
-    values[np.abs(values) <= _ZERO * np.abs(values).max(axis=1, initial=0.0)[:, None]] = 0.0
-    which, at = np.nonzero(values[:, 1:] * values[:, :-1] < 0.0)
-    low, high, began = t[at], t[at + 1], values[which, at] > 0.0
-    for _ in range(_HALVINGS if at.size else 0):
+    low, high, which = _brackets(t, np.nan_to_num(valued(t)))
+    if not which.size:
+        return low, which
+    began = valued(low)[which, np.arange(which.size)] > 0.0
+    for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        same = (conditions(middle)[which, np.arange(at.size)] > 0.0) == began
+        if ((middle <= low) | (middle >= high)).all():
+            break
+        same = (valued(middle)[which, np.arange(which.size)] > 0.0) == began
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return np.unique(high)
+    order = np.argsort(high, kind="stable")
+    return high[order], which[order]
 
 
-def _apart(t: Floats, ends: Floats) -> Floats:
-    """Those that are not at an end of a stretch, nor one of several at one time."""
+def _brackets(t: Floats, values: Floats) -> tuple[Floats, Floats, Ints]:
+    """Neighbouring times at which values have opposite signs, and numbers of the conditions."""
+    low, high, which = [np.zeros(0)], [np.zeros(0)], [np.zeros(0, dtype=np.int64)]
+    for i, own in enumerate(values):
+        seen = np.flatnonzero(np.abs(own) > _ZERO * np.abs(own).max(initial=0.0))
+        changes = np.flatnonzero(np.diff(own[seen] > 0.0))
+        low.append(t[seen[changes]])
+        high.append(t[seen[changes + 1]])
+        which.append(np.full(changes.size, i))
+    return np.concatenate(low), np.concatenate(high), np.concatenate(which)
+
+
+def _apart(t: Floats, ends: Floats) -> Ints:
+    """Numbers of those that are not at an end of a stretch, nor behind another at the same time.
+
+    What is left out is so near before an end that slopes, evaluated ``BEFORE`` it, do not see it.
+    """
     k = np.clip(np.searchsorted(ends, t, side="right") - 1, 0, ends.size - 2)
-    little = _NOTHING * (ends[k + 1] - ends[k])
+    little = 0.5 * BEFORE * np.maximum(1.0, np.abs(t))
     inside = (t - ends[k] > little) & (ends[k + 1] - t > little)
-    return t[inside & (np.diff(t, prepend=-np.inf) > little)]
+    found: Ints = np.flatnonzero(inside & (np.diff(t, prepend=-np.inf) > little))
+    return found

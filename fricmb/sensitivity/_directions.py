@@ -17,13 +17,14 @@ _NOTHING = 1e-12
 
 
 def field_at_rest(
-    e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int], beside: Floats
+    e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int], beside: Floats, passing: list[bool]
 ) -> Field:
     """The field with that direction of one contact at each time in which its slip begins, or has just ended.
 
     (mu_k N D + rho I) n = a with |n| = 1: a is the relative acceleration without its friction, rho the growth of r,
     below 0 in a landing, where directions settle.  Where a is 0 slip ends in the direction that it has had: ``beside``
-    (m, n_t) are relative velocities near by.  A load that this friction itself changes is refused.
+    (m, n_t) are relative velocities near by.  Of several directions slip ends in that of the largest rho, unless it is
+    ``passing`` rest: then in the one near by.  A load that this friction itself changes is refused.
     """
     found = sign.copy()
     for i, k in enumerate(contacts):
@@ -37,7 +38,8 @@ def field_at_rest(
         for i in (i for i, own in enumerate(contacts) if own == k):
             W = slopes[i][:, e.n : 2 * e.n]
             D = W @ e.free(field.found, mode[:, i], i) @ W.T
-            found[e.rows(k), i] = _direction(
+            solve = _direction_near if passing[i] else _direction
+            found[e.rows(k), i] = solve(
                 e.contacts[k].size_at_rest(N, i) * D, slopes[i] @ rates[i], beside[e.rows(k), i]
             )
     slipping = e.field(samples, mode, found)
@@ -64,3 +66,16 @@ def _direction(D: Floats, a: Floats, beside: Floats) -> Floats:
         rho += step
         n = parts / (values + rho)
     return np.asarray(vectors @ (n / np.linalg.norm(n)))
+
+
+def _direction_near(D: Floats, a: Floats, beside: Floats) -> Floats:
+    """The unit vector n with (D + rho I) n = a next to one that is nearly it, by Newton's method."""
+    n = beside / np.linalg.norm(beside)
+    rho = float(n @ (a - D @ n))
+    for _ in range(_MOST):
+        matrix = np.block([[D + rho * np.eye(len(n)), n[:, None]], [n[None], np.zeros((1, 1))]])
+        step = np.linalg.solve(matrix, np.append(a - (D @ n + rho * n), 0.5 * (1.0 - n @ n)))
+        n, rho = n + step[:-1], rho + float(step[-1])
+        if np.abs(step[:-1]).max() <= 1e-15:
+            break
+    return np.asarray(n / np.linalg.norm(n))

@@ -105,6 +105,16 @@ class Friction:
         size = self._coefficient(Dual(value=np.full(direction.shape[1:], _REST)), N).times(N)
         return [size * -n for n in direction]
 
+    def depends_on_speed(self) -> bool:
+        """Whether friction in slip depends on its speed."""
+        if self.smooth:
+            return False
+        return 0 in self._coefficient(Dual(value=np.ones(1), slopes={0: 1.0}), Dual(value=1.0)).slopes
+
+    def coefficient_slope(self, r: Floats, N: Dual) -> Any:
+        """Slope of the coefficient by the slip speed."""
+        return self._coefficient(Dual(value=np.maximum(r, _REST), slopes={0: 1.0}), N).slopes[0]
+
     def size_at_rest(self, N: Dual, i: int) -> float:
         """Friction at r = 0 in slip, by size, at time number i of a normal force."""
         value = float(N.value) if np.ndim(N.value) == 0 else float(N.value[i])

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.laws._numeric import _lengths
+from fricmb.laws._numeric import _lengths, squares
 from fricmb.sensitivity._dual import Dual, composed
 from fricmb.stated import MODULES, Statement
 
@@ -20,16 +20,16 @@ Stated = tuple[Sequence[Any], Sequence[Any]]
 _stated: dict[Hashable, Stated] = {}
 _compiled: dict[Hashable, tuple[Callable[..., Any], list[tuple[int, int]]]] = {}
 _linear: dict[Hashable, bool] = {}
-_switches: dict[Hashable, list[Callable[..., Any]]] = {}
+_switches: dict[Hashable, list[Any]] = {}
 _switching: dict[Hashable, list[tuple[Callable[..., Any], tuple[int, ...]]]] = {}
-#: Where values of conditions are gathered, while somebody asks for them.
-_seen: ContextVar[list[Any] | None] = ContextVar("_seen", default=None)
+#: Where conditions are gathered, while somebody asks for them.
+_seen: ContextVar[list[Dual] | None] = ContextVar("_seen", default=None)
 
 
 @contextmanager
-def conditions_seen() -> Iterator[list[Any]]:
-    """A list of the values of all that functions called inside switch on, in the order of the calls."""
-    found: list[Any] = []
+def conditions_seen() -> Iterator[list[Dual]]:
+    """A list of all that functions called inside switch on, in the order of the calls."""
+    found: list[Dual] = []
     token = _seen.set(found)
     try:
         yield found
@@ -51,10 +51,25 @@ class Function:
     def __call__(self, arguments: Sequence[Dual]) -> list[Dual]:
         """Outputs with slopes; those arguments count that have any."""
         seen = _seen.get()
-        if seen is not None:
-            self._tell(seen, [argument.value for argument in arguments])
+        if seen is not None and self.switches():
+            seen += self._composed("switches", (self._statement()[0], self.switches()), arguments)
+        return self._composed("outputs", None, arguments)
+
+    def switches(self) -> list[Any]:
+        """What it switches on, expressions of the arguments: it has jumps or kinks where these change sign."""
+        if self._key not in _switches:
+            arguments, outputs = self._statement()
+            stated = dict.fromkeys(c for output in outputs for c in _switching_functions(output))
+            _switches[self._key] = [_bounded(c) for c in stated if c.free_symbols & set(arguments)]
+        return _switches[self._key]
+
+    def _composed(self, kind: str, stated: Stated | None, arguments: Sequence[Dual]) -> list[Dual]:
+        """Expressions of the arguments with slopes; ``stated``: other ones than the outputs."""
         active = tuple(j for j, argument in enumerate(arguments) if argument.slopes)
-        function, places = self._function(active)
+        key = (self._key, kind, active)
+        if key not in _compiled:
+            _compiled[key] = _with_slopes(*(stated or self._statement()), active)
+        function, places = _compiled[key]
         with np.errstate(all="ignore"):
             values = function(*[argument.value for argument in arguments])
         count = len(values) - len(places)
@@ -62,22 +77,6 @@ class Function:
         for (i, j), slope in zip(places, values[count:], strict=True):
             partials[i].append((slope, arguments[j]))
         return [composed(value, own) for value, own in zip(values[:count], partials, strict=True)]
-
-    def switches(self) -> list[Any]:
-        """What it switches on, functions of all arguments: it has jumps or kinks where these change sign."""
-        if self._key not in _switches:
-            arguments, outputs = self._statement()
-            stated = dict.fromkeys(c for output in outputs for c in _switching_functions(output))
-            moved = [c for c in stated if c.free_symbols & set(arguments)]
-            import sympy
-
-            _switches[self._key] = [sympy.lambdify(list(arguments), moved, MODULES)] if moved else []
-        return _switches[self._key]
-
-    def _tell(self, seen: list[Any], values: Sequence[Any]) -> None:
-        with np.errstate(all="ignore"):
-            for function in self.switches():
-                seen += function(*values)
 
     def is_linear(self, time: int, zeros: tuple[int, ...]) -> bool:
         """Whether outputs are linear in the arguments before number ``time`` and do not depend on time.
@@ -112,13 +111,6 @@ class Function:
             _switching[key] = _conditions(*self._statement(), time)
         return _switching[key]
 
-    def _function(self, active: tuple[int, ...]) -> tuple[Callable[..., Any], list[tuple[int, int]]]:
-        key = (self._key, active)
-        found = _compiled.get(key)
-        if found is None:
-            found = _compiled[key] = _with_slopes(*self._statement(), active)
-        return found
-
 
 def _with_slopes(
     arguments: Sequence[Any], outputs: Sequence[Any], active: Sequence[int]
@@ -133,7 +125,7 @@ def _with_slopes(
     prefix = "part"
     while any(str(argument).startswith(prefix) for argument in arguments):  # parameters are named by their authors
         prefix += "_"
-    parts, reduced = sympy.cse(plain, symbols=sympy.numbered_symbols(prefix), order="none")
+    parts, reduced = sympy.cse(plain, symbols=sympy.numbered_symbols(prefix, real=True), order="none")
     statements: list[tuple[Any, Any]] = []
     slopes: dict[Any, dict[int, Any]] = {arguments[j]: {j: sympy.S.One} for j in active}
     for symbol, expression in parts:
@@ -183,9 +175,20 @@ def _length() -> Any:
 
 
 def _switching_functions(output: Any) -> list[Any]:
+    """Functions at whose sign changes it has a jump or a kink: the length of one component is an absolute value."""
+    import sympy
+
     from fricmb.equations._expression import switching_functions
 
-    return switching_functions(output)
+    lengths = (squares(node.base) or [] for node in sympy.sympify(output).atoms(sympy.Pow))
+    return [*switching_functions(output), *(parts[0] for parts in lengths if len(parts) == 1)]
+
+
+def _bounded(condition: Any) -> Any:
+    """A sum over the sizes of its terms: of the same sign, at most 1, and round-off where it is 0 by cancellation."""
+    import sympy
+
+    return condition / sympy.Add(*map(sympy.Abs, condition.args)) if condition.is_Add else condition
 
 
 def _conditions(

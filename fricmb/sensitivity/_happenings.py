@@ -1,7 +1,8 @@
-"""What happens at one time of a run: its events there, and breakpoints that parameters move."""
+"""What happens at one time of a run: its events there, breakpoints that parameters move, and slip that passes rest."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,10 +11,17 @@ import numpy as np
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.sensitivity._phases import Phases
 
+#: Slip in two directions through rest.
+PASS = "pass"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Happening:
-    """What happens at one time: numbers of its events, contacts, kinds, and the stretch that begins there."""
+    """What happens at one time: numbers of its events, contacts, kinds, and the stretch that begins there.
+
+    Of kind ``PASS`` is slip in two directions that comes to rest and sets out at once in another one.  No event of the
+    run says so: it has the number behind the last.
+    """
 
     t: float
     events: Ints
@@ -26,8 +34,13 @@ class Happening:
         return self.kinds[int(np.flatnonzero(self.events == event)[0])]
 
 
-def happenings(events: Any, names: Any, phases: Phases, moving: Floats) -> list[Happening]:
-    """Events of one piece that stand at the same time, together, and breakpoints that parameters move (n_b,)."""
+def happenings(
+    events: Any, names: Any, phases: Phases, moving: Floats, passes: Iterable[tuple[int, int]]
+) -> list[Happening]:
+    """Events of one piece that stand at the same time, together, and breakpoints that parameters move (n_b,).
+
+    ``passes``: contacts, and stretches that begin where their slip passes rest.
+    """
     held = list(events)
     t = np.array([event.t for event in held])
     found = []
@@ -48,4 +61,8 @@ def happenings(events: Any, names: Any, phases: Phases, moving: Floats) -> list[
         if phase not in seen:
             own = np.zeros(0, dtype=np.int64)
             found.append(Happening(t=float(phases.t[phase]), events=own, contacts=[], kinds=[], phase=phase))
+    for k, phase in passes:
+        if all(one.phase != phase for one in found):
+            own = np.array([t.size])
+            found.append(Happening(t=float(phases.t[phase]), events=own, contacts=[k], kinds=[PASS], phase=phase))
     return sorted(found, key=lambda one: one.phase)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -13,21 +14,51 @@ from fricmb.sensitivity._phases import Phases
 #: Slip ends where its speed is below this share of that in the middle of a step; of the time that it lasts,
 #: what is left out before its end, and the farthest from there that is looked at for the time of the landing.
 _TINY, _LAST, _FAR = 1e-4, 1e-8, 1e-3
+#: Share of the largest slip speed below which slip that passes rest is close to it.
+_CLOSE = 1e-4
 
 
 def left_out(e: Equations, phases: Phases, sample: Any) -> Floats:
     """Time (n_k,) that is left out before the end of a stretch in which slip in two directions ends, else 0."""
-    h = np.diff(phases.t)
-    found = np.zeros(h.size)
+    found = np.zeros(phases.t.size - 1)
+    for k, _, ends in at_rest(e, phases, sample):
+        if e.contacts[k].d > 1:
+            found = np.where(ends, np.maximum(found, _LAST * _lasting(phases.t, phases.mode[k])), found)
+    return found
+
+
+def passes(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int, int]]:
+    """Contacts whose slip in two directions comes to rest and sets out again at once, and the stretch it begins."""
+    for k, begins, ends in at_rest(e, phases, sample):
+        if e.contacts[k].d > 1:
+            yield from ((k, int(j) + 1) for j in np.flatnonzero(ends[:-1] & begins[1:]))
+
+
+def near_misses(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int, float, float]]:
+    """Contacts whose slip in two directions passes rest closely, when, and how closely over their largest speed."""
     wide = [k for k, contact in e.contacts.items() if contact.d > 1 and not contact.smooth]
     if not wide:
-        return found
-    g = sample(np.concatenate([phases.t[:-1] + 0.5 * h, phases.t[1:]])).g
+        return
+    g = sample(phases.t).g
     for k in wide:
-        r = np.linalg.norm(g[e.rows(k)], axis=0).reshape(2, -1)
-        ends = (phases.mode[k] == SLIP) & (r[1] <= _TINY * r[0])
-        found = np.where(ends, np.maximum(found, _LAST * _lasting(phases.t, phases.mode[k])), found)
-    return found
+        r, slips = np.linalg.norm(g[e.rows(k)], axis=0), phases.mode[k] == SLIP
+        inner, most = r[1:-1], max(float(r.max()), 1e-300)
+        lowest = (inner <= r[:-2]) & (inner < r[2:]) & slips[:-1] & slips[1:]
+        for j in np.flatnonzero(lowest & (inner > 0.0) & (inner < _CLOSE * most)):
+            yield k, float(phases.t[j + 1]), float(inner[j]) / most
+
+
+def at_rest(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int, Any, Any]]:
+    """Contacts, and in which stretches (n_k,) their slip begins from rest, and ends."""
+    h = np.diff(phases.t)
+    hard = [k for k, contact in e.contacts.items() if not contact.smooth]
+    if not hard:
+        return
+    g = sample(np.concatenate([phases.t, phases.t[:-1] + 0.5 * h])).g
+    for k in hard:
+        r = np.linalg.norm(g[e.rows(k)], axis=0)
+        edges, middles, slips = r[: h.size + 1], r[h.size + 1 :], phases.mode[k] == SLIP
+        yield k, slips & (edges[:-1] <= _TINY * middles), slips & (edges[1:] <= _TINY * middles)
 
 
 def places_before(t: float, rest: float, mesh: Floats) -> Ints:

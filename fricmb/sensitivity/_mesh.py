@@ -11,8 +11,8 @@ import numpy as np
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._landings import left_out
-from fricmb.sensitivity._phases import BESIDE, Phases
+from fricmb.sensitivity._landings import at_rest, left_out
+from fricmb.sensitivity._phases import BEFORE, Phases
 
 #: Stages of the steps, and of the two formulas whose difference tells how fine they have to be.
 STAGES, COARSE = 7, (2, 3)
@@ -21,8 +21,10 @@ _ROUNDS, _PARTS, _HELD = 16, 8, 1_000_000
 #: A step is divided on while its error falls by this factor each time; one that is this much too long or less is
 #: divided without being looked at again.
 _FALLS, _NEARLY = 0.5, 2.0
-#: Logarithm of the volume of states that a coarse step may lose.
-_LOST = 0.5
+#: Logarithm of the volume of states that a coarse step may lose; where in a step it is said to begin.
+_LOST, _BEGIN = 0.5, 1e-7
+#: Slip speeds that change by more in a step may be near a pole of friction.
+_DOUBLES = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +53,11 @@ class Stepper:
 
     def __init__(self, equations: Equations, phases: Phases, sample: Any) -> None:
         self.equations, self.phases, self.sample = equations, phases, sample
+        self.varying = [k for k, contact in equations.contacts.items() if contact.depends_on_speed()]
+        self.sets_out = np.zeros(phases.t.size - 1, dtype=bool)
+        for k, begins, _ in at_rest(equations, phases, sample):
+            if k in self.varying and equations.contacts[k].d == 1:
+                self.sets_out |= begins
 
     def maps(self, formula: Formula, t: Floats, h: Floats, phase: Ints) -> Floats:
         """Maps of steps from t (n_t,) on, each within one stretch."""
@@ -71,7 +78,8 @@ class Stepper:
         """How far the maps of two coarse formulas are apart (n_t,), and where steps are so long that this says nothing.
 
         What vibrates many times in a step both damp out, and agree: there the volume of states is lost, which changes
-        like the exponential of the trace of the slopes (Liouville).
+        like the exponential of the trace of the slopes (Liouville).  Where slip sets out, friction may fall within a
+        slip speed that is passed before the first node: see :meth:`_layers`.
         """
         low, high = (radau(s) for s in COARSE)
         e, c = self.equations, np.concatenate([low.c[:-1], high.c])
@@ -86,7 +94,36 @@ class Stepper:
             traces = np.trace(slopes[..., e.n : 2 * e.n], axis1=2, axis2=3)
             traces = traces + np.trace(rates[..., 2 * e.n : e.n_y], axis1=2, axis2=3)
             blind.append(kept < h[own] * (traces[:, low.c.size - 1 :] @ high.A[-1]) - _LOST)
-        return np.concatenate(found), np.concatenate(blind)
+        off = np.concatenate(found)
+        first = np.flatnonzero(self.sets_out[phase] & (t == self.phases.t[phase]))
+        if first.size:
+            off[first] = np.maximum(off[first], self._layers(t[first], h[first], phase[first], scale))
+        return off, np.concatenate(blind)
+
+    def steep(self, t: Floats, h: Floats) -> Any:
+        """Steps (n_t,) in which a slip speed that friction depends on more than doubles or halves.
+
+        Friction may have a pole at a slip speed of little less than 0.
+        """
+        found = np.zeros(t.size, dtype=bool)
+        if self.varying:
+            g = self.sample(np.concatenate([t, t + h])).g
+            for k in self.varying:
+                r = np.linalg.norm(g[self.equations.rows(k)], axis=0).reshape(2, -1)
+                found |= r.max(axis=0) > _DOUBLES * r.min(axis=0)
+        return found
+
+    def _layers(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> Floats:
+        """How far slopes at the begin of steps (n_t,) are, over the step, from what its nodes tell of them."""
+        e, high = self.equations, radau(COARSE[1])
+        slopes, rates = self._slopes(np.append(_BEGIN, high.c), t, h, phase)
+        told = np.array([np.prod([c / (c - own) for c in high.c if c != own]) for own in high.c])
+        off = np.zeros((t.size, e.n_y, e.columns - 1))
+        off[:, e.n : 2 * e.n] = slopes[:, 0] - np.einsum("s,ts...->t...", told, slopes[:, 1:])
+        off[:, 2 * e.n :] = rates[:, 0] - np.einsum("s,ts...->t...", told, rates[:, 1:])
+        off *= h[:, None, None]
+        found: Floats = (np.abs(off[..., : e.n_y]) * scale / scale[:, None]).max(axis=(1, 2))
+        return found
 
     def _parts(self, s: int, count: int) -> list[slice]:
         """Steps that are done at once."""
@@ -97,9 +134,9 @@ class Stepper:
     def _slopes(self, c: Floats, t: Floats, h: Floats, phase: Ints) -> tuple[Floats, Floats]:
         """Slopes of accelerations and of rates of laws' states at nodes c (s,) of steps: (n_t, s, rows, columns)."""
         e, s = self.equations, c.size
-        # where a function of time jumps, the end of a stretch has not seen it yet
+        # the end of a stretch has not seen yet what switches there
         ends = self.phases.t[phase + 1]
-        ends = ends - BESIDE * np.maximum(1.0, np.abs(ends))
+        ends = ends - BEFORE * np.maximum(1.0, np.abs(ends))
         times = np.minimum(t[:, None] + h[:, None] * c, np.maximum(ends, t)[:, None]).ravel()
         at = np.repeat(phase, s)
         field = e.field(self.sample(times), self.phases.mode[:, at], self.phases.sign[:, at])
@@ -111,10 +148,13 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     """Steps over all stretches, so fine that the error of each is within the tolerance.
 
     How far the coarse formulas are apart tells the size of h over the time scale, from which the error of the fine one
-    follows.
+    follows: as h to their orders where slopes are like exponentials, and near a pole, at a distance rho of the step (of
+    Bernstein's ellipse), as rho to minus their orders.
     """
     fine, coarse = radau(STAGES), radau(COARSE[0])
-    limit = coarse.error * (0.1 * max(rtol, 1e-13) / fine.error) ** ((coarse.order + 1) / (fine.order + 1))
+    small = 0.1 * max(rtol, 1e-13)
+    entire = coarse.error * (small / fine.error) ** ((coarse.order + 1) / (fine.order + 1))
+    near_pole = min(entire, small ** (coarse.order / fine.order))
     rest = left_out(stepper.equations, stepper.phases, stepper.sample)
     t, h, phase = graded(stepper.phases.t, rest)
     kept: list[tuple[Floats, Floats, Ints]] = []
@@ -123,14 +163,16 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
         if not t.size:
             break
         off, blind = stepper.misses(t, h, phase, scale)
+        steep = stepper.steep(t, h)
+        limit = np.where(steep, near_pole, entire)
         # what does not fall when steps are divided is round-off of the dense output, which no mesh removes
         bad = (((off > limit) & (off < _FALLS * before)) | blind) & (number < _ROUNDS - 1)
         kept.append((t[~bad], h[~bad], phase[~bad]))
-        ratio = np.where(blind[bad], _PARTS, (off[bad] / limit) ** (1.0 / (coarse.order + 1)))
+        ratio = np.where(blind[bad], _PARTS, (off[bad] / limit[bad]) ** (1.0 / (coarse.order + 1)))
         parts = np.clip(np.ceil(1.1 * ratio), 2, _PARTS).astype(np.int64)
-        told = ~blind[bad] & ((number > 0) | (off[bad] < 1.0))
+        told = ~blind[bad] & ~steep[bad] & ((number > 0) | (off[bad] < 1.0))
         before = np.repeat(np.where(told, off[bad], np.inf), parts)
-        sure = np.repeat(ratio < _NEARLY, parts)
+        sure = np.repeat((ratio < _NEARLY) & ~steep[bad], parts)
         t, h, phase = _divided(t[bad], h[bad], phase[bad], parts)
         kept.append((t[sure], h[sure], phase[sure]))
         t, h, phase, before = t[~sure], h[~sure], phase[~sure], before[~sure]

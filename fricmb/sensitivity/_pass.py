@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,14 @@ from fricmb.sensitivity._collocation import radau
 from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._happenings import happenings
-from fricmb.sensitivity._landings import extrapolated, places_before, settled
+from fricmb.sensitivity._jumps import jumps
+from fricmb.sensitivity._landings import extrapolated, near_misses, passes, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
 from fricmb.sensitivity._seeds import STATE
 from fricmb.sensitivity._sizes import sizes
 from fricmb.sensitivity._starts import held, one_sided
+from fricmb.sensitivity._steep import steep
 from fricmb.sensitivity._transitions import Transitions
 
 #: More states than this are not carried: maps of steps are dense, and take a third of a second each at this size.
@@ -56,14 +59,16 @@ class Tangent:
         sample = piece.trajectory.motion
         breakpoints = e.breakpoints
         transitions_at = np.asarray(sol.events.t)
-        self.phases = phases_of(piece, transitions_at, sol.names.row, breakpoints.t)
+        self.phases = phases_of(piece, transitions_at, sol.names.row, breakpoints.t, np.zeros(0))
         bends = bends_of(e, self.phases, sample)
-        if bends.size:
-            self.phases = phases_of(piece, transitions_at, sol.names.row, np.union1d(breakpoints.t, bends))
+        if bends.t.size:
+            self.phases = phases_of(piece, transitions_at, sol.names.row, breakpoints.t, bends.t)
+        self.jumps = jumps(e, self.phases, sample, bends)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)
-        happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving())
+        passed = passes(e, self.phases, sample)
+        happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
         first = e.field(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1]).found
@@ -75,7 +80,21 @@ class Tangent:
             f" {', '.join(repr(self.columns[j]) for j in by)}, which give it a speed, are one-sided"
             for name, by in one_sided_by.items()
         ]
-        self.notes = (*starts, *transitions.notes)
+        self.notes = (*starts, *transitions.notes, *self._unsure(sample))
+
+    def _unsure(self, sample: Any) -> Iterator[str]:
+        """Notes of what the errors of the run leave open."""
+        e, rtol = self.equations, self.rtol
+        for k, t, share in near_misses(e, self.phases, sample):
+            yield (
+                f"at t = {t:.10g} slip of contact {e.names.contacts[k]!r} passes rest at {share:.0e} of its largest"
+                f" speed: derivatives of what follows may be off by {min(rtol / share, 1.0):.0e} of their size"
+            )
+        for k, off in steep(e, self.stepper, self.mesh):
+            yield (
+                f"friction of contact {e.names.contacts[k]!r} falls so steeply near rest that derivatives may be off by"
+                f" {min(off * rtol, 1.0):.0e} of their size"
+            )
 
     def _begin(self) -> Floats:
         """Derivatives of the initial state (n_y, columns)."""
@@ -98,7 +117,8 @@ class Tangent:
         """From step to step and over the transitions."""
         n_y, n_s = self.equations.n_y, len(self.states)
         at = {one.phase: i for i, one in enumerate(transitions.happened)}
-        self.moved, self.transversality = np.zeros((n_events, len(self.columns))), np.full(n_events, np.inf)
+        # one more: for what happens without an event
+        moved, transversality = np.zeros((n_events + 1, len(self.columns))), np.full(n_events + 1, np.inf)
         self.before: dict[float, Floats] = {}
         found, last = np.empty((self.mesh.t.size + 1, n_y, len(self.columns))), 0
         for k, (phase, map_) in enumerate(zip(self.mesh.phase.tolist(), self.stepper.each(self.mesh), strict=True)):
@@ -107,15 +127,18 @@ class Tangent:
                 one = transitions.happened[i]
                 self.before[one.t] = S
                 S, dt = self._over(transitions, i, S, found, k)
-                self.moved[one.events] = dt
-                self.transversality[one.events] = transitions.transversality(i)
+                moved[one.events] = dt
+                transversality[one.events] = transitions.transversality(i)
                 transitions.say_unsafe(i)
+            elif phase != last and phase in self.jumps:
+                S = self.jumps[phase].over(S)
             last = phase
             found[k] = S
             S = map_[:, :n_y] @ S
             S[:, n_s:] += map_[:, n_y:]
         found[-1] = S
-        self.S, self.unsafe = found, tuple(sorted(transitions.unsafe))
+        self.S, self.unsafe = found, tuple(sorted(transitions.unsafe - {n_events}))
+        self.moved, self.transversality = moved[:-1], transversality[:-1]
 
     def _over(self, transitions: Transitions, i: int, S: Floats, held: Floats, k: int) -> tuple[Floats, Floats]:
         """Derivatives after a transition and of its time.

@@ -15,6 +15,8 @@ from fricmb.integrate.run.chunked_run import KeptTrajectory
 SAME = 1e-11
 #: How far beside them functions of time are evaluated, relative to 1 or the time.
 BESIDE = 1e-14
+#: How far before the end of a stretch slopes are evaluated: further than round-off of a run moves a switch of formulas.
+BEFORE = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,10 +44,11 @@ class Phases:
         return found
 
 
-def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats) -> Phases:
+def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats, bends: Floats) -> Phases:
     """Stretches of one piece of a run; ``row``: first rows of contacts.
 
-    ``breakpoints``: times at which functions of time, or slopes of friction, break.
+    ``breakpoints``: times at which functions of time break; ``bends``: those at which slopes of friction do, which may
+    be very near the end of a step.
     """
     trajectory = piece.trajectory
     if isinstance(trajectory, KeptTrajectory):
@@ -53,7 +56,7 @@ def phases_of(piece: Any, events: Floats, row: Ints, breakpoints: Floats) -> Pha
     t = np.unique(np.concatenate([trajectory.t, events]))
     t = t[(t >= piece.t_start) & (t <= piece.t_end)]
     far = [b for b in breakpoints if np.abs(t - b).min() > SAME * max(1.0, abs(b))]
-    t = np.union1d(t, far)
+    t = np.union1d(np.union1d(t, far), bends)
     middle = 0.5 * (t[:-1] + t[1:])
     seen = trajectory.motion(middle)
     sign = np.where(seen.g < 0.0, -1.0, 1.0)

@@ -13,20 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Codes, Floats
+from fricmb.integrate.problem import STICK, Codes, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._breakpoints import Breakpoints
 from fricmb.sensitivity._directions import field_at_rest
 from fricmb.sensitivity._equations import Equations, Field
 from fricmb.sensitivity._found import total, whole
-from fricmb.sensitivity._happenings import Happening
+from fricmb.sensitivity._happenings import PASS, Happening
 from fricmb.sensitivity._phases import BESIDE, Phases
 from fricmb.sensitivity._starts import held
 from fricmb.sensitivity._triggers import Trigger, Triggers
 
 #: An event function counts as 0 within this share of its scale, or this many tolerances.
 _ZERO, _TOLERANCES = 1e-7, 100.0
+#: Where in a stretch before slip passes rest its direction is looked at, from its end.
+_NEAR = 1e-3
 #: Below this normalised rate a transition is too close to one that only touches to be trusted.
 TOUCHES = 1e-3
 
@@ -73,14 +75,20 @@ class Transitions:
                 wide = self.equations.contacts[k].d > 1
                 if wide and (kind == "stick" or (kind == "slip" and not self._moves_on(i, k))):
                     found.append((i, k, kind == "stick"))
+                if kind == PASS:
+                    found += [(i, k, True), (i, k, False)]
         if not found:
             return
         phase = [self.happened[i].phase - ends for i, _, ends in found]
         samples, mode = take(self.samples, [i for i, _, _ in found]), self.phases.mode[:, phase]
         sign, contacts = self.phases.sign[:, phase], [k for _, k, _ in found]
-        middles = [0.5 * float(self.phases.t[k] + self.phases.t[k + 1]) for k in phase]
-        beside = self.sample(np.array(middles)).g
-        own = field_at_rest(self.equations, samples, mode, sign, contacts, beside)
+        t, near = self.phases.t, [0.5 if self.happened[i].kinds != [PASS] else _NEAR for i, _, _ in found]
+        beside = self.sample(np.array([
+            t[k + 1] - x * (t[k + 1] - t[k]) if ends else t[k] + x * (t[k + 1] - t[k])
+            for k, x, (_, _, ends) in zip(phase, near, found, strict=True)
+        ])).g  # fmt: skip
+        passing = [ends and self.happened[i].kinds == [PASS] for i, _, ends in found]
+        own = field_at_rest(self.equations, samples, mode, sign, contacts, beside, passing)
         for j, (i, _, ends) in enumerate(found):
             _put(self.before if ends else self.after, i, own, j)
 
@@ -150,7 +158,7 @@ class Transitions:
     def lands(self, i: int, trigger: Trigger) -> bool:
         """Whether slip in two directions ends."""
         kind = self.happened[i].kind_of(trigger.event)
-        return kind == "stick" and self.equations.contacts[trigger.contact].d > 1
+        return kind in ("stick", PASS) and self.equations.contacts[trigger.contact].d > 1
 
     def transversality(self, i: int) -> list[float]:
         """Of the events of a happening; inf where a function of time makes them."""
@@ -184,10 +192,11 @@ class Transitions:
         open_to = np.flatnonzero(off > 1e3 * self.rtol * np.where(dt != 0.0, sizes, np.inf))
         if open_to.size:
             by = ", ".join(f"{columns[j]!r} to {off[j] / sizes[j]:.0e}" for j in open_to.tolist())
+            moves_on = PASS in self.happened[i].kinds
             self.notes.append(
                 f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled: of the"
-                f" derivatives of that time, those by {by} of their size are all that is known (what follows is not"
-                " affected)"
+                f" derivatives of that time, those by {by} of their size are all that is known"
+                + (" (and no more of what follows)" if moves_on else " (what follows is not affected)")
             )
 
     def _stopped(self, i: int, trigger: Trigger, S: Floats) -> Floats:
@@ -215,7 +224,8 @@ class Transitions:
 
     def _with(self, i: int, trigger: Trigger) -> Floats:
         """Rates when, of several that change at once, those up to a trigger have changed."""
-        if (self.happened[i].events <= trigger.event).all():
+        one = self.happened[i]
+        if (one.events <= trigger.event).all() and PASS not in one.kinds:
             return np.asarray(self.after.y_dot[i])
         mode, sign = self._modes(i, trigger)
         found: Floats = self.equations.field(take(self.samples, [i]), mode[:, None], sign[:, None]).y_dot[0]
@@ -228,6 +238,8 @@ class Transitions:
             if one.events[j] <= trigger.event:
                 own = self.equations.rows(k)
                 mode[k], sign[own] = self.phases.mode[k, one.phase], self.phases.sign[own, one.phase]
+                if one.kinds[j] == PASS:  # it rests for a moment
+                    mode[k] = STICK
         return mode, sign
 
 

@@ -1,0 +1,50 @@
+"""Switches of formulas at which rates of states jump: events that have no name, and move derivatives like any other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.problem import Floats
+from fricmb.sensitivity._bends import Bends
+from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._found import total, whole
+from fricmb.sensitivity._phases import BEFORE, Phases
+
+#: Differences of rates below this share of their largest are none.
+_NOTHING = 1e-8
+
+
+@dataclass(frozen=True, kw_only=True)
+class Jump:
+    """Rates before less those after (n_y,), and of the condition slopes (columns,) and its rate along the motion."""
+
+    rates: Floats
+    slopes: Floats
+    rate: float
+
+    def over(self, S: Floats) -> Floats:
+        """Derivatives behind it from those before: S+ = S- + (f- - f+) dt, dt = -(c_y S- + c_p)/c'."""
+        dt = -total(self.slopes, S, len(S)) / self.rate
+        return np.asarray(S + np.outer(self.rates, dt))
+
+
+def jumps(e: Equations, phases: Phases, sample: Any, bends: Bends) -> dict[int, Jump]:
+    """Jumps by the stretch that begins with each."""
+    if not bends.t.size:
+        return {}
+    begins = np.searchsorted(phases.t, bends.t)
+    beside = BEFORE * np.maximum(1.0, np.abs(bends.t))
+    before = e.field(sample(bends.t - beside), phases.mode[:, begins - 1], phases.sign[:, begins - 1])
+    after = e.field(sample(bends.t + beside), phases.mode[:, begins], phases.sign[:, begins])
+    off = before.y_dot - after.y_dot
+    large = np.flatnonzero((np.abs(off) > _NOTHING * np.abs(before.y_dot).max(axis=0)).any(axis=1))
+    found = {}
+    for i in large.tolist():
+        condition = bends.conditions(bends.t[i : i + 1] - beside[i])[bends.which[i]]
+        slopes = whole([condition], 1, e.columns)[1][0, 0]
+        rate = float(slopes[: e.n_y] @ before.y_dot[i] + slopes[-1])
+        found[int(begins[i])] = Jump(rates=off[i], slopes=slopes, rate=rate or 1e-300)
+    return found

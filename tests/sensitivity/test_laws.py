@@ -1,0 +1,50 @@
+"""Derivatives under every law of the catalogue, beside differences of runs."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from tests.oracle.table import LAWS, SITUATIONS, case
+
+from .differences import derived, difference
+
+#: Brings compiled code, and is refused.
+_LEFT_OUT = {"Contensou"}
+_SITUATIONS = ("reversal", "stick-slip")
+_RTOL = 1e-8
+
+
+def _of(name: str, situation: str):
+    """A scene, and names of numbers of the law and the load that it can be differentiated by."""
+    scene = case(name, situation).scene
+    own = [p for p in scene.parameters if p.startswith("sole.law") and np.ndim(scene.parameters[p]) == 0]
+    return scene, ("sole.normal_force", *[p for p in own if scene.parameters[p] != 0.0][:1])
+
+
+def _surest(scene, name, t_end):
+    """A difference of runs and how sure it is: of two steps the better, and no surer than the two agree."""
+    found = [difference(scene, name, step=step, t_end=t_end) for step in (2e-3, 2e-4)]
+    sure = sorted((one for one in found if one is not None), key=lambda one: one[1].max())
+    if len(sure) < 2:
+        return sure[0] if sure else None
+    (value, unsure), (other, less) = sure
+    return value, np.maximum(unsure, np.maximum(np.abs(value - other) - less, 0.0))
+
+
+@pytest.mark.parametrize("situation", _SITUATIONS)
+@pytest.mark.parametrize("name", sorted(LAWS.keys() - _LEFT_OUT))
+def test_law(name, situation):
+    """To a thousand tolerances of the largest derivative, or a note says to how much."""
+    scene, names = _of(name, situation)
+    t_end = SITUATIONS[situation].t_end
+    sol = fm.simulate(scene, t_end=t_end, rtol=_RTOL, sensitivities=names)
+    off = {}
+    for parameter in names:
+        surest = _surest(scene, parameter, t_end)
+        if surest is None:
+            continue
+        value, unsure = surest
+        error = np.maximum(np.abs(derived(sol, parameter) - value) - 3.0 * unsure, 0.0).max()
+        off[parameter] = error / max(np.abs(value).max(), 1e-2)
+    assert off
+    assert max(off.values()) < (1e-2 if sol.stats.notes else 1e3 * _RTOL), (off, sol.stats.notes)
