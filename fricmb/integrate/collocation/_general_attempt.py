@@ -20,7 +20,7 @@ from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, STICK, Ints
 from fricmb.integrate.step.contact_newton import solve_ports
-from fricmb.integrate.step.exact_structure import INPUTS, OUTPUTS, UNKNOWN
+from fricmb.integrate.step.exact_structure import INPUTS, LENGTH, OUTPUTS, UNKNOWN
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, widest
 
 
@@ -135,6 +135,7 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     start_blocks(ex, y.v)
     slot = slot_of(one, h, address)
     ex.slot[0] = slot
+    ex.par[LENGTH] = h
     outputs_at_start(packed, s, y, one, h)
     free_outputs(ex, slot, h, ex.flags[UNKNOWN])
     guess_ports(packed, y, one, h)

@@ -98,7 +98,7 @@ def _exact(problem: Problem, s: int) -> Exact:
     flags = [n_in, n_o, part.modal and not co[0].any(), _has_ledger(problem), forms.unknown, xs, ys, nf]
     made: dict[str, Any] = {
         "flags": np.array(flags, np.int64),
-        "par": np.array([1.0, Z_EXACT[s] * 1.0001, np.inf, fastest]),
+        "par": np.array([1.0, Z_EXACT[s] * 1.0001, np.inf, fastest, 0.0]),
         "nx": np.zeros((1, 1, s)), "blk": np.stack([part.w2, part.d])[None], "co": co, "ci": ci,
         "linked": linked.astype(float), "mat": np.stack([part.q_u, part.q_v, part.v_u, part.v_v]),
         "start": np.stack([part.force_0, part.force_1, part.force_0 @ problem.linear.M,

@@ -11,6 +11,7 @@ from fricmb.integrate.collocation._general_attempt import exact_attempt
 from fricmb.integrate.collocation._general_prepare import exact_of
 from fricmb.integrate.collocation._general_sample import sample_exact
 from fricmb.integrate.collocation._general_step import exact_error, exact_finish, exact_record
+from fricmb.integrate.collocation.root_along_step import exact_root
 from fricmb.integrate.compile.block_places import CORE, PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
@@ -38,6 +39,7 @@ STANDS_FOR = {
     "step_error": exact_error.__name__,
     "finish": exact_finish.__name__,
     "record_inside": exact_record.__name__,
+    "root_along_step": exact_root.__name__,
 }
 LEFT_OUT = ("factorise", "solve_stages", *STANDS_FOR)
 

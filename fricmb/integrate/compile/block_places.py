@@ -97,5 +97,7 @@ FURTHER = (
     "multistep",
     "dgbtrf",
     "dgbtrs",
+    "root_along_step",
+    "exact_root",
 )
 PLACES = LAPACK + CORE + FURTHER

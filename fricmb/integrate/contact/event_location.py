@@ -127,6 +127,19 @@ def slip_rate(packed: Packed, y: State, k: int) -> float:
 
 
 @block
+def root_along_step(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, guess: float,
+    found: Floats, address: Ints,
+) -> float:  # fmt: skip
+    """Where contact k comes to its transition, near ``guess``, on the motion of the step h just solved.
+
+    Negative where ``end`` has been moved there and may stay; nan where no root is found.  To be stood in for, where
+    the motion within a step is known as well as its end.
+    """
+    return np.nan
+
+
+@block
 def locate(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, x: float,
     found: Floats, retry: Floats, address: Ints,
@@ -143,6 +156,12 @@ def locate(
     step = max(x, 0.0) * h
     same = 0
     failures = 0
+    last = one.tab.c.shape[0] - 1
+    if one.exact.ladder.shape[0] > 0:
+        new = root_along_step(packed, s, y, end, one, acc, k, h, step, found, address)
+        if new < 0.0:
+            return k
+        step = new if 0.0 < new < h else step
     for trial in range(60):
         if stopped():
             return -1
@@ -172,12 +191,17 @@ def locate(
             hi = step
             f_lo = np.nan
             lo = 0.0
-            f_hi = margin(packed, s, y, end, one, k, found)
+            f_hi = margin(packed, s, y, end, one.w.r[last, k], k, found)
             if not f_hi < 0.0:
                 f_hi = np.nan
             step = found[0] * step
             continue
-        f = margin(packed, s, y, end, one, k, found)
+        f = margin(packed, s, y, end, one.w.r[last, k], k, found)
+        new = np.nan
+        if one.exact.ladder.shape[0] > 0:
+            new = root_along_step(packed, s, y, end, one, acc, k, step, step, found, address)
+            if new < 0.0:
+                return k
         slipping = y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH
         if f < 0.0:
             if f_hi == f_hi and f_lo == f_lo and same < 0:
@@ -187,8 +211,7 @@ def locate(
             if f_hi == f_hi and f_lo == f_lo and same > 0:
                 f_hi *= 0.5
             lo, f_lo, same = step, f, 1
-        new = np.nan
-        if slipping and one.w.r[one.tab.c.shape[0] - 1, k] == f:
+        if not lo < new < hi and slipping and one.w.r[last, k] == f:
             rate = slip_rate(packed, end, k)
             if rate < 0.0:
                 new = step - f / rate

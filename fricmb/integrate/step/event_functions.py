@@ -119,9 +119,10 @@ def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) 
 
 
 @kernel
-def margin(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: int, found: Floats) -> float:
-    """Distance of contact k from its transition at the end of the step just solved (negative: beyond it).
+def margin(packed: Packed, s: Scratch, y: State, end: State, speed: float, k: int, found: Floats) -> float:
+    """Distance of contact k from its transition at ``end`` of a step from y (negative: beyond it).
 
+    ``speed``: that of its slip there, negative where it would go on beyond its end.
     ``found[1]`` becomes 1 where it is the normal force that comes to 0, else 0.
     """
     value = np.inf
@@ -135,7 +136,7 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: in
     if packed.ports.law[k] == LAW_SMOOTH:
         return value
     if y.mode[k] == SLIP:
-        other = one.w.r[one.tab.c.shape[0] - 1, k]
+        other = speed
     else:
         other = cone_margin(packed.ports, packed.laws, k, s, end.F, end.N[k])
     if other < value:

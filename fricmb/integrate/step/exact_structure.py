@@ -20,8 +20,9 @@ from fricmb.integrate.problem import Complexes3, Floats, Floats2, Floats3, Float
 #: ``flags``: number of inputs, of outputs, whether blocks are modes seen by velocities alone, whether powers other than
 #: friction are kept, unknown inputs, arguments of elements, arguments of normal forces, local forces of elements.
 INPUTS, OUTPUTS, IS_MODAL, LEDGER, UNKNOWN, ELEMENT_X, NORMAL_X, ELEMENT_F = range(8)
-#: ``par``: tolerance of a step per rtol, largest w h with exact weights, longest next step, fastest block.
-SAFETY, STIFF_AT, CAP, FASTEST_BLOCK = range(4)
+#: ``par``: tolerance of a step per rtol, largest w h with exact weights, longest next step, fastest block, length
+#: of the step that was solved last.
+SAFETY, STIFF_AT, CAP, FASTEST_BLOCK, LENGTH = range(5)
 #: Rungs of the ladder 2^(k/4) of step sizes, and the one that stands for 1.
 RUNGS, UNIT_RUNG = 2000, 1000
 
