@@ -11,14 +11,14 @@ from fricmb.integrate.collocation._general_blocks import (
     start_blocks,
 )
 from fricmb.integrate.collocation._general_ports import exact_ports
-from fricmb.integrate.collocation._layout import NODE, TABLEAU, VECTORS
+from fricmb.integrate.collocation._layout import MONOMIAL, NODE, TABLEAU, VECTORS
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, STICK, Ints
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, STICK, Ints
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.exact_structure import INPUTS, LENGTH, OUTPUTS, UNKNOWN
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, widest
@@ -82,6 +82,31 @@ def guess_ports(packed: Packed, y: State, one: OneStep, h: float) -> None:
 
 
 @kernel
+def guess_forces(packed: Packed, y: State, one: OneStep, ratio: float) -> None:
+    """First forces and directions from the polynomials of a longer step from the same state, 1/``ratio`` as long."""
+    w, ex = one.w, one.exact
+    n_s = w.F.shape[0]
+    for k in range(y.mode.shape[0]):
+        row0, end = packed.ports.row[k], packed.ports.row[k + 1]
+        turns = y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH and end - row0 == 2
+        if not turns and y.mode[k] != STICK:
+            continue
+        for a in range(row0, end):
+            for i in range(n_s):
+                w.F[i, a] = 0.0
+            for r in range(n_s - 1, -1, -1):
+                c = 0.0
+                for x in range(n_s):
+                    c += ex.nd[MONOMIAL, r, x] * ex.P[a, x]
+                for i in range(n_s):
+                    w.F[i, a] = w.F[i, a] * (ratio * ex.nd[VECTORS, NODE, i]) + c
+        for i in range(n_s if turns else 0):
+            size = magnitude(packed.ports.row, k, w.F[i])
+            for a in range(row0, end):
+                w.n[i, a] = -w.F[i, a] / size if size > 0.0 else y.n[a]
+
+
+@kernel
 def guess_velocities(packed: Packed, y: State, one: OneStep) -> None:
     """Relative velocities under the forces at the start, where laws ask for them."""
     w = one.w
@@ -139,6 +164,8 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     outputs_at_start(packed, s, y, one, h)
     free_outputs(ex, slot, h, ex.flags[UNKNOWN])
     guess_ports(packed, y, one, h)
+    if one.last[0] == y.t[0] and h <= one.last[1]:
+        guess_forces(packed, y, one, h / one.last[1])
     weigh_inputs(packed, y, one, acc, h)
     newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
@@ -146,6 +173,8 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
         solved = exact_ports(packed, s, y, one, acc, slot, address)
     else:
         solved = solve_linear(packed, s, y, one, slot, address)
+    one.last[0] = y.t[0]
+    one.last[1] = h if solved else 0.0
     if not solved:
         return False
     end_blocks(ex, slot, h)

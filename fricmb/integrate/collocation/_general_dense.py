@@ -88,10 +88,12 @@ def input_series(ex: Exact, P: Floats2, h: float, series: Floats2, gain: Floats2
                 continue
             for i in range(n_s):
                 gain[place, i] = block_input(ex, P, place, j, i)
+            # from the last value on: what is constant leaves no round-off in the other coefficients
+            last = gain[place, n_s - 1]
             for r in range(n_s):
-                value = 0.0
-                for x in range(n_s):
-                    value += ex.nd[MONOMIAL, r, x] * gain[place, x]
+                value = last if r == 0 else 0.0
+                for x in range(n_s - 1):
+                    value += ex.nd[MONOMIAL, r, x] * (gain[place, x] - last)
                 series[place * b + j, r] = value
 
 

@@ -32,6 +32,10 @@ from fricmb.integrate.step.radau_step import Accuracy, OneStep, finish
 GROWTH = 36.0
 #: Error of a velocity, by its own scale, that is round-off; part of the tolerance that a transition may take.
 ROUND_OFF, PART = 1e-13, 1e-2
+#: Round-off of a polynomial by its powers, relative to how much it changes.
+GRAIN = 1e-11
+#: Part of a first guess by which the second one differs, to see which way to go.
+OFFSET = 1e-3
 
 
 @kernel
@@ -65,12 +69,16 @@ def move_to(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, h: float, tau: float, series: Floats2,
     gain: Floats2, address: Ints,
 ) -> bool:  # fmt: skip
-    """Put the state at tau of the step h just solved into ``end``; ``gain`` (2, n + m): room."""
+    """Put the state at tau of the step h just solved into ``end``; ``gain`` (4, n + m): room."""
     ex, w, ports = one.exact, one.w, packed.ports
     n, m = y.q.shape[0], y.g.shape[0]
     copy_state(y, end)
+    # counted from the step's end, which is known without the round-off of powers of tau
+    gains_at(ex, h, h, series, gain[2, :n], gain[3, :n])
     gains_at(ex, h, tau, series, gain[0, :n], gain[1, :n])
     for i in range(n):
+        gain[0, i] = ex.end[0, i] + (gain[0, i] - gain[2, i])
+        gain[1, i] = ex.end[1, i] + (gain[1, i] - gain[3, i])
         end.q[i], ex.low[1, i] = two_sum(y.q[i], ex.low[0, i], gain[0, i])
         end.v[i] += gain[1, i]
     end.t[0], ex.low[1, n] = two_sum(y.t[0], ex.low[0, n], tau)
@@ -106,24 +114,34 @@ def distance(packed: Packed, s: Scratch, y: State, end: State, k: int, found: Fl
 
 
 @kernel
-def bends(packed: Packed) -> bool:
-    """Whether forces are more than constants: then the run is as exact as its tolerance."""
+def exact_as_its_tolerance(packed: Packed, y: State, k: int) -> bool:
+    """Whether forces are more than constants, so that the run is no more exact than its tolerance.
+
+    Not where slip in the plane ends: direction and speed at the end decide whether it does, or turns round.
+    """
     ports = packed.ports
-    for k in range(ports.law.shape[0]):
-        if ports.law[k] != LAW_CONSTANT or ports.var[k] >= 0 or ports.row[k + 1] - ports.row[k] == 2:
+    if y.mode[k] == SLIP and ports.row[k + 1] - ports.row[k] == 2:
+        return False
+    for c in range(ports.law.shape[0]):
+        if ports.law[c] != LAW_CONSTANT or ports.var[c] >= 0 or ports.row[c + 1] - ports.row[c] == 2:
             return True
-    return packed.elements.address.shape[0] > 0
+    return bool(packed.elements.address.shape[0] > 0)
 
 
 @kernel
-def may_stay(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, tau: float) -> bool:
+def may_stay(packed: Packed, y: State, one: OneStep, acc: Accuracy, k: int, h: float, tau: float) -> bool:
     """Whether tau is so near to the end of the step h, or forces so smooth, that the step need not be solved anew."""
+    ex = one.exact
     beyond = abs(tau - h) / h
     error = input_error(one) + state_error(packed, y, one, acc, h)
-    if error > 0.0 or beyond > 0.1:
-        error += stiff_error(y, one, acc, h, one.exact.par[SAFETY] * acc.rtol[0])
-    allowed = ROUND_OFF + (PART * acc.rtol[0] if bends(packed) else 0.0)
-    return bool(min(1.0, GROWTH * beyond) * error <= allowed)
+    error += stiff_error(y, one, acc, h, ex.par[SAFETY] * acc.rtol[0])
+    noise = 0.0
+    last = ex.P.shape[1] - 1
+    for c in range(ex.P.shape[0]):
+        for x in range(last):
+            noise = max(noise, ex.weight[c] * abs(ex.P[c, x] - ex.P[c, last]))
+    allowed = ROUND_OFF + (PART * acc.rtol[0] if exact_as_its_tolerance(packed, y, k) else 0.0)
+    return bool(min(1.0, GROWTH * beyond) * error + beyond * GRAIN * noise <= allowed)
 
 
 @block
@@ -135,30 +153,32 @@ def exact_root(
     ex = one.exact
     n_s, n = one.w.F.shape[0], y.q.shape[0]
     series = np.empty((2 * ex.blk.shape[2], n_s + 1))
-    gain = np.empty((2, max(n_s + 1, n + y.g.shape[0])))
-    input_series(ex, ex.P, h, series, gain[:, : n_s + 1].copy())
+    gain = np.empty((4, n + y.g.shape[0]))
+    input_series(ex, ex.P, h, series, np.empty((2, n_s + 1)))
     t_unit = EPS * max(abs(y.t[0]), h)
     first = guess
     if not move_to(packed, s, y, end, one, h, first, series, gain, address):
         return np.nan
     f = distance(packed, s, y, end, k, found)
-    second = first * (1.0 - 1e-6)
+    second = first * (1.0 - OFFSET)
+    aimed = False
     if y.mode[k] == SLIP and found[1] == 0.0:
         rate = slip_rate(packed, end, k)
-        second = first - f / rate if rate < 0.0 else np.nan
+        aimed = rate < 0.0
+        if aimed:
+            second = max(0.0, first - f / rate)
     for _ in range(12):
-        if f == 0.0 or abs(second - first) <= 2.0 * t_unit:
-            if may_stay(packed, y, one, acc, h, first):
-                return -first
+        if f == 0.0 or (aimed and abs(second - first) <= 2.0 * t_unit):
+            if may_stay(packed, y, one, acc, k, h, first):
+                return -max(first, 1e-290)
             break
-        if not abs(second - guess) <= 0.5 * guess or not move_to(
-            packed, s, y, end, one, h, second, series, gain, address
-        ):
+        if not second <= 1.5 * guess or not move_to(packed, s, y, end, one, h, second, series, gain, address):
             first = np.nan
             break
         after = distance(packed, s, y, end, k, found)
-        new = second - after * (second - first) / (after - f) if after != f else second
+        new = max(0.0, second - after * (second - first) / (after - f)) if after != f else second
         first, f, second = second, after, new
+        aimed = True
     copy_state(y, end)
     finish(packed, s, end, one, acc, h, address)
     return first

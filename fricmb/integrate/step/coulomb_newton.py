@@ -20,6 +20,10 @@ from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import some_stick
 from fricmb.integrate.step.contact_unknowns import PortState
 
+#: Correction, in units of what is asked for, times the turn behind it, from which on the next one is too small to
+#: matter.
+QUADRATIC = 1e-2
+
 
 @kernel
 def dot(a: Floats, b: Floats) -> float:
@@ -209,8 +213,8 @@ def plain_ports(
         change, turn = move_plain(ports, w, mode, tol)
         if not change < np.inf:
             return -1
-        # what sticks must not creep by what is left: one iteration more
-        good = change < 1.0 and turn < 0.03
+        # corrections fall by their squares; what sticks must not creep by what is left: one iteration more
+        good = turn < 0.03 and (change < 1.0 or change * turn < QUADRATIC)
         if (linear and (ports.soft[0] == 0.0 or iteration > 0)) or (good and (close or not some_stick(mode))):
             plain_outputs(ports, w, mode)
             done = iteration + 1
