@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from fricmb.integrate.collocation._general_blocks import A0, K0, V0
 from fricmb.integrate.collocation._layout import (
     B0,
@@ -158,3 +160,54 @@ def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: F
             for i in range(dq.shape[0]):
                 dq[i] += ex.mat[Q_V, i, j] * v
                 dv[i] += ex.mat[V_U, i, j] * u
+
+
+@kernel
+def gains_at_nodes(ex: Exact, h: float, span: float, series: Floats2, dq: Floats2, dv: Floats2) -> None:
+    """Gains (s, n) of positions and velocities at the nodes of a step of length ``span`` on the motion of the step h.
+
+    :func:`gains_at` at all nodes side by side.
+    """
+    n_s = series.shape[1] - 1
+    b = ex.blk.shape[2]
+    c = ex.nd[VECTORS, NODE, :n_s]
+    power, u, v = np.empty(n_s), np.empty(n_s), np.empty(n_s)
+    gain_u, gain_v = np.empty(n_s), np.empty(n_s)
+    modal = ex.flags[IS_MODAL] == 1
+    dq[:, :] = 0.0
+    dv[:, :] = 0.0
+    for j in range(b):
+        w2 = ex.blk[0, W2, j]
+        d = ex.blk[0, DAMP, j]
+        size = max(math.sqrt(abs(w2)), abs(d)) * span
+        for i in range(n_s):
+            power[i], u[i], v[i], gain_u[i], gain_v[i] = 1.0, 0.0, 0.0, 0.0, 0.0
+        if is_stiff(ex, j, h):
+            for i in range(n_s):
+                gain_u[i], gain_v[i] = block_gain(ex, j, h, c[i] * span, series)
+            size = -1.0
+        bound = 1.0
+        q = 0
+        while size >= 0.0 and (q < n_s + 2 or bound > 1e-18) and q <= 200:
+            e0 = ex.bs[V0, j] if q == 0 else 0.0
+            e1 = ex.bs[A0, j] if q == 0 else 0.0
+            s0 = series[j, q] if q < n_s else 0.0
+            s1 = series[b + j, q] if q < n_s else 0.0
+            q += 1
+            scale = span / q
+            for i in range(n_s):
+                rate_u = v[i] + e0 + s0 * power[i]
+                rate_v = e1 - w2 * u[i] - d * v[i] + s1 * power[i]
+                u[i] = c[i] * scale * rate_u
+                v[i] = c[i] * scale * rate_v
+                gain_u[i] += u[i]
+                gain_v[i] += v[i]
+                power[i] *= c[i] * (span / h)
+            bound *= size / q
+        for i in range(n_s):
+            for a in range(dq.shape[1]):
+                dq[i, a] += ex.mat[Q_U, a, j] * gain_u[i]
+                dv[i, a] += ex.mat[V_V, a, j] * gain_v[i]
+                if not modal:
+                    dq[i, a] += ex.mat[Q_V, a, j] * gain_v[i]
+                    dv[i, a] += ex.mat[V_U, a, j] * gain_u[i]

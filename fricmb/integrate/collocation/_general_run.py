@@ -59,6 +59,7 @@ def places(plain: bool, nonlinear: bool) -> Ints:
     return table
 
 
+@lru_cache(maxsize=1)
 def _no_factor() -> Factor:
     shapes = {"Sinv": 3, "P": 3, "G": 3, "X": 3, "S": 2, "Nq": 2, "Nv": 2}
     kinds = {"Sinv": complex, "S": complex, "X": complex, "line": complex, "slot": np.int64}
@@ -118,10 +119,10 @@ def run_general(
     varies = bool(np.any(contacts.normal != 0))
     plain = not varies and not np.any(contacts.law != LAW_CONSTANT)
     nonlinear = len(problem.elements.table.address) > 0 or varies
-    run = Collector(problem, start, t_end, places=places(bool(plain), nonlinear))
-    one = exact_step(problem, exact_of(problem, s, safety, exact_up_to), run.counts)
-    extra = 1 + one.exact.P.size + s * (problem.n_z + problem.n_c + 2)
-    run.widen(extra)
+    exact = exact_of(problem, s, safety, exact_up_to)
+    columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
+    run = Collector(problem, start, t_end, places=places(bool(plain), nonlinear), columns=columns)
+    one = exact_step(problem, exact, run.counts)
     acc = accuracy(run, tolerance)
 
     def go_on(clock: Clock) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.collocation._fundamental import two_sum
 from fricmb.integrate.collocation._general_blocks import BY_VELOCITY_1
-from fricmb.integrate.collocation._general_dense import gains_at, input_series, is_stiff, stiff_nodes
+from fricmb.integrate.collocation._general_dense import gains_at_nodes, input_series, is_stiff, stiff_nodes
 from fricmb.integrate.collocation._layout import DAMP, MONOMIAL, NODE, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
@@ -212,9 +212,9 @@ def moved_powers(
     series, gain = np.empty((2 * ex.blk.shape[2], n_s + 1)), np.empty((2, n_s + 1))
     F, N, g = np.empty(m), np.empty(y.N.shape[0]), np.empty(m)
     input_series(ex, ex.P, h, series, gain)
+    gains_at_nodes(ex, h, span, series, ex.node[0], ex.node[1])
     for j in range(n_s):
         tau = ex.nd[VECTORS, NODE, j] * span
-        gains_at(ex, h, tau, series, ex.node[0, j], ex.node[1, j])
         for i in range(n):
             ex.node[0, j, i] += y.q[i]
             ex.node[1, j, i] += y.v[i]

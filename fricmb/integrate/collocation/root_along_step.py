@@ -69,12 +69,14 @@ def move_to(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, h: float, tau: float, series: Floats2,
     gain: Floats2, address: Ints,
 ) -> bool:  # fmt: skip
-    """Put the state at tau of the step h just solved into ``end``; ``gain`` (4, n + m): room."""
+    """Put the state at tau of the step h just solved into ``end``.
+
+    ``gain`` (4, n + m): room; in the last two rows the gains at h.
+    """
     ex, w, ports = one.exact, one.w, packed.ports
     n, m = y.q.shape[0], y.g.shape[0]
     copy_state(y, end)
     # counted from the step's end, which is known without the round-off of powers of tau
-    gains_at(ex, h, h, series, gain[2, :n], gain[3, :n])
     gains_at(ex, h, tau, series, gain[0, :n], gain[1, :n])
     for i in range(n):
         gain[0, i] = ex.end[0, i] + (gain[0, i] - gain[2, i])
@@ -155,6 +157,7 @@ def exact_root(
     series = np.empty((2 * ex.blk.shape[2], n_s + 1))
     gain = np.empty((4, n + y.g.shape[0]))
     input_series(ex, ex.P, h, series, np.empty((2, n_s + 1)))
+    gains_at(ex, h, h, series, gain[2, :n], gain[3, :n])
     t_unit = EPS * max(abs(y.t[0]), h)
     first = guess
     if not move_to(packed, s, y, end, one, h, first, series, gain, address):

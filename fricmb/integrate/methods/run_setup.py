@@ -64,12 +64,14 @@ def one_step(problem: Problem, tableau: Tableau, counts: np.ndarray) -> OneStep:
 class Collector:
     """State and rooms of one run; takes the rows out of the kernels' room chunk by chunk.
 
-    ``made``: what is made of them in the end.
+    ``made``: what is made of them in the end; ``columns``: what a method adds to a row.
     """
 
     made: Callable[..., RowTrajectory] = staticmethod(RowTrajectory)
 
-    def __init__(self, problem: Problem, start: Start, t_end: float, *further: str, places: Ints | None = None) -> None:
+    def __init__(
+        self, problem: Problem, start: Start, t_end: float, *further: str, places: Ints | None = None, columns: int = 0
+    ) -> None:
         self.problem = problem
         self.start = start
         self.t_end = t_end
@@ -80,7 +82,7 @@ class Collector:
         self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
         self.rest = rest(problem, self.packed)
         self.old = room(Before(np.zeros(problem.n_c, np.int8), np.zeros(problem.m)))
-        self.rows = rows(problem, self.chunk)
+        self.rows = rows(problem, self.chunk, columns)
         self.counts = np.zeros(8, np.int64)
         half = int(self.packed.structure.half[0])
         self.address = places_of(half, "step_error", *further) if places is None else places
@@ -99,10 +101,6 @@ class Collector:
         rooms = (self.packed, self.scratch, self.y, self.rest, self.old)
         code = watched(begin, *rooms, given, self.rows, self.address)
         return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]
-
-    def widen(self, columns: int) -> None:
-        """Give rows further columns."""
-        self.rows = self.chunks.room = rows(self.problem, self.chunk, columns)
 
     def trajectory(self, failure: str | None) -> RowTrajectory:
         """The run so far."""
