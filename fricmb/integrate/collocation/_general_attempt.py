@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.collocation._general_blocks import (
     end_blocks,
     free_outputs,
@@ -12,6 +14,7 @@ from fricmb.integrate.collocation._general_blocks import (
 )
 from fricmb.integrate.collocation._general_ports import exact_ports
 from fricmb.integrate.collocation._layout import MONOMIAL, NODE, TABLEAU, VECTORS
+from fricmb.integrate.collocation.held_rows import give_held_forces, hold_rows, pattern_of, place_of
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State
@@ -126,7 +129,31 @@ def guess_velocities(packed: Packed, y: State, one: OneStep) -> None:
 
 
 @kernel
-def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, address: Ints) -> bool:
+def solve_held(
+    packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, h: float, address: Ints
+) -> int:  # fmt: skip
+    """Solve the contacts' equations with what sticks eliminated beforehand; its iterations, -1, or 0 where it is not.
+
+    A step off the ladder is one of a kind, and not worth it.
+    """
+    w, ex = one.w, one.exact
+    pattern = pattern_of(packed, y.mode) if slot > 0 else 0
+    place = place_of(packed, one, y.mode, pattern, h, address) if pattern > 0 else -1
+    if place < 0:
+        return 0
+    first, free = np.empty(w.dF.shape[0]), np.empty(y.mode.shape[0], np.int8)
+    hold_rows(ex, w, place, y.mode, free, first)
+    found = solve_ports(packed.ports, packed.laws, s, w, one.st.hA, free, one.tol, address)
+    give_held_forces(packed, ex, w, place, y.mode, first)
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] == STICK:
+            for i in range(w.N.shape[0]):
+                w.N[i, k] = y.N[k]
+    return max(found, 1) if found >= 0 else -1
+
+
+@kernel
+def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, h: float, address: Ints) -> bool:
     """The equations of contacts alone, on a structure that answers linearly."""
     w, ex = one.w, one.exact
     m = y.g.shape[0]
@@ -142,7 +169,10 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
             w.gb[i, a] = ex.xf[a, i]
             w.Fo[i, a] = 0.0
     guess_velocities(packed, y, one)
-    if solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol, address) < 0:
+    found = solve_held(packed, s, y, one, slot, h, address)
+    if found == 0:
+        found = solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol, address)
+    if found < 0:
         return False
     for a in range(m):
         for i in range(n_s):
@@ -159,7 +189,6 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
     slot = slot_of(one, h, address)
-    ex.slot[0] = slot
     ex.par[LENGTH] = h
     outputs_at_start(packed, s, y, one, h)
     free_outputs(ex, slot, h, ex.flags[UNKNOWN])
@@ -172,7 +201,7 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     if ex.flags[OUTPUTS] > y.g.shape[0]:
         solved = exact_ports(packed, s, y, one, acc, slot, address)
     else:
-        solved = solve_linear(packed, s, y, one, slot, address)
+        solved = solve_linear(packed, s, y, one, slot, h, address)
     one.last[0] = y.t[0]
     one.last[1] = h if solved else 0.0
     if not solved:

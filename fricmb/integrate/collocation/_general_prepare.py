@@ -79,6 +79,10 @@ def _tables(b: int, s: int, pairs: int) -> tuple[Floats, Floats]:
     return np.zeros((count, 6, b, s)), np.zeros((count, pairs, s, s))
 
 
+#: Numbers kept at most for contacts that stick.
+HELD_NUMBERS = 3_000_000
+
+
 def _exact(problem: Problem, s: int) -> Exact:
     n, forms, part, table = problem.n, port_forms(problem), free_blocks(problem), nodes(s)
     b, n_in, n_o = len(part.w2), forms.B.shape[1], len(forms.by_v)
@@ -95,6 +99,9 @@ def _exact(problem: Problem, s: int) -> Exact:
     xs, ys, nf = forms.element_x, forms.normal_x, forms.element_f
     nv = problem.n_v
     inner = xs * s
+    wide = s * problem.m
+    # with nonlinear elements or normal forces the equations of contacts change from one iteration to the next
+    held = 0 if nv or nf else int(np.clip(HELD_NUMBERS // (3 * wide * wide + 1), 0, 256))
     flags = [n_in, n_o, part.modal and not co[0].any(), _has_ledger(problem), forms.unknown, xs, ys, nf]
     made: dict[str, Any] = {
         "flags": np.array(flags, np.int64),
@@ -108,7 +115,9 @@ def _exact(problem: Problem, s: int) -> Exact:
         "kappa": np.zeros((b + 1, TERMS)), "terms": np.zeros(b, np.int64), "wk": np.zeros((3, s + 1, s + 1)),
         "bs": np.zeros((8, b)), "xf": np.zeros((n_o, s)), "x": np.zeros((n_o, s)), "P": np.zeros((n_in, s)),
         "now": np.zeros(n_in), "weight": np.zeros(n_in), "low": np.zeros((2, n + 1)), "end": np.zeros((2, n)),
-        "node": np.zeros((2, s, n)), "f": np.zeros(n), "slot": np.zeros(1, np.int64),
+        "node": np.zeros((2, s, n)), "f": np.zeros(n),
+        "held": np.zeros((held, 3, wide, wide)), "held_for": np.zeros((held, 2), np.int64),
+        "held_next": np.zeros(1, np.int64), "rows": np.zeros(wide, np.int64),
         "J": np.zeros((s, nf, xs)), "JN": np.zeros((s, nv, ys)), "fe": np.zeros((s, nf)),
         "A": np.zeros(inner * inner), "R": np.zeros((s * (problem.m + nv) + 1, inner)),
         "pivots": np.zeros(max(1, inner), np.int32),

@@ -27,6 +27,9 @@ SAFETY, STIFF_AT, CAP, FASTEST_BLOCK, LENGTH = range(5)
 RUNGS, UNIT_RUNG = 2000, 1000
 
 
+Ints2 = Ints
+
+
 class Exact(NamedTuple):
     """Blocks, inputs and outputs, tables by step size and the work of one step; empty for other methods.
 
@@ -37,6 +40,8 @@ class Exact(NamedTuple):
     step; ``xf``, ``x`` (n_o, s) outputs without unknown inputs, and with; ``P`` (n_in, s) inputs at the nodes; ``now``
     (n_in,) signals at the start; ``weight`` (n_in,); ``low`` (2, n+1) what rounding dropped from q and t, at the start
     and the end of the step; ``end`` (2, n) gain of q, and v at the end; ``node`` (2, s, n) q and v at the nodes.
+    ``held`` (places, 3, s m, s m) what is left of the contacts' equations where some stick (collocation/held_rows),
+    ``held_for`` (places, 2) for which of them and which rung, ``held_next`` (1,), ``rows`` (s m,).
     ``J`` (s, n_f, n_xe), ``JN`` (s, n_v, n_xn) slopes of elements and normal forces; ``fe`` (s, n_f) residuals of
     element forces; ``A``, ``R``, ``pivots`` room for their elimination.
     """
@@ -71,7 +76,10 @@ class Exact(NamedTuple):
     end: Floats2
     node: Floats3
     f: Floats
-    slot: Ints
+    held: Floats4
+    held_for: Ints2
+    held_next: Ints
+    rows: Ints
     J: Floats3
     JN: Floats3
     fe: Floats2
@@ -91,6 +99,8 @@ def no_exact() -> Exact:
         kind = getattr(note, "__forward_arg__", note)
         if kind in _KINDS:
             made.append(np.zeros((0,) * _KINDS[kind]))
+        elif kind == "Ints2":
+            made.append(np.zeros((0, 0), np.int64))
         elif kind == "Complexes3":
             made.append(np.zeros((0, 0, 0), complex))
         else:
