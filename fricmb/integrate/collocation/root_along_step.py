@@ -39,18 +39,17 @@ OFFSET = 1e-3
 
 
 @kernel
-def put_directions(y: State, end: State, one: OneStep, theta: float) -> None:
-    """Directions of slip at theta, from their polynomials through the nodes."""
-    w, nd = one.w, one.exact.nd
-    n_s = w.n.shape[0]
-    for a in range(end.n.shape[0]):
-        value = 0.0
-        for r in range(n_s - 1, -1, -1):
-            c = 0.0
-            for x in range(n_s):
-                c += nd[MONOMIAL, r, x] * w.n[x, a]
-            value = value * theta + c
-        end.n[a] = value
+def between_nodes(one: OneStep, values: Floats2, a: int, theta: float) -> float:
+    """Value at theta of the polynomial through the node values in column a."""
+    nd = one.exact.nd
+    n_s = values.shape[0]
+    result = 0.0
+    for r in range(n_s - 1, -1, -1):
+        c = 0.0
+        for x in range(n_s):
+            c += nd[MONOMIAL, r, x] * values[x, a]
+        result = result * theta + c
+    return result
 
 
 @kernel
@@ -89,7 +88,8 @@ def move_to(
             one.margin[j] = w.z[j, a]
         polynomial(one.tab, y.z[a], one.margin, one.series)
         end.z[a] = evaluate(one.series, tau / h)[0]
-    put_directions(y, end, one, tau / h)
+    for a in range(m):
+        end.n[a] = between_nodes(one, w.n, a, tau / h)
     unit_directions(packed, end)
     set_time(packed.signals, s, y.t[0], n)
     for a in range(m):
@@ -131,19 +131,28 @@ def exact_as_its_tolerance(packed: Packed, y: State, k: int) -> bool:
 
 
 @kernel
-def may_stay(packed: Packed, y: State, one: OneStep, acc: Accuracy, k: int, h: float, tau: float) -> bool:
-    """Whether tau is so near to the end of the step h, or forces so smooth, that the step need not be solved anew."""
+def may_stay(
+    packed: Packed, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, tau: float
+) -> bool:  # fmt: skip
+    """Whether tau is so near to the end of the step h, or forces so smooth, that the step need not be solved anew.
+
+    Forces at ``end``, the state there, must be those of the polynomials: slip that ends passes through what a law has
+    near rest.
+    """
     ex = one.exact
     beyond = abs(tau - h) / h
     error = input_error(one) + state_error(packed, y, one, acc, h)
     error += stiff_error(y, one, acc, h, ex.par[SAFETY] * acc.rtol[0])
+    off = 0.0
+    for a in range(y.F.shape[0]):
+        off = max(off, ex.weight[a] * abs(end.F[a] - between_nodes(one, one.w.F, a, tau / h)))
     noise = 0.0
     last = ex.P.shape[1] - 1
     for c in range(ex.P.shape[0]):
         for x in range(last):
             noise = max(noise, ex.weight[c] * abs(ex.P[c, x] - ex.P[c, last]))
     allowed = ROUND_OFF + (PART * acc.rtol[0] if exact_as_its_tolerance(packed, y, k) else 0.0)
-    return bool(min(1.0, GROWTH * beyond) * error + beyond * GRAIN * noise <= allowed)
+    return bool(min(1.0, GROWTH * beyond) * error + beyond * (off + GRAIN * noise) <= allowed)
 
 
 @block
@@ -172,7 +181,7 @@ def exact_root(
             second = max(0.0, first - f / rate)
     for _ in range(12):
         if f == 0.0 or (aimed and abs(second - first) <= 2.0 * t_unit):
-            if may_stay(packed, y, one, acc, k, h, first):
+            if may_stay(packed, y, end, one, acc, k, h, first):
                 return -max(first, 1e-290)
             break
         if not second <= 1.5 * guess or not move_to(packed, s, y, end, one, h, second, series, gain, address):

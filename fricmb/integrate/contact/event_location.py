@@ -157,7 +157,7 @@ def locate(
     same = 0
     failures = 0
     last = one.tab.c.shape[0] - 1
-    if one.exact.ladder.shape[0] > 0:
+    if one.exact.ladder.shape[0] > 0 and step_error(packed, s, y, one, acc, h, address) <= 1.0:
         new = root_along_step(packed, s, y, end, one, acc, k, h, step, found, address)
         if new < 0.0:
             return k
