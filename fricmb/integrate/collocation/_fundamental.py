@@ -1,10 +1,11 @@
-"""A block's own motion in closed form, and sums that keep what rounding drops."""
+"""A block's own motion in closed form, its motion under polynomials, and sums that keep what rounding drops."""
 
 from __future__ import annotations
 
 import math
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats
 
 
 @kernel
@@ -74,3 +75,45 @@ def fundamental(w2: float, d: float, t: float) -> tuple[float, float, float]:
     S = math.exp(x2) * math.expm1(gap) / gap if gap < 30.0 else (math.exp(x1) - math.exp(x2)) / gap
     IS = ((math.expm1(x1) / x1 if x1 != 0.0 else 1.0) - math.expm1(x2) / x2) / gap
     return t * S, t * t * IS, t * t * t * (_phi2(x1) - _phi2(x2)) / gap
+
+
+@kernel
+def under_polynomials(
+    w2: float, d: float, v0: float, a0: float, slope: float, h: float, tau: float, P0: Floats, P1: Floats
+) -> tuple[float, float]:
+    """Gains of u and v at tau by their Taylor series: u' = v + P0, v' = -w2 u - d v + P1 + slope t.
+
+    ``v0``, ``a0``: v and v' at the start without the polynomials, whose coefficients are in tau/h.
+    """
+    s = P0.shape[0]
+    theta = tau / h
+    power = 1.0
+    du = 0.0
+    dv = 0.0
+    # terms of the series at tau; the k-th of u' and v' divided by k
+    u = 0.0
+    v = 0.0
+    size = max(math.sqrt(abs(w2)), abs(d)) * tau
+    bound = 1.0
+    q = 0
+    while q < s + 2 or bound > 1e-18:
+        rate_u = v
+        rate_v = -w2 * u - d * v
+        if q == 0:
+            rate_u = v0
+            rate_v = a0
+        elif q == 1:
+            rate_v += slope * tau
+        if q < s:
+            rate_u += P0[q] * power
+            rate_v += P1[q] * power
+        q += 1
+        u = tau * rate_u / q
+        v = tau * rate_v / q
+        du += u
+        dv += v
+        power *= theta
+        bound *= size / q
+        if q > 200:
+            break
+    return du, dv

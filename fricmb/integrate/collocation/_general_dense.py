@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from fricmb.integrate.collocation._fundamental import under_polynomials
 from fricmb.integrate.collocation._general_blocks import A0, K0, V0
 from fricmb.integrate.collocation._layout import (
     B0,
@@ -102,46 +103,18 @@ def input_series(ex: Exact, P: Floats2, h: float, series: Floats2, gain: Floats2
 @kernel
 def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2) -> tuple[float, float]:
     """Gains of u and v of block j at tau."""
-    bs = ex.bs
     b = ex.blk.shape[2]
     n_s = series.shape[1] - 1
-    theta = tau / h
-    w2 = ex.blk[0, W2, j]
-    d = ex.blk[0, DAMP, j]
-    du = 0.0
-    dv = 0.0
     if is_stiff(ex, j, h):
+        du, dv = 0.0, 0.0
         for r in range(n_s, -1, -1):
-            du = du * theta + series[j, r]
-            dv = dv * theta + series[b + j, r]
+            du = du * (tau / h) + series[j, r]
+            dv = dv * (tau / h) + series[b + j, r]
         return du, dv
-    # gains from the start: du' = V0 + dv + e0(tau),  dv' = A0 - w2 du - d dv + e1(tau)
-    power = 1.0
-    size = max(math.sqrt(abs(w2)), abs(d)) * tau
-    bound = 1.0
-    q = 0
-    u = 0.0
-    v = 0.0
-    while q < n_s + 2 or bound > 1e-18:
-        # u, v: the terms of order q of du, dv at tau
-        rate_u = v
-        rate_v = -w2 * u - d * v
-        if q == 0:
-            rate_u = bs[V0, j]
-            rate_v = bs[A0, j]
-        if q < n_s:
-            rate_u += series[j, q] * power
-            rate_v += series[b + j, q] * power
-        q += 1
-        u = tau * rate_u / q
-        v = tau * rate_v / q
-        du += u
-        dv += v
-        power *= theta
-        bound *= size / q
-        if q > 200:
-            break
-    return du, dv
+    first, second = series[j, :n_s], series[b + j, :n_s]
+    return under_polynomials(
+        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, tau, first, second
+    )  # fmt: skip
 
 
 @kernel

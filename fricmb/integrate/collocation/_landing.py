@@ -62,6 +62,7 @@ from fricmb.integrate.collocation._step import (
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, Ints
+from fricmb.integrate.step.crossing import evaluate, lowest_between, root_between
 
 
 @kernel
@@ -82,29 +83,6 @@ def polynomial_of_r(run: Run, r0: float) -> None:
         for l in range(s):
             value += run.nd[WITH_START, k, l + 1] * run.wk[LINES, RHS, l]
         run.wk[LINES, COEFFICIENTS, k] = value
-
-
-@kernel
-def root_between(run: Run, low: float, high: float) -> float:
-    """Root of the polynomial of r between a positive value at ``low`` and one that is not at ``high``."""
-    t = 0.5 * (low + high)
-    for _ in range(60):
-        value = 0.0
-        slope = 0.0
-        for k in range(run.nx.shape[2], -1, -1):
-            slope = slope * t + value
-            value = value * t + run.wk[LINES, COEFFICIENTS, k]
-        if value > 0.0:
-            low = t
-        else:
-            high = t
-        new = t - value / slope if slope != 0.0 else low
-        if not (new > low and new < high):
-            new = 0.5 * (low + high)
-        if abs(new - t) <= 1e-15 * high:
-            return float(new)
-        t = new
-    return float(t)
 
 
 @kernel
@@ -138,6 +116,7 @@ def first_stop(run: Run, r0: float, h: float, tol: float) -> float:
     if unresolved < 1e-3 and low > 0.5 * (high - low):
         return float(resolved)
     polynomial_of_r(run, r0)
+    series = run.wk[LINES, COEFFICIENTS]
     before = 0.0
     falls = False
     for i in range(2 * s):
@@ -145,48 +124,17 @@ def first_stop(run: Run, r0: float, h: float, tol: float) -> float:
         at = run.nd[VECTORS, NODE, i // 2]
         if i % 2 == 0:
             at = 0.5 * (at + (run.nd[VECTORS, NODE, i // 2 - 1] if i > 0 else 0.0))
-        value = 0.0
-        slope = 0.0
-        for k in range(s, -1, -1):
-            slope = slope * at + value
-            value = value * at + run.wk[LINES, COEFFICIENTS, k]
+        value, slope, _ = evaluate(series, at)
         if value > 0.0 and falls and slope > 0.0:
-            low = lowest_between(run, before, at)
+            low = lowest_between(series, before, at, 1e-6 * at)
             if low > 0.0:
                 at = low
                 value = 0.0
         if value <= 0.0 and (before > 0.0 or r0 > 0.0 or i > 0):
-            return root_between(run, before, at)
+            return root_between(series, before, at, 1e-15 * at)
         falls = slope < 0.0
         before = at
     return float(resolved)
-
-
-@kernel
-def lowest_between(run: Run, low: float, high: float) -> float:
-    """Where the polynomial of r has its minimum between two points, if it is not positive there; else -1."""
-    t = 0.5 * (low + high)
-    for _ in range(30):
-        value = 0.0
-        slope = 0.0
-        curve = 0.0
-        for k in range(run.nx.shape[2], -1, -1):
-            curve = curve * t + slope
-            slope = slope * t + value
-            value = value * t + run.wk[LINES, COEFFICIENTS, k]
-        if value <= 0.0:
-            return float(t)
-        if slope < 0.0:
-            low = t
-        else:
-            high = t
-        new = t - 0.5 * slope / curve if curve > 0.0 else low
-        if not (new > low and new < high):
-            new = 0.5 * (low + high)
-        if abs(new - t) <= 1e-6 * high:
-            return -1.0
-        t = new
-    return -1.0
 
 
 @kernel

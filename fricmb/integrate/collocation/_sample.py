@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import fundamental, two_sum
+from fricmb.integrate.collocation._fundamental import fundamental, two_sum, under_polynomials
 from fricmb.integrate.collocation._layout import (
     AT_BLOCKS,
     AT_LENGTH,
@@ -30,7 +30,7 @@ from fricmb.integrate.collocation._layout import (
     WT,
 )  # fmt: skip
 from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.problem import SLIP, Floats, Floats2, Floats3, Ints
 
 
@@ -55,45 +55,6 @@ def locate(run: Run, n_rows: int, t: Floats, at: Ints, tau: Floats) -> None:
             k += 1
         at[i] = k
         tau[i] = max(0.0, (t[i] - run.steps[k, AT_TIME]) - run.steps[k, AT_LOW])
-
-
-@kernel
-def block_in_slip(
-    w2: float, d: float, u0: float, v0: float, a0: float, slope: float, h: float, tau: float,
-    P: Floats, i0: int, i1: int,
-) -> tuple[float, float]:  # fmt: skip
-    """Change of u, and v, of a block at tau under the force polynomials P[i0], P[i1] (in tau/h): its Taylor series."""
-    s = P.shape[1]
-    theta = tau / h
-    power = 1.0
-    du = 0.0
-    dv = 0.0
-    # U, V: terms of the series at tau; the k-th of u' and v' divided by k
-    U = u0
-    V = v0
-    size = max(math.sqrt(abs(w2)), abs(d)) * tau
-    bound = 1.0
-    q = 0
-    while q < s + 2 or bound > 1e-18:
-        u = V
-        v = -w2 * U - d * V
-        if q == 0:
-            v = a0
-        elif q == 1:
-            v += slope * tau
-        if q < s:
-            u += P[i0, q] * power
-            v += P[i1, q] * power
-        q += 1
-        U = tau * u / q
-        V = tau * v / q
-        du += U
-        dv += V
-        power *= theta
-        bound *= size / q
-        if q > 200:
-            break
-    return du, v0 + dv
 
 
 @entry
@@ -146,10 +107,11 @@ def sample_rows(
             a0 = steps[k, AT_BLOCKS + 2 * n + j]
             slope = phases[phase, 2 * n + 2 + j]
             if slips:
-                du, vj = block_in_slip(
-                    run.blk[0, W2, j], run.blk[0, DAMP, j], u0, v0, a0, slope, h, tau[i], polynomial, m + j,
-                    m + n + j,
+                du, dv = under_polynomials(
+                    run.blk[0, W2, j], run.blk[0, DAMP, j], v0, a0, slope, h, tau[i], polynomial[m + j],
+                    polynomial[m + n + j],
                 )  # fmt: skip
+                vj = v0 + dv
             else:
                 x0, x1, x2 = fundamental(run.blk[1, W2, j], run.blk[1, DAMP, j], tau[i])
                 k0 = slope - run.blk[1, W2, j] * v0
