@@ -18,6 +18,8 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder, _LowerResult
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
+from fricmb.integrate.compile.short_lowering import ShortLower
+
 
 class _LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
     """The code of one kernel with that of the kernels it calls, to be linked into callers."""
@@ -33,8 +35,20 @@ class _LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class _LowerForLinking(NativeLowering):  # type: ignore[misc]
-    """Numba's lowering without the machine code at its end."""
+class _LowerShort(NativeLowering):  # type: ignore[misc]
+    """Numba's lowering in fewer instructions."""
+
+    _name = "lower_short"
+
+    @property
+    def lowering_class(self) -> type[ShortLower]:
+        """What writes the instructions."""
+        return ShortLower
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerForLinking(_LowerShort):
+    """The same without the machine code at its end."""
 
     _name = "lower_for_linking"
 
@@ -71,22 +85,25 @@ class _Compiler(CompilerBase):  # type: ignore[misc]
             return super()._compile_core()
 
 
+def _lowered_by(kind: type[NativeLowering], state: Any) -> list[Any]:
+    """Numba's passes, in their order, with another one in the place of its lowering."""
+    passes = DefaultPassBuilder.define_nopython_pipeline(state)
+    passes.passes = [(kind if made is NativeLowering else made, about) for made, about in passes.passes]
+    passes.finalize()
+    return [passes]
+
+
 class MachineCompiler(_Compiler):
     """Compiles entries and blocks."""
 
     def define_pipelines(self) -> list[Any]:
-        """Numba's own passes."""
-        return [DefaultPassBuilder.define_nopython_pipeline(self.state)]
+        """Numba's passes, with :class:`_LowerShort`."""
+        return _lowered_by(_LowerShort, self.state)
 
 
 class LinkedCompiler(_Compiler):
-    """Numba's passes, with :class:`_LowerForLinking` in the place of its lowering."""
+    """Compiles kernels that only kernels call."""
 
     def define_pipelines(self) -> list[Any]:
-        """The passes, in their order."""
-        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [
-            (_LowerForLinking if made is NativeLowering else made, about) for made, about in passes.passes
-        ]
-        passes.finalize()
-        return [passes]
+        """Numba's passes, with :class:`_LowerForLinking`."""
+        return _lowered_by(_LowerForLinking, self.state)

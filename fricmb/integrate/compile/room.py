@@ -7,6 +7,7 @@ address.
 
 from __future__ import annotations
 
+import hashlib
 import sys
 from functools import lru_cache
 from typing import Any, TypeVar, cast
@@ -57,7 +58,8 @@ class RoomType(types.Type):
             self.at[name] = words * _WORD
             words += 1 if isinstance(kind, RoomType) else 1 + kind.ndim
         inside = ", ".join(f"{name}: {kind}" for name, kind in fields)
-        super().__init__(name=f"room {title}({inside})")
+        # its name is part of the name of every kernel that takes it, in every call: a digest is short
+        super().__init__(name=f"room {title} {hashlib.sha256(inside.encode()).hexdigest()[:12]}")
 
 
 @lru_cache(maxsize=64)
@@ -151,17 +153,22 @@ class _RoomAttributes(AttributeTemplate):
         return kind.of.get(name)
 
 
+def load_word(builder: Any, room: Any, at: int, i: int) -> Any:
+    """A word of a room, counted from the byte ``at``."""
+    word = ir.IntType(64)
+    start = builder.bitcast(builder.gep(room, [word(at + i * _WORD)]), word.as_pointer())
+    loaded = builder.load(start)
+    # descriptors never change while a kernel runs: loads may leave the loops
+    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return loaded
+
+
 @lower_getattr_generic(RoomType)
 def _room_attribute(context: Any, builder: Any, kind: RoomType, value: Any, name: str) -> Any:
     word = ir.IntType(64)
-    start = builder.gep(value, [ir.Constant(word, kind.at[name])])
-    words = builder.bitcast(start, word.as_pointer())
 
     def load(i: int) -> Any:
-        loaded = builder.load(builder.gep(words, [ir.Constant(word, i)]))
-        # descriptors never change while a kernel runs: loads may leave the loops
-        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
-        return loaded
+        return load_word(builder, value, kind.at[name], i)
 
     field = kind.of[name]
     if isinstance(field, RoomType):

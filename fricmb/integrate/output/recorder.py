@@ -86,7 +86,7 @@ def record_event(out: Events, t: float, contact: int, kind: int) -> None:
             if out.event[last, 2] != EVENT_SLIP:
                 break
             for i in range(last, k - 1):
-                out.event[i, :] = out.event[i + 1]
+                out.event[i] = out.event[i + 1]
             out.used[1] = k - 1
             return
         last -= 1

@@ -165,7 +165,7 @@ def solve_stages(
     once = linear and not is_stiff(packed, fac, st.hA)
     last = np.inf
     P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
-    w.G[:, :] = fac.G[fac.slot[0]]
+    w.G[:] = fac.G[fac.slot[0]]
     for iteration in range(12):
         stage_residual(packed, s, st, w, mode)
         structure_correction(packed, tab, fac, st, address)

@@ -60,21 +60,21 @@ def is_finite(run: Run) -> bool:
 @kernel
 def copy_state(run: Run, source: int, target: int) -> None:
     """One slot of the state into another."""
-    run.q[target, :] = run.q[source]
-    run.v[target, :] = run.v[source]
-    run.u[target, :] = run.u[source]
-    run.du[target, :] = run.du[source]
-    run.g[target, :] = run.g[source]
-    run.w[target, :] = run.w[source]
-    run.F[target, :] = run.F[source]
-    run.ends[target, :] = run.ends[source]
-    run.hold[target, :] = run.hold[source]
-    run.grip[target, :] = run.grip[source]
-    run.when[target, :] = run.when[source]
-    run.known[target, :] = run.known[source]
-    run.jolted[target, :] = run.jolted[source]
-    run.mode[target, :] = run.mode[source]
-    run.push[target, :] = run.push[source]
+    run.q[target] = run.q[source]
+    run.v[target] = run.v[source]
+    run.u[target] = run.u[source]
+    run.du[target] = run.du[source]
+    run.g[target] = run.g[source]
+    run.w[target] = run.w[source]
+    run.F[target] = run.F[source]
+    run.ends[target] = run.ends[source]
+    run.hold[target] = run.hold[source]
+    run.grip[target] = run.grip[source]
+    run.when[target] = run.when[source]
+    run.known[target] = run.known[source]
+    run.jolted[target] = run.jolted[source]
+    run.mode[target] = run.mode[source]
+    run.push[target] = run.push[source]
 
 
 @kernel
@@ -82,13 +82,13 @@ def keep_row(run: Run, slot: int, normal: int, t: float) -> None:
     """A row of the state, with the normal forces of slot ``normal``."""
     k = run.i[N_ROWS]
     run.row_t[k] = t
-    run.row_q[k, :] = run.q[slot]
-    run.row_v[k, :] = run.v[slot]
-    run.row_F[k, :] = run.ends[slot]
-    run.row_g[k, :] = run.g[slot]
-    run.row_N[k, :] = run.push[normal]
-    run.row_mode[k, :] = run.mode[slot]
-    run.row_loss[k, :] = run.total
+    run.row_q[k] = run.q[slot]
+    run.row_v[k] = run.v[slot]
+    run.row_F[k] = run.ends[slot]
+    run.row_g[k] = run.g[slot]
+    run.row_N[k] = run.push[normal]
+    run.row_mode[k] = run.mode[slot]
+    run.row_loss[k] = run.total
     run.row_x[k, 0] = run.spent[HERE, 0]
     run.row_x[k, 1] = run.spent[HERE, 1]
     run.i[N_ROWS] = k + 1
@@ -176,11 +176,11 @@ def arrive(run: Run, t: float) -> None:
 @kernel
 def jump(run: Run, t: float) -> None:
     """Signals behind a breakpoint; a belt whose velocity jumps ends what sticks, forces that hold may jump."""
-    run.w[MIDDLE, :] = run.w[HERE]
+    run.w[MIDDLE] = run.w[HERE]
     set_signals(run, HERE, t)
     for i in range(run.load.shape[0]):
         run.top_v[i] = max(run.top_v[i], abs(run.v[HERE, i]))
-    run.g[MIDDLE, :] = run.g[HERE]
+    run.g[MIDDLE] = run.g[HERE]
     relative_velocities(run, CREEP)
     for c in range(run.mode.shape[1]):
         run.known[HERE, c] = 0
