@@ -36,6 +36,7 @@ ENGINE = (
     {"contact"},
     {"methods"},
     {"collocation", "constrained", "taylor", "timestepping"},
+    {"guard", "guarded_taylor", "named"},
     {"select"},
 )
 #: Methods that hand scenes with joints on to steps of their own kind.

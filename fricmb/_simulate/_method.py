@@ -33,13 +33,13 @@ def find_integrator(method: Any, problem: Problem, rtol: float) -> tuple[Integra
 
 def _named(method: Any) -> Integrator | None:
     """The integrator of that name; None for "auto"."""
+    if isinstance(method, str) and method == "auto":
+        return None
     from fricmb.integrate import integrators
 
     if not isinstance(method, str):
         names = ", ".join(repr(name) for name in ("auto", *integrators))
         raise SceneError(f"method: got {method!r}; expected one of {names}, or an instance of an integrator")
-    if method == "auto":
-        return None
     if method not in integrators:
         raise unknown_name("method", method, ["auto", *integrators])
     return integrators[method]()

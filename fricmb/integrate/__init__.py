@@ -8,7 +8,8 @@ import lazy_loader as lazy
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
-        "select": ["choose", "integrators"],
+        "select": ["choose"],
+        "named": ["integrators"],
         "integrator": ["Integrator", "Tolerance"],
         "methods.one_step": ["OneStepMethod"],
         "problem": [

@@ -1,6 +1,7 @@
 from fricmb.integrate.integrator import Integrator as Integrator
 from fricmb.integrate.integrator import Tolerance as Tolerance
 from fricmb.integrate.methods.one_step import OneStepMethod as OneStepMethod
+from fricmb.integrate.named import integrators as integrators
 from fricmb.integrate.problem import EVENT_KINDS as EVENT_KINDS
 from fricmb.integrate.problem import OPEN as OPEN
 from fricmb.integrate.problem import SLIP as SLIP
@@ -13,7 +14,6 @@ from fricmb.integrate.problem import Signals as Signals
 from fricmb.integrate.problem import Start as Start
 from fricmb.integrate.problem import Templates as Templates
 from fricmb.integrate.select import choose as choose
-from fricmb.integrate.select import integrators as integrators
 from fricmb.integrate.trajectory import Counters as Counters
 from fricmb.integrate.trajectory import MotionSamples as MotionSamples
 from fricmb.integrate.trajectory import Samples as Samples

@@ -1,76 +1,15 @@
-"""The integrators by name, and the choice of ``method="auto"``."""
+"""The choice of ``method="auto"``; an integrator is loaded where it is chosen."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
-
-from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.collocation._prepare import is_single
 from fricmb.integrate.collocation._suits import against, port_rows, too_far_apart
-from fricmb.integrate.integrator import Integrator, Tolerance
+from fricmb.integrate.guard import Guarded
+from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.methods.bdf import Bdf
-from fricmb.integrate.methods.bdf2_paper import Bdf2Paper
 from fricmb.integrate.methods.free_vibration import Exact
-from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
-from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.run.stop import ended
-from fricmb.integrate.taylor import Taylor
-from fricmb.integrate.taylor.prepare_groups import is_coupled
-from fricmb.integrate.timestepping import TimeStepping
-from fricmb.integrate.trajectory import Trajectory
-
-#: Built-in integrators by the name that ``simulate(method=...)`` takes.
-integrators: dict[str, type[Integrator]] = {
-    kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor, TimeStepping)
-}
-
-
-class Guard(Integrator):
-    """An integrator as ``auto`` takes it: a run that it cannot finish is done by another, and says so."""
-
-    #: Who does such a run.
-    reserve: ClassVar[type[Integrator]]
-
-    def integrate(
-        self,
-        problem: Problem,
-        start: Start,
-        t_end: float,
-        *,
-        tolerance: Tolerance,
-        step: float | None = None,
-        t_eval: Floats | None = None,
-        progress: Callable[[float], None] | None = None,
-        memory: float | None = None,
-    ) -> Trajectory:
-        """See :class:`Integrator`."""
-        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
-        run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # that of the class behind
-        if run.failure is None or ended() is not None:
-            return run
-        other = self.reserve()
-        why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
-        instead = other.integrate(problem, start, t_end, **options)
-        instead.counters = replace(instead.counters, notes=(*instead.counters.notes, why))
-        instead.instead = (other.name, why)
-        return instead
-
-
-@dataclass(frozen=True, kw_only=True)
-class Guarded(Guard, Collocation):
-    """Collocation; in reserve the general method."""
-
-    reserve: ClassVar[type[Integrator]] = Bdf
-
-
-@dataclass(frozen=True, kw_only=True)
-class GuardedTaylor(Guard, Taylor):
-    """Taylor steps; in reserve, where transitions crowd, time stepping."""
-
-    reserve: ClassVar[type[Integrator]] = TimeStepping
+from fricmb.integrate.problem import Problem
 
 
 def many_rows(rtol: float) -> int:
@@ -104,16 +43,14 @@ def is_banded(problem: Problem) -> bool:
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
     if problem.mechanism is not None:
+        from fricmb.integrate.methods.radau import Radau
+
         return Radau(), "bodies that turn or joints: one-step on the index-reduced system"
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
-    many = GuardedTaylor()
-    if problem.n_c > 1 and many.refuses(problem) is None:
-        if not is_coupled(problem):
-            return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
-        if problem.n_c >= SEVERAL and problem.n < DEEP * problem.n_c:
-            return many, "contacts with friction of slip speed, or coupled by bodies: Taylor steps, local corrections"
+    if problem.n_c > 1 and (many := _many_contacts(problem)) is not None:
+        return many
     if problem.n >= WIDE and 0 < problem.m + problem.n_v <= many_rows(rtol) and is_banded(problem):
         return Bdf(), "few contacts on a structure that is a narrow band: the general method, transitions located"
     fast = Guarded()
@@ -125,12 +62,35 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     if reason is None:
         rows = port_rows(problem)
         return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
+    from fricmb.integrate.timestepping import TimeStepping
+
     stepping = TimeStepping()
     # under normal forces that vary, time steps are right at loose tolerances alone
     steps = (problem.n_v == 0 or rtol >= LOOSE) and stepping.refuses(problem) is None
     if steps and problem.n_v == 0 and problem.m > many_rows(rtol):
         crowd = f"{problem.m} rows of contacts, more than {many_rows(rtol)}: implicit steps over transitions"
-        return stepping, f"{crowd}; {many.refuses(problem)}"
+        return stepping, f"{crowd}; {_refusal_of_taylor(problem)}"
     if steps and problem.n > BEARABLE and problem.n_c and not is_banded(problem):
         return stepping, f"{problem.n} degrees of freedom in no narrow band: implicit steps over transitions"
     return Bdf(), f"the general method: {reason}"
+
+
+def _many_contacts(problem: Problem) -> tuple[Integrator, str] | None:
+    """Taylor steps and why, where they are the fastest of several contacts."""
+    from fricmb.integrate.guarded_taylor import GuardedTaylor
+    from fricmb.integrate.taylor.prepare_groups import is_coupled
+
+    many = GuardedTaylor()
+    if many.refuses(problem) is not None:
+        return None
+    if not is_coupled(problem):
+        return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+    if problem.n_c >= SEVERAL and problem.n < DEEP * problem.n_c:
+        return many, "contacts with friction of slip speed, or coupled by bodies: Taylor steps, local corrections"
+    return None
+
+
+def _refusal_of_taylor(problem: Problem) -> str | None:
+    from fricmb.integrate.taylor import Taylor
+
+    return Taylor().refuses(problem)

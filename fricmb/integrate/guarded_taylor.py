@@ -1,0 +1,18 @@
+"""Taylor steps as ``method="auto"`` takes them; a module of its own, since most runs load neither."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from fricmb.integrate.guard import Guard
+from fricmb.integrate.integrator import Integrator
+from fricmb.integrate.taylor import Taylor
+from fricmb.integrate.timestepping import TimeStepping
+
+
+@dataclass(frozen=True, kw_only=True)
+class GuardedTaylor(Guard, Taylor):
+    """Taylor steps; in reserve, where transitions crowd, time stepping."""
+
+    reserve: ClassVar[type[Integrator]] = TimeStepping
