@@ -160,11 +160,12 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
     n_in = ex.flags[INPUTS]
     n_s = w.F.shape[0]
     for a in range(m):
-        for c in range(m):
-            pair = n_in * a + c
-            for i in range(n_s):
+        for i in range(n_s):
+            line = w.G[i * m + a]
+            for c in range(m):
+                gains = ex.tk[slot, n_in * a + c, i]
                 for j in range(n_s):
-                    w.G[i * m + a, j * m + c] = ex.tk[slot, pair, i, j]
+                    line[j * m + c] = gains[j]
         for i in range(n_s):
             w.gb[i, a] = ex.xf[a, i]
             w.Fo[i, a] = 0.0

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from fricmb.integrate.collocation._fundamental import under_polynomials
+from fricmb.integrate.collocation._fundamental import MOST, terms_under_polynomials, under_polynomials
 from fricmb.integrate.collocation._general_blocks import A0, K0, V0
 from fricmb.integrate.collocation._layout import (
     B0,
@@ -101,8 +101,8 @@ def input_series(ex: Exact, P: Floats2, h: float, series: Floats2, gain: Floats2
 
 
 @kernel
-def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2) -> tuple[float, float]:
-    """Gains of u and v of block j at tau."""
+def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, room: Floats2) -> tuple[float, float]:
+    """Gains of u and v of block j at tau; ``room`` for :func:`under_polynomials`."""
     b = ex.blk.shape[2]
     n_s = series.shape[1] - 1
     if is_stiff(ex, j, h):
@@ -113,7 +113,7 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2) -> tupl
         return du, dv
     first, second = series[j, :n_s], series[b + j, :n_s]
     return under_polynomials(
-        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, tau, first, second
+        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, tau, first, second, room
     )  # fmt: skip
 
 
@@ -121,11 +121,12 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2) -> tupl
 def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: Floats) -> None:
     """Gains of positions and velocities at tau after the start of the step, after :func:`input_series`."""
     modal = ex.flags[IS_MODAL] == 1
+    room = np.empty((2, MOST + 1))
     for i in range(dq.shape[0]):
         dq[i] = 0.0
         dv[i] = 0.0
     for j in range(ex.blk.shape[2]):
-        u, v = block_gain(ex, j, h, tau, series)
+        u, v = block_gain(ex, j, h, tau, series, room)
         for i in range(dq.shape[0]):
             dq[i] += ex.mat[Q_U, i, j] * u
             dv[i] += ex.mat[V_V, i, j] * v
@@ -136,51 +137,46 @@ def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: F
 
 
 @kernel
+def block_at_nodes(ex: Exact, j: int, h: float, span: float, series: Floats2, room: Floats2, gain: Floats2) -> None:
+    """Gains of u and v of block j into ``gain`` (2, s), at the nodes of a step of length ``span``."""
+    n_s = gain.shape[1]
+    u, v, c = gain[0], gain[1], ex.nd[VECTORS, NODE, :n_s]
+    if is_stiff(ex, j, h):
+        for i in range(n_s):
+            u[i], v[i] = block_gain(ex, j, h, c[i] * span, series, room)
+        return
+    first, second = series[j, :n_s], series[ex.blk.shape[2] + j, :n_s]
+    count = terms_under_polynomials(
+        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, span, first, second, room[0], room[1]
+    )  # fmt: skip
+    u[:] = 0.0
+    v[:] = 0.0
+    # a term of order q + 1 at the part c of the way is c^(q + 1) of what it is at the end
+    for q in range(count - 1, -1, -1):
+        x, y = room[0, q], room[1, q]
+        for i in range(n_s):
+            u[i] = (u[i] + x) * c[i]
+            v[i] = (v[i] + y) * c[i]
+
+
+@kernel
 def gains_at_nodes(ex: Exact, h: float, span: float, series: Floats2, dq: Floats2, dv: Floats2) -> None:
     """Gains (s, n) of positions and velocities at the nodes of a step of length ``span`` on the motion of the step h.
 
     :func:`gains_at` at all nodes side by side.
     """
     n_s = series.shape[1] - 1
-    b = ex.blk.shape[2]
-    c = ex.nd[VECTORS, NODE, :n_s]
-    power, u, v = np.empty(n_s), np.empty(n_s), np.empty(n_s)
-    gain_u, gain_v = np.empty(n_s), np.empty(n_s)
     modal = ex.flags[IS_MODAL] == 1
+    room, gain = np.empty((2, MOST + 1)), np.empty((2, n_s))
     dq[:, :] = 0.0
     dv[:, :] = 0.0
-    for j in range(b):
-        w2 = ex.blk[0, W2, j]
-        d = ex.blk[0, DAMP, j]
-        size = max(math.sqrt(abs(w2)), abs(d)) * span
-        for i in range(n_s):
-            power[i], u[i], v[i], gain_u[i], gain_v[i] = 1.0, 0.0, 0.0, 0.0, 0.0
-        if is_stiff(ex, j, h):
+    for j in range(ex.blk.shape[2]):
+        block_at_nodes(ex, j, h, span, series, room, gain)
+        for a in range(dq.shape[1]):
+            q_u, v_v = ex.mat[Q_U, a, j], ex.mat[V_V, a, j]
+            if q_u == 0.0 and v_v == 0.0 and modal:
+                continue
+            q_v, v_u = ex.mat[Q_V, a, j], ex.mat[V_U, a, j]
             for i in range(n_s):
-                gain_u[i], gain_v[i] = block_gain(ex, j, h, c[i] * span, series)
-            size = -1.0
-        bound = 1.0
-        q = 0
-        while size >= 0.0 and (q < n_s + 2 or bound > 1e-18) and q <= 200:
-            e0 = ex.bs[V0, j] if q == 0 else 0.0
-            e1 = ex.bs[A0, j] if q == 0 else 0.0
-            s0 = series[j, q] if q < n_s else 0.0
-            s1 = series[b + j, q] if q < n_s else 0.0
-            q += 1
-            scale = span / q
-            for i in range(n_s):
-                rate_u = v[i] + e0 + s0 * power[i]
-                rate_v = e1 - w2 * u[i] - d * v[i] + s1 * power[i]
-                u[i] = c[i] * scale * rate_u
-                v[i] = c[i] * scale * rate_v
-                gain_u[i] += u[i]
-                gain_v[i] += v[i]
-                power[i] *= c[i] * (span / h)
-            bound *= size / q
-        for i in range(n_s):
-            for a in range(dq.shape[1]):
-                dq[i, a] += ex.mat[Q_U, a, j] * gain_u[i]
-                dv[i, a] += ex.mat[V_V, a, j] * gain_v[i]
-                if not modal:
-                    dq[i, a] += ex.mat[Q_V, a, j] * gain_v[i]
-                    dv[i, a] += ex.mat[V_U, a, j] * gain_u[i]
+                dq[i, a] += q_u * gain[0, i] + q_v * gain[1, i]
+                dv[i, a] += v_v * gain[1, i] + v_u * gain[0, i]

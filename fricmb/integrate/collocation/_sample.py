@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import fundamental, two_sum, under_polynomials
+import numpy as np
+
+from fricmb.integrate.collocation._fundamental import MOST, fundamental, two_sum, under_polynomials
 from fricmb.integrate.collocation._layout import (
     AT_BLOCKS,
     AT_LENGTH,
@@ -72,6 +74,7 @@ def sample_rows(
     n = run.blk.shape[2]
     m = run.flags[ROWS]
     s = run.nd.shape[1] - 1
+    room = np.empty((2, MOST + 1))
     last = -1
     base = AT_BLOCKS + 3 * n
     for i in range(at.shape[0]):
@@ -109,7 +112,7 @@ def sample_rows(
             if slips:
                 du, dv = under_polynomials(
                     run.blk[0, W2, j], run.blk[0, DAMP, j], v0, a0, slope, h, tau[i], polynomial[m + j],
-                    polynomial[m + n + j],
+                    polynomial[m + n + j], room,
                 )  # fmt: skip
                 vj = v0 + dv
             else:
