@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.collocation._prepare import is_single
-from fricmb.integrate.collocation._suits import against, port_rows, too_far_apart
+from fricmb.integrate.collocation.one_contact.prepare import is_single
+from fricmb.integrate.collocation.suits import against, port_rows, too_far_apart
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.methods.bdf import Bdf

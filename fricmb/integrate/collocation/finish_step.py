@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from fricmb.integrate.collocation._fundamental import two_sum
-from fricmb.integrate.collocation._general_blocks import BY_VELOCITY_1
-from fricmb.integrate.collocation._general_dense import gains_at_nodes, input_series, is_stiff, stiff_nodes
-from fricmb.integrate.collocation._layout import DAMP, MONOMIAL, NODE, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
+from fricmb.integrate.collocation.block_motion import two_sum
+from fricmb.integrate.collocation.blocks_in_step import BY_VELOCITY_1
+from fricmb.integrate.collocation.layout import DAMP, MONOMIAL, NODE, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
+from fricmb.integrate.collocation.motion_in_step import gains_at_nodes, input_series, is_stiff, stiff_nodes
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State, complete
