@@ -38,8 +38,8 @@ LOOSE = 1e-4
 SEVERAL, DEEP = 2, 5
 #: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
 FEW = 4
-#: Steepness of laws (see ``steepness``) beyond which Taylor steps and their corrections have been seen to lose accuracy:
-#: up to 20 and 50 errors were those asked for, from 23 and 70 on some were up to 1e6 times larger.
+#: Steepness of laws (see ``steepness``) beyond which Taylor steps have been seen to lose accuracy: up to 20 and 50
+#: errors were those asked for, from 23 and 70 on some were up to 1e6 times larger.
 STEEP, NARROW = 20.0, 50.0
 
 
