@@ -11,7 +11,6 @@ import numpy as np
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._found import Found
 from fricmb.sensitivity._functions import Function, conditions_seen
 from fricmb.sensitivity._motions import Given
 from fricmb.sensitivity._phases import BEFORE, Phases
@@ -35,11 +34,12 @@ class Bends:
 
 def bends_of(e: Equations, phases: Phases, sample: Any) -> Bends:
     """Where the formulas of a run switch."""
-    knots = {k: contact.law.numeric().knots() for k, contact in e.touching.items()}
+    knots = {k: contact.law.numeric().knots() for k, contact in e.contacts.items()}
 
     def conditions(t: Floats) -> list[Dual]:
         at = phases.of(t)
-        seen, found = _evaluated(e, sample(t), phases.mode[:, at], phases.sign[:, at])
+        with conditions_seen() as seen:
+            found = e.said(sample(t), phases.mode[:, at], phases.sign[:, at])
         return seen + [Dual(value=_length(found.g[k]) - r) for k, own in knots.items() for r in own if r > 0.0]
 
     nothing = Bends(t=np.zeros(0), which=np.zeros(0, dtype=np.int64), conditions=conditions)
@@ -57,23 +57,12 @@ def _length(g: list[Dual]) -> Any:
 
 def _functions(e: Equations) -> Iterator[Function]:
     """What parts state that does not belong to the linear ones."""
-    for part in (*e.linear.rest, *e.touching.values()):
+    for part in (*e.linear.rest, *e.contacts.values()):
         for held in vars(part).values():
             if isinstance(held, Function):
                 yield held
             elif isinstance(held, Given) and held.number is None:
                 yield held.function
-
-
-def _evaluated(e: Equations, samples: Any, mode: Any, sign: Floats) -> tuple[list[Dual], Found]:
-    """All conditions, and what parts say."""
-    moment, found = e.moment(samples), Found(e.n, e.n_z, e.columns, samples.t.size)
-    with conditions_seen() as seen:
-        for part in e.linear.rest:
-            part.add(moment, found)
-        for k, contact in e.touching.items():
-            contact.add(moment, found, mode[k], sign[e.rows(k)])
-    return seen, found
 
 
 def _passages(conditions: Conditions, ends: Floats) -> tuple[Floats, Ints]:

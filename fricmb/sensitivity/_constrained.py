@@ -68,10 +68,7 @@ class Constrained(Equations):
 
     def field(self, samples: Samples, mode: Codes, sign: Floats) -> Field:
         """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases."""
-        moment, count = self.moment(samples), samples.t.size
-        lam = self.piece.mechanics.reactions(samples)
-        held = {joint.name: np.array(lam[joint.name]) for joint in self.joints}
-        unknowns = Unknowns(lam=held, F=samples.F.copy())
+        moment, count, unknowns = self.moment(samples), samples.t.size, self._of_run(samples)
         last = np.inf
         for _ in range(_MOST):
             found = self._found(moment, unknowns, mode, sign)
@@ -84,6 +81,15 @@ class Constrained(Equations):
         raise IntegrationError(
             f"sensitivities: reactions are not found at t = {t:.10g}", t=t, reason="Newton's method does not converge"
         )
+
+    def said(self, samples: Samples, mode: Codes, sign: Floats) -> Found:
+        """What parts say under the reactions of the run."""
+        return self._found(self.moment(samples), self._of_run(samples), mode, sign)
+
+    def _of_run(self, samples: Samples) -> Unknowns:
+        """Reactions and friction of the run."""
+        lam = self.piece.mechanics.reactions(samples)
+        return Unknowns(lam={joint.name: np.array(lam[joint.name]) for joint in self.joints}, F=samples.F.copy())
 
     # ---- unknowns: first the accelerations, then reactions of joints, then friction of hard contacts
 

@@ -138,15 +138,18 @@ class Equations:
         """Samples of the run as a moment."""
         return Moment(frame=self.frame, t=samples.t, q=samples.q, v=samples.v, z=samples.z)
 
-    def field(self, samples: Samples, mode: Codes, sign: Floats) -> Field:
-        """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases."""
-        moment = self.moment(samples)
-        count = samples.t.size
-        found = Found(self.n, self.n_z, self.columns, count)
+    def said(self, samples: Samples, mode: Codes, sign: Floats) -> Found:
+        """What parts say."""
+        moment, found = self.moment(samples), Found(self.n, self.n_z, self.columns, samples.t.size)
         for part in (self.linear, *self.linear.rest):
             part.add(moment, found)
         for k, contact in self.touching.items():
             contact.add(moment, found, mode[k], sign[self.rows(k)])
+        return found
+
+    def field(self, samples: Samples, mode: Codes, sign: Floats) -> Field:
+        """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases."""
+        found, count = self.said(samples, mode, sign), samples.t.size
         a, slopes, F = self._accelerations(found, mode, count)
         rate_slopes = found.dense(found.rate_slopes, self.n_z).transpose(2, 0, 1)
         return Field(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,7 +44,9 @@ def jumps(e: Equations, phases: Phases, sample: Any, bends: Bends) -> dict[int, 
     found = {}
     for i in large.tolist():
         condition = bends.conditions(bends.t[i : i + 1] - beside[i])[bends.which[i]]
-        slopes = whole([condition], 1, e.columns)[1][0, 0]
+        # those by reactions stand behind: what rates jump at is a slip speed or a state, which no reaction changes
+        own = {j: slope for j, slope in condition.slopes.items() if j < e.columns}
+        slopes = whole([replace(condition, slopes=own)], 1, e.columns)[1][0, 0]
         rate = float(slopes[: e.n_y] @ before.y_dot[i] + slopes[-1])
         found[int(begins[i])] = Jump(rates=off[i], slopes=slopes, rate=rate or 1e-300)
     return found

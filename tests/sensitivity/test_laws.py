@@ -48,3 +48,17 @@ def test_law(name, situation):
         off[parameter] = error / max(np.abs(value).max(), 1e-2)
     assert off
     assert max(off.values()) < (1e-2 if sol.stats.notes else 1e3 * _RTOL), (off, sol.stats.notes)
+
+
+@pytest.mark.parametrize("name", ["Ambrosio", "Dahl", "LinearRegularised", "RateAndState", "Tabulated", "Threlfall"])
+def test_law_in_a_joint(name):
+    """Of a dry pin, whose load is its reaction."""
+    scene = fm.models.dry_pendulum(law=LAWS[name], radius=0.2)
+    own = [p for p in scene.parameters if p.startswith("pin.friction") and np.ndim(scene.parameters[p]) == 0]
+    names = ("arm.inertia", *own[:1])
+    sol = fm.simulate(scene, t_end=3.0, rtol=_RTOL, sensitivities=names)
+    for parameter in names:
+        value, unsure = _surest(scene, parameter, 3.0)
+        error = np.maximum(np.abs(derived(sol, parameter) - value) - 3.0 * unsure, 0.0).max()
+        assert error < 1e3 * _RTOL * np.abs(value).max()
+        assert unsure.max() < 1e-3 * np.abs(value).max()

@@ -58,7 +58,16 @@ MECHANISM = (
     "change_modes",
 )
 #: What came later to them.
-MECHANISM_STEPS = ("violated", "sigma_after", "record_step", "copy_state", "radau_step", "lightness", "add_stick")
+MECHANISM_STEPS = (
+    "violated",
+    "sigma_after",
+    "record_step",
+    "copy_state",
+    "radau_step",
+    "lightness",
+    "add_stick",
+    "laws_between",
+)
 FURTHER = (
     "start_history",
     "bdf_step",

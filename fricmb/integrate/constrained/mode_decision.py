@@ -106,7 +106,8 @@ def largest_acceleration(mech: Mech, k: Moving, y: State) -> float:
     row = mech.port.row
     for c in range(y.mode.shape[0]):
         for a in range(row[c], row[c + 1]):
-            value = max(value, abs(y.ga[a]), abs(y.F[a]) * lightness(mech, k, c, a - row[c], y.lam, mech.address))
+            light = lightness(mech, k, c, a - row[c], y.lam, mech.mass, mech.address)
+            value = max(value, abs(y.ga[a]), abs(y.F[a]) * light)
     return value
 
 

@@ -25,7 +25,7 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
             continue
         force, light = magnitude(row, c, y.F), 0.0
         for a in range(d):
-            light += lightness(mech, k, c, a, y.lam, mech.address)
+            light += lightness(mech, k, c, a, y.lam, mech.mass, mech.address)
         change = magnitude(row, c, y.ga) + force * light
         if y.N[c] <= 0.0 or force <= 0.0 or magnitude(row, c, y.g) > NEAR * h * change:
             continue

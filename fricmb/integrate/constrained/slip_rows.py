@@ -110,8 +110,11 @@ def add_slip(
 
 
 @block
-def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, address: Ints) -> float:
-    """Change of the slip velocity of port c by a unit force in its direction, were there no (other) joints."""
+def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: Floats, address: Ints) -> float:
+    """Change of the slip velocity of port c by a unit force in its direction, were there no (other) joints.
+
+    With other values (n,) than the masses: the sum of squares of slopes over these.
+    """
     port, place, j = mech.port, mech.place, mech.port.joint[c]
     table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
     if j >= 0:
@@ -127,7 +130,7 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, addres
                 continue
             for b in range(place.y_start[e], place.y_start[e + 1]):
                 slope = factor * table.form_coefficient[i] * (1.0 if place.y_at[b] < 0 else k.grad[place.y_at[b]])
-                value += slope * slope / mech.mass[place.y_dof[b]]
+                value += slope * slope / mass[place.y_dof[b]]
     return float(value)
 
 
@@ -137,7 +140,7 @@ def add_stick(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, f
     for a in range(mech.port.row[c + 1] - mech.port.row[c]):
         add_slip(mech, k, c, a, lam, L, row + a, 1.0, full, mech.address)
         if mech.port.soft[c] > 0.0:
-            soft = mech.port.soft[c] * lightness(mech, k, c, a, lam, mech.address)
+            soft = mech.port.soft[c] * lightness(mech, k, c, a, lam, mech.mass, mech.address)
             add(mech.order, L.A2 if full else L.A1, row + a, row + a, soft)
 
 

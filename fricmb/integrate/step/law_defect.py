@@ -12,7 +12,7 @@ from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, widest
 
 #: Relative round-off of forces and rates beside their polynomials.
@@ -22,11 +22,11 @@ CREEP = 1e3
 
 
 @kernel
-def between(line: Floats, start: float, one: OneStep) -> float:
-    """Value of the polynomial through ``start`` and ``one.margin``, by a line of the tableau's ``mid``."""
+def between(line: Floats, start: float, values: Floats2, column: int) -> float:
+    """Value of the polynomial through ``start`` and a column of stage values, by a line of the tableau's ``mid``."""
     value = line[0] * start
-    for i in range(one.margin.shape[0]):
-        value += line[i + 1] * one.margin[i]
+    for i in range(values.shape[0]):
+        value += line[i + 1] * values[i, column]
     return float(value)
 
 
@@ -34,20 +34,13 @@ def between(line: Floats, start: float, one: OneStep) -> float:
 def probe(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, j: int) -> None:
     """Law k at the polynomials' values half-way to node j: arguments in ``s.x``, force, rates, slopes in ``s.out``."""
     w, line = one.w, one.tab.mid[j]
-    n_s = w.F.shape[0]
     row0, z0 = packed.ports.row[k], packed.ports.z_start[k]
     d, nz = packed.ports.row[k + 1] - row0, packed.ports.z_start[k + 1] - z0
     for a in range(d):
-        for i in range(n_s):
-            one.margin[i] = w.g[i, row0 + a]
-        s.x[a] = between(line, y.g[row0 + a], one)
-    for i in range(n_s):
-        one.margin[i] = w.N[i, k]
-    s.x[d] = max(between(line, y.N[k], one), 0.0) if y.mode[k] != OPEN else 0.0
+        s.x[a] = between(line, y.g[row0 + a], w.g, row0 + a)
+    s.x[d] = max(between(line, y.N[k], w.N, k), 0.0) if y.mode[k] != OPEN else 0.0
     for a in range(nz):
-        for i in range(n_s):
-            one.margin[i] = w.z[i, z0 + a]
-        s.x[d + 1 + a] = between(line, y.z[z0 + a], one)
+        s.x[d + 1 + a] = between(line, y.z[z0 + a], w.z, z0 + a)
     call(packed.laws.address[k], s.x, 0, packed.laws.p, packed.laws.p_start[k], s.out, 0)
 
 
@@ -81,9 +74,8 @@ def force_off(
     nz = packed.ports.z_start[k + 1] - packed.ports.z_start[k]
     size = abs(y.F[row0 + a])
     for i in range(w.F.shape[0]):
-        one.margin[i] = w.F[i, row0 + a]
         size = max(size, abs(w.F[i, row0 + a]))
-    off = abs(s.out[a] - between(one.tab.mid[j], y.F[row0 + a], one))
+    off = abs(s.out[a] - between(one.tab.mid[j], y.F[row0 + a], w.F, row0 + a))
     stiff = 0.0
     for b in range(d):
         stiff += abs(s.out[d + nz + a * (d + 1 + nz) + b])
@@ -99,12 +91,11 @@ def rate_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, j: int,
     d, nz = packed.ports.row[k + 1] - packed.ports.row[k], packed.ports.z_start[k + 1] - z0
     size = abs(y.zd[z0 + a])
     for i in range(w.F.shape[0]):
-        one.margin[i] = w.zd[i, z0 + a]
         size = max(size, abs(w.zd[i, z0 + a]))
     at = d + nz + (d + a) * (d + 1 + nz)
     for b in range(d + 1 + nz):
         size = max(size, abs(s.out[at + b] * s.x[b]))
-    off = abs(s.out[d + a] - between(one.tab.mid[j], y.zd[z0 + a], one))
+    off = abs(s.out[d + a] - between(one.tab.mid[j], y.zd[z0 + a], w.zd, z0 + a))
     return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(s.out[at + d + 1 + a])))
 
 

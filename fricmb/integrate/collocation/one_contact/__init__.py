@@ -1,1 +1,0 @@
-"""One contact under constant friction and linear loads: kernels of its own."""

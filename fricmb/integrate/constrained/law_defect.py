@@ -1,0 +1,127 @@
+"""Smooth laws of a mechanism between the stages of a step: a kink, or a turn of the law that all stages have missed.
+
+As in ``step.law_defect``: the polynomials of a step are right at its stages, and half-way between these the law is
+asked again.  What its force and its rates are off, times the width of the gap, is an error of velocities and states
+that the Legendre series of velocities need not show.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.template import call
+from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.radau_step import Control
+from fricmb.integrate.constrained.slip_rows import lightness
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2, Ints
+from fricmb.integrate.step.law_defect import ROUND_OFF, between
+
+
+@kernel
+def ask(mech: Mech, k: Moving, y: State, st: Stages, c: int, line: Floats) -> None:
+    """Ask law c where a line of weights tells the step's polynomials: arguments in ``s.x``, answers in ``s.out``."""
+    port, s = mech.port, k.s
+    row0, z0 = port.row[c], port.z_start[c]
+    d, nz = port.row[c + 1] - row0, port.z_start[c + 1] - z0
+    for a in range(d):
+        s.x[a] = between(line, y.g[row0 + a], st.g, row0 + a)
+    load = between(line, y.N[c], st.N, c)
+    s.x[d] = load if port.joint[c] >= 0 else max(load, 0.0)
+    for a in range(nz):
+        s.x[d + 1 + a] = between(line, y.z[z0 + a], st.Z, z0 + a)
+    call(port.laws.address[c], s.x, 0, port.laws.p, port.laws.p_start[c], s.out, 0)
+
+
+@kernel
+def largest(start: float, values: Floats2, column: int) -> float:
+    """The largest magnitude of a quantity within a step."""
+    size = abs(start)
+    for i in range(values.shape[0]):
+        size = max(size, abs(values[i, column]))
+    return float(size)
+
+
+@kernel
+def put_rates(mech: Mech, k: Moving, y: State, st: Stages, c: int, rates: Floats2, h: float) -> None:
+    """Rates of the states of law c at the start of the step and at its stages, into ``rates`` (s+1, n_z)."""
+    port, s = mech.port, k.s
+    row0, z0 = port.row[c], port.z_start[c]
+    d, nz = port.row[c + 1] - row0, port.z_start[c + 1] - z0
+    for a in range(d):
+        s.x[a] = y.g[row0 + a]
+    s.x[d] = y.N[c] if port.joint[c] >= 0 else max(y.N[c], 0.0)
+    for a in range(nz):
+        s.x[d + 1 + a] = y.z[z0 + a]
+    call(port.laws.address[c], s.x, 0, port.laws.p, port.laws.p_start[c], s.out, 0)
+    for a in range(nz):
+        rates[0, z0 + a] = s.out[d + a]
+        for i in range(st.Z.shape[0]):
+            value = 0.0
+            for j in range(st.Z.shape[0]):
+                value += st.Ainv[i, j] * (st.Z[j, z0 + a] - y.z[z0 + a])
+            rates[i + 1, z0 + a] = value / h
+
+
+@block
+def laws_between(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> float:
+    """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the stages."""
+    port, tab = mech.port, st.tab
+    worst = 0.0
+    for i in range(y.v.shape[0]):
+        c.inertia[i] = (c.mass[i] * st.scale[i]) ** 2
+    for p in range(y.mode.shape[0]):
+        if port.law[p] != LAW_SMOOTH or y.mode[p] == OPEN:
+            continue
+        row0, z0 = port.row[p], port.z_start[p]
+        d, nz = port.row[p + 1] - row0, port.z_start[p + 1] - z0
+        for a in range(d):
+            # what a unit of force does to the slip velocity, and to the velocities over their scales
+            st.x[2 * a] = lightness(mech, k, p, a, y.lam, mech.mass, mech.address)
+            st.x[2 * a + 1] = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia, mech.address))
+        if nz > 0:
+            put_rates(mech, k, y, st, p, c.rates, h)
+        for j in range(tab.c.shape[0]):
+            gap = h * (tab.c[j] - (tab.c[j - 1] if j > 0 else 0.0))
+            ask(mech, k, y, st, p, tab.mid[j])
+            for a in range(d):
+                worst = max(worst, gap * force_off(k, y, st, row0, d, nz, j, a, gap, h) * st.x[2 * a + 1])
+            for a in range(nz):
+                size = max(c.z[z0 + a], largest(y.z[z0 + a], st.Z, z0 + a), 1e-290)
+                worst = max(worst, rate_off(k, st, c, z0, d, nz, j, a, gap) / size)
+    return worst
+
+
+@kernel
+def force_off(
+    k: Moving, y: State, st: Stages, row0: int, d: int, nz: int, j: int, a: int, gap: float, h: float
+) -> float:
+    """What the force of row a is off half-way to stage j, less what of it the law itself would take back at once."""
+    out = k.s.out
+    off = abs(out[a] - between(st.tab.mid[j], y.F[row0 + a], st.F, row0 + a))
+    stiff = 0.0
+    for b in range(d):
+        stiff += abs(out[d + nz + a * (d + 1 + nz) + b])
+    stiff *= st.x[2 * a]
+    grain = ROUND_OFF * largest(y.F[row0 + a], st.F, row0 + a) * (1.0 + h * stiff)
+    return float(max(off - grain, 0.0) / (1.0 + gap * stiff))
+
+
+@kernel
+def rate_off(k: Moving, st: Stages, c: Control, z0: int, d: int, nz: int, j: int, a: int, gap: float) -> float:
+    """What state a of a law is off by over the gap before stage j, as a stiff rate lets it."""
+    out, x = k.s.out, k.s.x
+    at = d + nz + (d + a) * (d + 1 + nz)
+    size = abs(c.rates[0, z0 + a])
+    for i in range(st.Z.shape[0]):
+        size = max(size, abs(c.rates[i + 1, z0 + a]))
+    for b in range(d + 1 + nz):
+        size = max(size, abs(out[at + b] * x[b]))
+    value = 0.0
+    for i in range(c.rates.shape[0]):
+        value += st.tab.mid[j, i] * c.rates[i, z0 + a]
+    off = abs(out[d + a] - value)
+    return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(out[at + d + 1 + a])))

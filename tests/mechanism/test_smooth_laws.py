@@ -1,0 +1,58 @@
+"""Laws with kinks in a joint: beside an own program, as exact as was asked for."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import fricmb as fm
+from fricmb import models
+
+M, INERTIA, LENGTH, RADIUS, GRAVITY, T = 1.3, 0.2, 0.7, 0.2, 9.81, 2.0
+
+
+def dahl(v, z):
+    """Force over the load, and the rate of the state."""
+    return -200.0 * z[0], [v - 400.0 * abs(v) * z[0]]
+
+
+def linear(v, z):
+    """The same of a straight line to a limit."""
+    return -0.4 * min(1.0, max(-1.0, v / 1e-2)), []
+
+
+CASES = {
+    "Dahl": (dahl, 1, fm.laws.Dahl(sigma0=200.0, mu=0.5)),
+    "LinearRegularised": (linear, 0, fm.laws.LinearRegularised(mu=0.4, v_reg=1e-2)),
+}
+
+
+def swing(law, n_z):
+    """Angle and rate of a pendulum on a pin under a law, whose load is found at every instant by iteration."""
+
+    def rate(t, y):
+        angle, w = y[:2]
+        per_load, z_rate = law(RADIUS * w, y[2:])
+        a, last = 0.0, np.inf
+        while abs(a - last) > 1e-15 * (1.0 + abs(a)):
+            last = a
+            load = M * np.hypot(LENGTH * w**2 + GRAVITY * np.cos(angle), LENGTH * a + GRAVITY * np.sin(angle))
+            torque = RADIUS * per_load * load - M * GRAVITY * LENGTH * np.sin(angle)
+            a = torque / (INERTIA + M * LENGTH**2)
+        return [w, a, *z_rate]
+
+    run = solve_ivp(rate, (0.0, T), [1.2, 0.0] + [0.0] * n_z, method="DOP853", rtol=1e-12, atol=1e-14, max_step=1e-3)
+    return run.y[0, -1], run.y[1, -1]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_as_exact_as_asked_for(name):
+    law, n_z, declared = CASES[name]
+    angle, w = swing(law, n_z)
+    scene = models.dry_pendulum(
+        mass=M, inertia=INERTIA, length=LENGTH, radius=RADIUS, angle=1.2, gravity=GRAVITY, law=declared
+    )
+    for method in ("radau", "bdf"):
+        for rtol in (1e-6, 1e-8, 1e-10):
+            sol = fm.simulate(scene, t_end=T, rtol=rtol, method=method)
+            assert sol.q[-1, -1] + np.pi / 2 == pytest.approx(angle, abs=10.0 * rtol)
+            assert sol.v[-1, -1] == pytest.approx(w, abs=10.0 * rtol)
