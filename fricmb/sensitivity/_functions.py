@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from functools import lru_cache
 from typing import Any
@@ -30,9 +30,20 @@ _seen: ContextVar[list[Dual] | None] = ContextVar("_seen", default=None)
 def conditions_seen() -> Iterator[list[Dual]]:
     """A list of all that functions called inside switch on, in the order of the calls."""
     found: list[Dual] = []
+    with _gathered(found):
+        yield found
+
+
+def unseen() -> AbstractContextManager[None]:
+    """Within ``conditions_seen``: functions are called at other times than the rest, and do not count."""
+    return _gathered(None)
+
+
+@contextmanager
+def _gathered(found: list[Dual] | None) -> Iterator[None]:
     token = _seen.set(found)
     try:
-        yield found
+        yield
     finally:
         _seen.reset(token)
 

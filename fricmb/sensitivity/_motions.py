@@ -12,7 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Driven, LinearForm, Scene
 from fricmb.sensitivity._dual import Dual, composed, summed
-from fricmb.sensitivity._functions import Function
+from fricmb.sensitivity._functions import Function, unseen
 from fricmb.sensitivity._seeds import Seeds
 from fricmb.values import is_expression, value_of
 
@@ -242,7 +242,8 @@ class Moment:
         found: dict[int, Floats] = {}
         for t, moved in self.frame.breaks:
             beside = t + _BESIDE * max(1.0, abs(t)) * np.array([-1.0, 1.0])
-            before, after = np.broadcast_to(rate.over(Dual(value=beside)).value, 2)
+            with unseen():
+                before, after = np.broadcast_to(rate.over(Dual(value=beside)).value, 2)
             for j, dt in moved.items():
                 found[j] = found.get(j, 0.0) + (before - after) * dt * (self.t >= t)
         return found
@@ -258,7 +259,8 @@ class Moment:
         x, w = np.polynomial.legendre.leggauss(8)
         half = 0.5 * np.diff(ends)
         nodes = ends[:-1, None] + half[:, None] * (1.0 + x)
-        slope = rate.over(Dual(value=nodes, slopes={})).slopes[column]
+        with unseen():
+            slope = rate.over(Dual(value=nodes, slopes={})).slopes[column]
         sums = np.cumsum(half * (np.broadcast_to(slope, nodes.shape) @ w))
         found = np.empty_like(self.t)
         found[order] = sums[between.size - 1 :]

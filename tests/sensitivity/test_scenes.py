@@ -14,7 +14,7 @@ from .differences import worst
 @pytest.mark.parametrize(
     ("kind", "seed"),
     [
-        ("line", 1), ("line", 7), ("stack", 1), ("modes", 1), ("modes", 5), ("plane", 1),
+        ("line", 1), ("line", 7), ("stack", 1), ("stack", 2), ("modes", 1), ("modes", 5), ("plane", 1),
         ("loop", 2), ("loop", 3),  # what lets go there has stuck with forces that are not determined
     ],
 )  # fmt: skip

@@ -1,6 +1,7 @@
 """Derivatives through slip in two directions: the brake against certified digits, other cases against differences."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -125,7 +126,7 @@ def test_slip_that_passes_rest():
     assert not [event for event in sol.events if event.t > 1.0]
     assert sol.sensitivity("m.mode1.velocity", name)[0] == pytest.approx(expected, rel=2e-5)
     sol = fm.simulate(scene, t_end=5.0, rtol=1e-8, sensitivities=(name,))
-    assert any("passes rest at 1e-08 of its largest speed" in note for note in sol.stats.notes)
+    assert any(re.search(r"passes rest at [1-3]e-08 of its largest speed", note) for note in sol.stats.notes)
 
 
 def test_start_at_rest_about_to_slip_is_one_sided():
