@@ -14,7 +14,7 @@ from fricmb import errors
 from fricmb._simulate._blame import _law_without_value, blame
 from fricmb._simulate._result import not_there
 from fricmb.analysis import AnalysisError
-from fricmb.integrate.collocation import _collocation
+from fricmb.integrate.collocation import integrator as _collocation
 from fricmb.integrate.run import memory, stop
 from fricmb.integrate.taylor import integrator as _taylor
 

@@ -23,7 +23,7 @@ import fricmb as fm
 from fricmb.errors import FricmbError
 from fricmb.integrate import integrators
 from fricmb.integrate.collocation import Collocation
-from fricmb.integrate.collocation._suits import port_rows
+from fricmb.integrate.collocation.suits import port_rows
 from fricmb.system import build
 
 models, laws = fm.models, fm.laws

@@ -17,6 +17,8 @@ from fricmb.solution import times_inside
 
 #: Tightest and loosest relative tolerance: what double precision can hold, and what still means something.
 RTOL_RANGE = 1e-14, 0.1
+#: Bytes that a result may have without a look at what is left: the look takes as long as a fifth of a run of nothing.
+LITTLE = 1e7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,9 +97,10 @@ def check_limit(seconds: Any) -> float | None:
 
 def check_room(numbers: int, span: Span) -> None:
     """Whether the values at the times asked for find room in memory; ``numbers``: of each time."""
-    if span.t_eval is None:
+    wanted = 0.0 if span.t_eval is None else 8.0 * numbers * span.t_eval.size
+    if span.t_eval is None or wanted < LITTLE:
         return
-    wanted, there = 8.0 * numbers * span.t_eval.size, available()
+    there = available()
     if there is not None and wanted > there:
         raise SceneError(
             f"t_eval: {span.t_eval.size} times of {numbers} numbers take {wanted / 1e9:.3g} GB, and {there / 1e9:.3g} "

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.collocation._prepare import is_single
-from fricmb.integrate.collocation._suits import against, port_rows, too_far_apart
+from fricmb.integrate.collocation.one_contact.prepare import is_single
+from fricmb.integrate.collocation.suits import against, port_rows, too_far_apart
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.methods.bdf import Bdf
 from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.steep_laws import steepness
 from fricmb.integrate.problem import Problem
+from fricmb.integrate.run.problem_cache import kept
 
 
 def many_rows(rtol: float) -> int:
@@ -31,8 +33,14 @@ LOOSE = 1e-4
 
 #: Contacts from which on Taylor steps are the fastest where contacts are coupled or friction depends on slip speed, and
 #: dofs to a contact from which on exact structure is: on two to fifty contacts under Stribeck laws, and on stacks, bdf
-#: took 1.5 to 2 times as long with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty.
-SEVERAL, DEEP = 4, 5
+#: took 1.3 to 2 times as long with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty;
+#: collocation 1.3 to 2.2 times with two and three.
+SEVERAL, DEEP = 2, 5
+#: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
+FEW = 4
+#: Steepness of laws (see ``steepness``) beyond which Taylor steps have been seen to lose accuracy: up to 20 and 50
+#: errors were those asked for, from 23 and 70 on some were up to 1e6 times larger.
+STEEP, NARROW = 20.0, 50.0
 
 
 def is_banded(problem: Problem) -> bool:
@@ -42,6 +50,10 @@ def is_banded(problem: Problem) -> bool:
 
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
+    return kept(problem, ("choice", rtol), lambda: _choose(problem, rtol))
+
+
+def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     if problem.mechanism is not None:
         from fricmb.integrate.methods.radau import Radau
 
@@ -77,15 +89,17 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
 
 def _many_contacts(problem: Problem) -> tuple[Integrator, str] | None:
     """Taylor steps and why, where they are the fastest of several contacts."""
-    from fricmb.integrate.guarded_taylor import GuardedTaylor
+    from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
+    from fricmb.integrate.taylor.prepare import fastest
     from fricmb.integrate.taylor.prepare_groups import is_coupled
 
-    many = GuardedTaylor()
+    many = GuardedFewTaylor() if problem.n_c < FEW else GuardedTaylor()
     if many.refuses(problem) is not None:
         return None
     if not is_coupled(problem):
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
-    if problem.n_c >= SEVERAL and problem.n < DEEP * problem.n_c:
+    growth, narrow = steepness(problem, fastest(problem))
+    if problem.n_c >= SEVERAL and problem.n < DEEP * problem.n_c and not (growth > STEEP and narrow > NARROW):
         return many, "contacts with friction of slip speed, or coupled by bodies: Taylor steps, local corrections"
     return None
 

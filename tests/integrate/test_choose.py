@@ -13,6 +13,7 @@ from fricmb.bench.stability._structures import stiff_pair
 from fricmb.integrate import select
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.select import Guarded
+from fricmb.integrate.taylor import Taylor
 
 
 def row(n, law, *, axes="x", contacts=None, **contact):
@@ -34,6 +35,7 @@ def row(n, law, *, axes="x", contacts=None, **contact):
 
 COULOMB = fm.laws.Coulomb(mu_s=1.2, mu_k=1.0)
 STRIBECK = fm.laws.Stribeck(mu_s=1.2, mu_k=1.0, v_s=0.1)
+STEEP = fm.laws.Stribeck(mu_s=1.2, mu_k=1.0, v_s=5e-4)
 
 
 def test_time_steps_are_left_to_what_they_are_right_for(monkeypatch):
@@ -56,8 +58,10 @@ def test_time_steps_are_left_to_what_they_are_right_for(monkeypatch):
     [
         (row(3, COULOMB, contacts=1), 1e-6, "collocation", "one contact under constant friction"),
         (row(2, COULOMB, axes="xy"), 1e-6, "collocation", r"few port rows \(4\)"),
-        (row(2, STRIBECK), 1e-6, "collocation", r"few port rows \(2\)"),
-        (row(3, STRIBECK), 1e-8, "bdf", "3 port rows, more than 2"),
+        (row(1, STRIBECK), 1e-6, "collocation", r"few port rows \(1\)"),
+        (row(2, STRIBECK), 1e-6, "taylor", "friction of slip speed"),
+        (row(2, STEEP), 1e-6, "collocation", r"few port rows \(2\)"),
+        (row(3, STEEP), 1e-8, "bdf", "3 port rows, more than 2"),
         (row(6, STRIBECK), 1e-8, "taylor", "friction of slip speed"),
         (row(3, COULOMB, axes="xy"), 1e-6, "collocation", r"few port rows \(6\)"),
         (row(3, COULOMB, axes="xy", normal_force=1.0 + 0.2 * fm.t), 1e-6, "bdf", "9 port rows, more than 4 at this"),
@@ -89,7 +93,7 @@ def test_redundant_contacts_go_to_the_general_method():
 
 
 def test_a_run_that_stops_is_done_by_the_general_method_and_says_so(monkeypatch):
-    scene = row(2, STRIBECK)
+    scene = row(2, STEEP)
     good = fm.simulate(scene, t_end=5.0, method="bdf")
     whole = Collocation.integrate
 
@@ -133,3 +137,30 @@ def test_modes_whose_eigenproblem_leaves_no_digits_are_left_to_steps(stiffness, 
     assert not sol.stats.notes
     true = free_oscillator(t_end=50.0)
     assert np.abs(sol(true.t)[:2] - true.q).max() < 1e-4
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_laws_too_steep_for_polynomials_in_time_are_run_as_accurately_as_asked_for(count):
+    """Corrections of Taylor steps lost up to nine digits here, without a word."""
+    law = fm.laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=1e-3, exponent=1.0)
+    scene = row(count, law)
+    t = np.linspace(0.0, 20.0, 101)
+    found, good = (fm.simulate(scene, t_end=20.0, t_eval=t, rtol=1e-8, method=m) for m in ("auto", "radau"))
+    assert found.stats.method != "taylor"
+    assert np.abs(found.q - good.q).max() < 1e-6 * np.abs(good.q).max()
+
+
+def test_few_contacts_that_taylor_steps_cannot_finish_keep_their_accuracy(monkeypatch):
+    scene = row(2, STRIBECK)
+    whole = Taylor.integrate
+
+    def stops(self, *args, **options):
+        run = whole(self, *args, **options)
+        run.failure = "transitions crowd"
+        return run
+
+    good = fm.simulate(scene, t_end=5.0, method="bdf")
+    monkeypatch.setattr(Taylor, "integrate", stops)
+    sol = fm.simulate(scene, t_end=5.0)
+    assert sol.stats.method == "bdf"
+    np.testing.assert_allclose(sol.q[:, -1], good.q[:, -1], rtol=1e-12)

@@ -291,6 +291,7 @@ def test_a_result_that_finds_no_room_ends_the_run(monkeypatch):
 
 def test_values_that_find_no_room_are_refused_before_the_run(monkeypatch):
     monkeypatch.setattr(_arguments, "available", lambda: 1e3)
+    monkeypatch.setattr(_arguments, "LITTLE", 1e4)
     with pytest.raises(fm.SceneError, match=r"t_eval: 1001 times of 6 numbers take .* GB"):
         fm.simulate(endless(), t_end=10.0, t_eval=np.linspace(0, 10, 1001))
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.collocation import _structure, _workspace
+from fricmb.integrate.collocation import structure_blocks
+from fricmb.integrate.collocation.one_contact import workspace as one_contact
 from fricmb.integrate.constrained import pattern
 from fricmb.integrate.model import problem_structs, structure
 from fricmb.integrate.run import workspace
@@ -58,10 +59,10 @@ def changes(scene, seed, count):
 
 def forget():
     """Nothing is left of runs before."""
-    for store in (_workspace._store, workspace._store, pattern._store, _same._common, _same._known):
+    for store in (one_contact._store, workspace._store, pattern._store, _same._common, _same._known):
         store.clear()
     for function in (
-        _structure.blocks, problem_structs._softness, structure._dense_inverse, _spectrum.spectrum,
+        structure_blocks.blocks, problem_structs._softness, structure._dense_inverse, _spectrum.spectrum,
     ):  # fmt: skip
         function.forget()
     structure._places.cache_clear()

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation._fundamental import two_sum
-from fricmb.integrate.collocation._general_dense import gains_at, input_series
-from fricmb.integrate.collocation._general_step import input_error, state_error, stiff_error
-from fricmb.integrate.collocation._layout import MONOMIAL
+from fricmb.integrate.collocation.block_motion import two_sum
+from fricmb.integrate.collocation.finish_step import input_error, state_error, stiff_error
+from fricmb.integrate.collocation.layout import MONOMIAL
+from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.contact.event_location import copy_state, slip_rate

@@ -1,8 +1,8 @@
 """Transitions in a run: locating them with real steps of variable length, and what follows at the instant.
 
-Shared by radau, bdf and collocation of several contacts.  Collocation of one contact (``collocation/_stick``,
-``_landing``), Taylor steps (``taylor/event_search``) and scenes with joints (``constrained/event_location``) have their
-own.
+Shared by radau, bdf and collocation of several contacts.  Collocation of one contact (``collocation/one_contact``:
+``stick``, ``landing``), Taylor steps (``taylor/event_search``) and scenes with joints
+(``constrained/event_location``) have their own.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
@@ -30,7 +31,7 @@ from fricmb.integrate.taylor.layout import (
     TOL,
 )  # fmt: skip
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.prepare import fastest, net_of, no_samples, refusal, with_arrays
+from fricmb.integrate.taylor.prepare import fastest, net_of, no_samples, refusal
 from fricmb.integrate.taylor.starting_modes import settle_start
 from fricmb.integrate.taylor.step_loop import (
     CROWDED,

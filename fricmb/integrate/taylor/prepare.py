@@ -14,7 +14,14 @@ from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, 
 from fricmb.integrate.run.problem_cache import kept
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.prepare_groups import against_groups, group_arrays, group_statics, plain_contacts, solid
+from fricmb.integrate.taylor.prepare_groups import (
+    against_groups,
+    group_arrays,
+    group_statics,
+    legendre_rule,
+    plain_contacts,
+    solid,
+)
 
 #: A structure of at most so many diagonals is kept by diagonals.
 DIAGONALS = 9
@@ -107,7 +114,7 @@ def _statics(problem: Problem) -> dict[str, Any]:
     in_start, in_signal, in_u, in_du = _rectangular(Fu, Cu)
     # the same pattern: where B has nothing, 0
     in_b = _rectangular(Csr(Fu.shape, Fu.start, Fu.index, 0.0 * Fu.value), _over(B, Cu))[3]
-    at, weights = np.polynomial.legendre.leggauss(8)
+    at, weights = legendre_rule(8)
     outside = np.zeros((3, problem.n_u, problem.n_u))
     outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
     outside[2, :, :1] = linear.fx[n:, None]
@@ -220,8 +227,3 @@ def no_samples(n: int, m: int, count: int = 0) -> dict[str, Any]:
         "out_F": z((count, m)), "out_g": z((count, m)), "out_loss": z((count, m)),
         "out_mode": z((count, m), np.int8), "out_x": z((count, 2)),
     }  # fmt: skip
-
-
-def with_arrays(net: Net, **arrays: Any) -> Net:
-    """The same run with some arrays exchanged."""
-    return room(Net._make([arrays.get(name, getattr(net, name)) for name in Net._fields]))

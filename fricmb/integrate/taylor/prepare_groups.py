@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate.run.by_content import by_content
 from fricmb.integrate.run.problem_cache import kept
 from fricmb.integrate.taylor.groups import Groups
 
@@ -23,10 +25,14 @@ INDEPENDENT = 1e-9
 def _labels(problem: Problem) -> tuple[int, Ints]:
     """Number of sets of contacts on common dofs, and the set of every contact."""
     W = problem.contacts.csr("W")
-    n, m = problem.n, problem.n_c
-    if not (np.bincount(W.rows, minlength=1) > 1).any():
+    return _labels_of(W.rows, W.index, problem.n, problem.n_c)
+
+
+@by_content
+def _labels_of(rows: Ints, columns: Ints, n: int, m: int) -> tuple[int, Ints]:
+    if not (np.bincount(rows, minlength=1) > 1).any():
         return m, np.arange(m)
-    graph = csr_array((np.ones(len(W.value)), (W.rows, n + W.index)), shape=(n + m, n + m))
+    graph = csr_array((np.ones(len(rows)), (rows, n + columns)), shape=(n + m, n + m))
     _, label = connected_components(graph, directed=False)
     found, group = np.unique(label[n:], return_inverse=True)
     return len(found), group.astype(np.int64)
@@ -119,6 +125,14 @@ def _group_statics(problem: Problem) -> dict[str, Any]:
     }  # fmt: skip
 
 
+@lru_cache(maxsize=64)
+def legendre_rule(count: int) -> tuple[Floats, Floats]:
+    """Points in -1 to 1 and weights of Gauss and Legendre."""
+    at, weights = np.polynomial.legendre.leggauss(count)
+    return at, weights
+
+
+@lru_cache(maxsize=64)
 def _interpolation(degree: int) -> tuple[Floats, Floats]:
     """Chebyshev points, and the matrix from values there to coefficients."""
     angle = (np.arange(degree + 1) + 0.5) * np.pi / (degree + 1)
@@ -131,7 +145,7 @@ def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
     """All of it for polynomials of degree P and corrections of at most ``widest`` dofs."""
     statics = group_statics(problem)
     i, z, m = np.int64, np.zeros, problem.n_c
-    at, weights = np.polynomial.legendre.leggauss(P)
+    at, weights = legendre_rule(P)
     nodes, fit = _interpolation(P)
     lawful = int(np.count_nonzero(statics["lawful"] >= 0))
     count, grouped = len(statics["group_start"]) - 1, len(statics["group_contact"])

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
 from fricmb.integrate.run.stop import watched
 from fricmb.integrate.taylor.layout import END, N_SAMPLES
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.prepare import net_of, no_samples, with_arrays
+from fricmb.integrate.taylor.prepare import net_of, no_samples
 from fricmb.integrate.taylor.step_loop import PAUSE, drive_taylor
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
@@ -20,7 +21,7 @@ NUMBERS, ROWS = 3_000_000, 20_000_000
 #: Steps at a time on the way to samples.
 STRIDE = 16
 #: Arrays of the state.
-STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "large", "free", "x", "i", "stops")
+STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "large", "free", "x", "i", "stops", "window")
 
 
 class Checkpoints:

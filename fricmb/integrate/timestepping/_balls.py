@@ -76,6 +76,24 @@ def same_piece(run: Run) -> bool:
 
 
 @kernel
+def hold_skipped(run: Run, F: Floats, g: Floats) -> None:
+    """Take contacts for stuck that went over from one side of slip to the other; what this changes in P into ``move``.
+
+    Between the two they stick, in a range of g so narrow that no full step ends in it.
+    """
+    for a in range(run.move.shape[0]):
+        run.move[a] = 0.0
+    for c in range(run.status.shape[0]):
+        a = run.row[c]
+        slips = run.row[c + 1] - a == 1 and run.weight[3 * c] == 0.0 and run.H[3 * c] == 0.0
+        if slips and abs(run.P[a] - run.y[a]) > run.rho[c]:
+            R = STIFF / run.soft[c]
+            run.move[a] = F[a] - R * g[a] - run.P[a]
+            run.H[3 * c] = R
+            run.P[a] += run.move[a]
+
+
+@kernel
 def all_flat(run: Run) -> bool:
     """Whether every projection is linear where it is: one direction, or stuck."""
     for c in range(run.status.shape[0]):

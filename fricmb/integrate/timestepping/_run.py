@@ -31,13 +31,12 @@ class Run(NamedTuple):
     step before and force at its end; ``hold`` (s, m), ``grip``, ``when`` (s, n_c): last force that held the contact,
     the limit it was under and its time; ``known`` (s, n_c): whether there is one; ``mode``, ``push`` (s, n_c): modes
     and mean normal forces.
-    Step: ``free``, ``dv``, ``turn``, ``trial`` (n,); ``gf``, ``y``, ``P``, ``phi``, ``move`` (m,); ``H``, ``weight``
-    (3 n_c,) derivative of the projection; ``rho``, ``slide``, ``brake``, ``soft``, ``share`` (n_c,); ``delta``,
-    ``away`` (m,); ``status``, ``tried`` (n_c,): whether it was let go in vain; ``jolt`` (n,), ``last`` (n_c,): the last
-    jump of forces in the step on a dof and on a contact at rest, as a fraction of it (-1: none); ``loss`` (s, n_c),
-    ``spent`` (s, 2): energies of a step;
-    ``what``, ``moment`` (s, n_c): transitions in it; ``instant`` (n_c, 2): rate of
-    the distance and dV/de of varying normal forces.
+    Step: ``free``, ``dv``, ``turn``, ``trial`` (n,); ``gf``, ``y``, ``P``, ``phi``, ``move`` (m,); ``base``: unknowns
+    where leaps of Newton's method began; ``H``, ``weight`` (3 n_c,) derivative of the projection; ``rho``, ``slide``,
+    ``brake``, ``soft``, ``share`` (n_c,); ``delta``, ``away`` (m,); ``status``, ``tried`` (n_c,): whether it was let go
+    in vain; ``jolt`` (n,), ``last`` (n_c,): the last jump of forces in the step on a dof and on a contact at rest, as a
+    fraction of it (-1: none); ``loss`` (s, n_c), ``spent`` (s, 2): energies of a step; ``what``, ``moment`` (s, n_c):
+    transitions in it; ``instant`` (n_c, 2): rate of the distance and dV/de of varying normal forces.
     Factors: ``lu`` (k, n (2 b + 1)), ``of`` (k, 3 n_c + 1): h and weights each was made for, ``used`` (k,);
     ``Y`` (k, m, n), ``D`` (k, m, m): responses A^-1 W and h W^T A^-1 W; ``J``, ``rhs``, ``sizes``, ``pivots``.
     Run: ``top_q``, ``top_v`` (n,) running maxima, ``floor_q``, ``floor_v``; ``total`` (n_c,) losses; ``stops``;
@@ -105,6 +104,7 @@ class Run(NamedTuple):
     dv: Floats
     turn: Floats
     trial: Floats
+    base: Floats
     gf: Floats
     y: Floats
     P: Floats

@@ -140,3 +140,15 @@ def test_contacts_that_share_their_forces_are_refused():
     pads = [fm.Contact(f"pad{i}", held, law=law, normal_force=1.0) for i in range(2)]
     with pytest.raises(fm.SceneError, match="in more than one way"):
         fm.simulate(fm.Scene("pinched", [held, *pads]), t_end=1.0, method="taylor")
+
+
+def test_dense_output_before_a_switch_of_a_load_does_not_depend_on_what_was_asked_for_last():
+    """The stretch of time in which loads are evaluated is that of the time asked for, not of the last one."""
+    load = sympy.Piecewise((0.4, fm.t < 18.0), (-0.3, True))
+    parts = list(fm.models.stick_slip_chain(4, laws=[fm.laws.Stribeck(mu_s=1.3, mu_k=1.0, v_s=0.1)] * 4).parts)
+    body = next(part for part in parts if isinstance(part, fm.Body))
+    scene = fm.Scene("pushed", [*parts, fm.Force("push", body, axis="x", value=load)])
+    sol, other = (fm.simulate(scene, t_end=26.0, method=method, rtol=1e-9) for method in ("taylor", "radau"))
+    early, late = np.linspace(12.0, 17.9, 30), np.linspace(22.0, 25.0, 7)
+    for t in (late, early, late, early):
+        np.testing.assert_allclose(sol.at(t).v, other.at(t).v, atol=1e-7)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import two_sum
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.block_motion import two_sum
+from fricmb.integrate.collocation.layout import (
     B0,
     B1,
     C0,
@@ -48,9 +48,9 @@ from fricmb.integrate.collocation._layout import (
     U,
     V,
 )  # fmt: skip
-from fricmb.integrate.collocation._phase import accelerations, project, settle, to_dofs
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._step import (
+from fricmb.integrate.collocation.one_contact.phase import accelerations, project, settle, to_dofs
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.step import (
     commit,
     end_state,
     keep_slip,

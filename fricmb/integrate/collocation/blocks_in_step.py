@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.layout import (
     B0,
     B1,
     C0,
@@ -23,7 +23,7 @@ from fricmb.integrate.collocation._layout import (
     W2,
     S,
 )
-from fricmb.integrate.collocation._weights import free_weights, port_weights
+from fricmb.integrate.collocation.moment_weights import free_weights, port_weights
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.layout import (
     B0,
     B1,
     C0,

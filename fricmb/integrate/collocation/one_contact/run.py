@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import fundamental, two_sum
-from fricmb.integrate.collocation._landing import arrive, first_stop, land, nearly_stopped
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.block_motion import fundamental, two_sum
+from fricmb.integrate.collocation.layout import (
     AT_BLOCKS,
     AT_LENGTH,
     AT_LOSS,
@@ -49,11 +48,18 @@ from fricmb.integrate.collocation._layout import (
     U,
     V,
 )  # fmt: skip
-from fricmb.integrate.collocation._nodes import RUNGS
-from fricmb.integrate.collocation._phase import accelerations, begin_phase, contact_acceleration, settle, to_dofs
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._slip import start_direction
-from fricmb.integrate.collocation._step import (
+from fricmb.integrate.collocation.nodes import RUNGS
+from fricmb.integrate.collocation.one_contact.landing import arrive, first_stop, land, nearly_stopped
+from fricmb.integrate.collocation.one_contact.phase import (
+    accelerations,
+    begin_phase,
+    contact_acceleration,
+    settle,
+    to_dofs,
+)
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.slip_directions import start_direction
+from fricmb.integrate.collocation.one_contact.step import (
     commit,
     end_state,
     keep_slip,
@@ -64,7 +70,7 @@ from fricmb.integrate.collocation._step import (
     transfer_weights,
     weigh,
 )  # fmt: skip
-from fricmb.integrate.collocation._stick import release_time
+from fricmb.integrate.collocation.one_contact.stick import release_time
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints

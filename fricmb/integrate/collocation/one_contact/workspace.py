@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation._layout import CHANGE
-from fricmb.integrate.collocation._nodes import RUNGS, TERMS, nodes
-from fricmb.integrate.collocation._prepare import Model, Rows, model, rows, with_rows
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._single import BLOCKS
+from fricmb.integrate.collocation.layout import CHANGE
+from fricmb.integrate.collocation.nodes import RUNGS, TERMS, nodes
+from fricmb.integrate.collocation.one_contact.prepare import Model, Rows, model, rows, with_rows
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Problem

@@ -24,7 +24,7 @@ Z_EXACT = {4: 3.0, 5: 4.0, 6: 4.0, 7: 8.0, 8: 8.0, 9: 8.0}
 
 
 class Nodes(NamedTuple):
-    """Tables for s nodes, laid out for kernels (see _layout).
+    """Tables for s nodes, laid out for kernels (see ``collocation/layout``).
 
     nd (4, s+1, s+1): the nodes, their weights, the last two Legendre coefficients of the polynomial through the nodes
     and the last of that through 0 and the nodes; monomial coefficients (rows) of the polynomial through 0 and the nodes

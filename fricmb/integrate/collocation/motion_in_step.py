@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from fricmb.integrate.collocation._fundamental import MOST, terms_under_polynomials, under_polynomials
-from fricmb.integrate.collocation._general_blocks import A0, K0, V0
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.block_motion import MOST, terms_under_polynomials, under_polynomials
+from fricmb.integrate.collocation.blocks_in_step import A0, K0, V0
+from fricmb.integrate.collocation.layout import (
     B0,
     B1,
     DAMP,
@@ -24,7 +24,7 @@ from fricmb.integrate.collocation._layout import (
     W2,
     WITH_START,
 )
-from fricmb.integrate.collocation._weights import radau_block
+from fricmb.integrate.collocation.moment_weights import radau_block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.step.exact_structure import INPUTS, IS_MODAL, STIFF_AT, Exact

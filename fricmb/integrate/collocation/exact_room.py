@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation._nodes import TERMS, Z_EXACT, nodes
-from fricmb.integrate.collocation._structure import Blocks, blocks
+from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Floats, Problem, Templates
 from fricmb.integrate.run.problem_cache import kept

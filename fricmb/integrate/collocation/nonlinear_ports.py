@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation._general_blocks import all_outputs
+from fricmb.integrate.collocation.blocks_in_step import all_outputs
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_rows

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from fricmb.integrate.collocation._fundamental import MOST, fundamental, two_sum, under_polynomials
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.block_motion import MOST, fundamental, two_sum, under_polynomials
+from fricmb.integrate.collocation.layout import (
     AT_BLOCKS,
     AT_LENGTH,
     AT_LOSS,
@@ -31,7 +31,7 @@ from fricmb.integrate.collocation._layout import (
     WITH_START,
     WT,
 )  # fmt: skip
-from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.problem import SLIP, Floats, Floats2, Floats3, Ints
 

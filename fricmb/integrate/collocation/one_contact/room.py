@@ -10,7 +10,7 @@ Ints2 = Ints
 
 
 class Run(NamedTuple):
-    """Arrays of a run of one contact; the places in them have names in _layout.
+    """Arrays of a run of one contact; the places in them have names in ``collocation/layout``.
 
     With n dofs, m rows, s nodes: ``blk`` (2, 2, n), ``mat`` (2, 8, n, n) blocks of the structure in slip (0) and
     stick (1); ``co``, ``ci`` (2, m, n), ``linked`` (m, m), ``row`` (4, m, n), ``con`` (2, m, m) the contact;

@@ -11,10 +11,9 @@ from typing import ClassVar
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate.collocation._general_prepare import free_blocks
-from fricmb.integrate.collocation._general_run import run_general
-from fricmb.integrate.collocation._nodes import Z_EXACT
-from fricmb.integrate.collocation._prepare import (
+from fricmb.integrate.collocation.exact_room import free_blocks
+from fricmb.integrate.collocation.nodes import Z_EXACT
+from fricmb.integrate.collocation.one_contact.prepare import (
     Rows,
     is_single,
     is_stiff,
@@ -23,8 +22,8 @@ from fricmb.integrate.collocation._prepare import (
     set_longest_step,
     with_rows,
 )  # fmt: skip
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._single import (
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.run import (
     DONE,
     ENDLESS,
     FULL,
@@ -34,9 +33,10 @@ from fricmb.integrate.collocation._single import (
     UNSETTLED,
     run_single,
 )  # fmt: skip
-from fricmb.integrate.collocation._structure import NoBlocks
-from fricmb.integrate.collocation._trajectory import SingleRun
-from fricmb.integrate.collocation._workspace import borrowed, goes_back, lengthened, may_grow, within
+from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
+from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_back, lengthened, may_grow, within
+from fricmb.integrate.collocation.run import run_general
+from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start

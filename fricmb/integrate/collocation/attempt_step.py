@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation._general_blocks import (
+from fricmb.integrate.collocation.blocks_in_step import (
     end_blocks,
     free_outputs,
     load_at_start,
@@ -12,9 +12,9 @@ from fricmb.integrate.collocation._general_blocks import (
     slot_of,
     start_blocks,
 )
-from fricmb.integrate.collocation._general_ports import exact_ports
-from fricmb.integrate.collocation._layout import MONOMIAL, NODE, TABLEAU, VECTORS
 from fricmb.integrate.collocation.held_rows import give_held_forces, hold_rows, pattern_of, place_of
+from fricmb.integrate.collocation.layout import MONOMIAL, NODE, TABLEAU, VECTORS
+from fricmb.integrate.collocation.nonlinear_ports import exact_ports
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State

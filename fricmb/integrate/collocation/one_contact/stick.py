@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import fundamental
-from fricmb.integrate.collocation._layout import DAMP, FREE, LINES, MU_S, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
-from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.collocation.block_motion import fundamental
+from fricmb.integrate.collocation.layout import DAMP, FREE, LINES, MU_S, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
+from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.run.stop import stopped
 

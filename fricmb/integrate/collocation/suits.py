@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation._general_prepare import free_blocks
+from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant

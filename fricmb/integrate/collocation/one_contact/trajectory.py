@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation._ledger import from_row_starts, has_ledger, powers
-from fricmb.integrate.collocation._prepare import Rows, linear_part, model, run_of, with_rows
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._sample import locate, sample_rows
+from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, has_ledger, powers
+from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of, with_rows
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.sample import locate, sample_rows
 from fricmb.integrate.problem import Floats, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.layout import (
     COUPLED,
     DIRECTION,
     FREE,
@@ -18,7 +18,7 @@ from fricmb.integrate.collocation._layout import (
     D,
     N,
 )  # fmt: skip
-from fricmb.integrate.collocation._run import Run
+from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
 
 

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.collocation._general_prepare import free_blocks
-from fricmb.integrate.collocation._nodes import RUNGS, Z_EXACT, nodes
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._signals import linear_signals
-from fricmb.integrate.collocation._structure import blocks
+from fricmb.integrate.collocation.exact_room import free_blocks
+from fricmb.integrate.collocation.nodes import RUNGS, Z_EXACT, nodes
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.signals import linear_signals
+from fricmb.integrate.collocation.structure_blocks import blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
@@ -42,7 +42,7 @@ def linear_part(problem: Problem) -> tuple[Floats, Floats]:
 
 
 class Model(NamedTuple):
-    """Constants of a one-contact problem as kernels take them (see _layout)."""
+    """Constants of a one-contact problem as kernels take them (see :mod:`~fricmb.integrate.collocation.layout`)."""
 
     blk: Floats
     mat: Floats

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import two_sum
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.block_motion import two_sum
+from fricmb.integrate.collocation.layout import (
     BELT,
     D_INV,
     DAMP,
@@ -51,8 +51,8 @@ from fricmb.integrate.collocation._layout import (
     U,
     V,
 )  # fmt: skip
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._slip import start_direction
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.slip_directions import start_direction
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, STICK, Ints

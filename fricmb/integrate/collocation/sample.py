@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation._general_blocks import load_at_start, start_blocks
-from fricmb.integrate.collocation._general_dense import gains_at, input_series
-from fricmb.integrate.collocation._layout import MONOMIAL, WITH_START
+from fricmb.integrate.collocation.blocks_in_step import load_at_start, start_blocks
+from fricmb.integrate.collocation.layout import MONOMIAL, WITH_START
+from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, set_state, set_time

@@ -1,4 +1,4 @@
-"""Names of the places in the arrays of a run (see _run)."""
+"""Names of the places in the arrays of a run (see :class:`Run`)."""
 
 # blk[z, ., j]: v' = -W2 u - DAMP v
 W2, DAMP = 0, 1

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation._fundamental import two_sum
-from fricmb.integrate.collocation._layout import (
+from fricmb.integrate.collocation.block_motion import two_sum
+from fricmb.integrate.collocation.layout import (
     AT_BLOCKS,
     AT_LENGTH,
     AT_LOSS,
@@ -61,11 +61,11 @@ from fricmb.integrate.collocation._layout import (
     U,
     V,
 )  # fmt: skip
-from fricmb.integrate.collocation._nodes import RUNGS
-from fricmb.integrate.collocation._phase import contact_acceleration
-from fricmb.integrate.collocation._run import Run
-from fricmb.integrate.collocation._slip import relative_velocity, slip_directions
-from fricmb.integrate.collocation._weights import free_weights, port_weights
+from fricmb.integrate.collocation.moment_weights import free_weights, port_weights
+from fricmb.integrate.collocation.nodes import RUNGS
+from fricmb.integrate.collocation.one_contact.phase import contact_acceleration
+from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.slip_directions import relative_velocity, slip_directions
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Ints

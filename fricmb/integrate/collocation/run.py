@@ -7,11 +7,11 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from fricmb.integrate.collocation._general_attempt import exact_attempt
-from fricmb.integrate.collocation._general_prepare import exact_of
-from fricmb.integrate.collocation._general_sample import sample_exact
-from fricmb.integrate.collocation._general_step import exact_error, exact_finish, exact_record
+from fricmb.integrate.collocation.attempt_step import exact_attempt
+from fricmb.integrate.collocation.exact_room import exact_of
+from fricmb.integrate.collocation.finish_step import exact_error, exact_finish, exact_record
 from fricmb.integrate.collocation.root_along_step import exact_root
+from fricmb.integrate.collocation.sample import sample_exact
 from fricmb.integrate.compile.block_places import CORE, PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room

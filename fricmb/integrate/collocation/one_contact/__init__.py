@@ -1,0 +1,1 @@
+"""One contact under constant friction and linear loads: kernels of its own."""
