@@ -11,7 +11,7 @@ import numpy as np
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._mechanics import SceneMechanics
-from fricmb._simulate._members import Member, resting
+from fricmb._simulate._members import Member
 from fricmb._simulate._method import find_integrator
 from fricmb.errors import SceneError
 from fricmb.integrate import Integrator, Problem, Start, Tolerance, Trajectory
@@ -130,7 +130,7 @@ def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span, 
 def _tasks(mechanics: SceneMechanics, method: Any, start: Start, span: Span, rtol: float) -> tuple[Task, ...]:
     """A task for each island that does not rest; none where an island is refused, or all rest."""
     tasks = []
-    for index in np.flatnonzero(~resting(mechanics.members, start)).tolist():
+    for index in np.flatnonzero(~mechanics.rest.members(start)).tolist():
         member = mechanics.members[index]
         problem = member.system.problem_for(span.t_start, span.t_end)
         try:

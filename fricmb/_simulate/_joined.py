@@ -56,10 +56,10 @@ class JoinedRun(Trajectory):
         self._shape = len(names.dofs), len(names.contacts), int(names.row[-1]), int(names.z_start[-1])
         self._pressed = _resting_forces(members, {i for i, _ in runs}, len(names.contacts))
         self._take(members, idle)
-        stopped = [(float(run.t[-1]), i, run.failure) for i, run in runs if run.failure is not None]
+        stopped = [(run.ends[1], i, run.failure) for i, run in runs if run.failure is not None]
         self.moving = np.concatenate([members[i].place.dofs for i, _ in runs])
         self.failure = None
-        t_end = max(float(run.t[-1]) for _, run in runs)
+        t_end = max(run.ends[1] for _, run in runs)
         if stopped:
             t_end, i, reason = min(stopped)
             self.failure = f"{members[i]}: {reason}"

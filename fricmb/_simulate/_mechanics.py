@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
-from fricmb._simulate._members import Idle, Member, contact_names, idle_of, members_of, row_scale
+from fricmb._simulate._members import Idle, Member, Rest, contact_names, idle_of, members_of, row_scale
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
@@ -49,6 +49,11 @@ class SceneMechanics:
     def members(self) -> tuple[Member, ...]:
         """What is run on its own."""
         return members_of(self.placed, self.plan, self.names, self.together)
+
+    @cached_property
+    def rest(self) -> Rest:
+        """What members rest by."""
+        return Rest.of(self.members)
 
     @property
     def whole(self) -> Member | None:

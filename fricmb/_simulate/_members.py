@@ -63,7 +63,7 @@ class Member:
         """Its first degree of freedom."""
         return self.names.dof_index[self.selection.dofs[0]]
 
-    @property
+    @cached_property
     def contacts(self) -> list[str]:
         """Its contacts."""
         return [name for name in self.selection.parts if name in self.names.contact_index]
@@ -82,18 +82,33 @@ class Member:
         return "the scene" if self.island is None else str(self.island)
 
 
-def resting(members: Sequence[Member], start: Start) -> Flags:
-    """Which members provably stay where they are from a start of the whole (n_members,)."""
-    islands = [member.island for member in members]
-    inert = np.array([island is not None and island.inert for island in islands], dtype=np.bool_)
-    held = np.array([island is None or island.held for island in islands], dtype=np.bool_)
-    owner = np.zeros(start.q.size, dtype=np.int64)
-    index = members[0].names.dof_index
-    dofs = [index[name] for member in members for name in member.selection.dofs]
-    owner[dofs] = np.repeat(np.arange(len(members)), [len(member.selection.dofs) for member in members])
-    away = (start.v != 0.0) | (held[owner] & (start.q != 0.0))
-    still: Flags = np.bincount(owner, weights=away, minlength=len(members)) == 0
-    return inert & still
+@dataclass(frozen=True)
+class Rest:
+    """What members rest by: whether each does without load, and has to start from 0; which one a dof belongs to."""
+
+    inert: Flags
+    held: Flags
+    owner: Ints
+
+    @classmethod
+    def of(cls, members: Sequence[Member]) -> Rest:
+        """From the islands of all members."""
+        islands = [member.island for member in members]
+        index = members[0].names.dof_index
+        owner = np.zeros(len(members[0].names.dofs), dtype=np.int64)
+        dofs = [index[name] for member in members for name in member.selection.dofs]
+        owner[dofs] = np.repeat(np.arange(len(members)), [len(member.selection.dofs) for member in members])
+        return cls(
+            inert=np.array([island is not None and island.inert for island in islands], dtype=np.bool_),
+            held=np.array([island is None or island.held for island in islands], dtype=np.bool_),
+            owner=owner,
+        )
+
+    def members(self, start: Start) -> Flags:
+        """Which members provably stay where they are from a start of the whole (n_members,)."""
+        away = (start.v != 0.0) | (self.held[self.owner] & (start.q != 0.0))
+        still: Flags = np.bincount(self.owner, weights=away, minlength=len(self.inert)) == 0
+        return self.inert & still
 
 
 def members_of(scene: Scene, plan: Plan, names: Names, together: bool) -> tuple[Member, ...]:
