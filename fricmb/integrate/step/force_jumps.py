@@ -87,7 +87,8 @@ def jump_error(
         if not crosses:
             continue
         x = np.zeros((3, n_x))
-        x[:2] = ends[:, first_x : first_x + n_x]
+        for a in range(n_x):
+            x[0, a], x[1, a] = ends[0, first_x + a], ends[1, first_x + a]
         n_f = spread.f_start[k + 1] - spread.f_start[k]
         f = np.zeros((3, n_f * (1 + n_x)))
         put_force(packed, s, k, x[0], f[0])
