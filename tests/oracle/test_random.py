@@ -137,3 +137,13 @@ def test_what_a_run_compiles_is_not_counted_against_its_limit():
     took = time.process_time() - begin
     assert took > 0.05
     assert worker.spent() - before < 0.5 * took + 0.02  # that clock has steps of 0.01
+
+
+def test_friction_without_a_load_is_not_one_that_drives():
+    """A sleeve along whose line all forces lie carries nothing, and its friction is round-off.
+
+    The motion is compared alone: how often slip without a load turns round is nothing that a run looks for.
+    """
+    verdict = judge(truth(make({}, generate("tree", 61007))), "auto")
+    assert verdict.kind != "stopped"
+    assert verdict.ratio < 100.0
