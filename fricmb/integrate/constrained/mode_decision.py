@@ -6,6 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State, react
 from fricmb.integrate.constrained.forces import is_open
+from fricmb.integrate.constrained.near_rest import SLIGHT
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, aim, lack, lightness, plane, slip_speed, spare
 from fricmb.integrate.model.law_values import magnitude, stick_limit
@@ -49,6 +50,9 @@ def release(mech: Mech, k: Moving, y: State, c: int) -> None:
     y.mode[c] = SETTING_OUT
     force = magnitude(row, c, y.F)
     k.held[c] = force
+    k.slight[c] = 0.0
+    for a in range(row[c + 1] - row[c]):
+        k.slight[c] += SLIGHT * force * lightness(mech, k, c, a, y.lam, mech.mass, mech.address)
     for a in range(row[c], row[c + 1]):
         y.n[a] = -y.F[a] / force if force > 0.0 else (1.0 if a == row[c] else 0.0)
 

@@ -12,6 +12,9 @@ from fricmb.integrate.constrained.turning import NEAR, Turns, across, by_turn, f
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import SLIP
 
+#: Slip velocity that is nothing, beside what a step brings.
+SLIGHT = 1e-7
+
 
 @kernel
 def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
@@ -30,6 +33,7 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
         if y.N[c] <= 0.0 or force <= 0.0 or magnitude(row, c, y.g) > NEAR * h * change:
             continue
         k.form[c] = 1
+        k.slight[c] = SLIGHT * h * change
         m = largest_part(row, c, y.n) - first
         for line in range(d):
             if line != m:

@@ -74,7 +74,11 @@ def add_found(
     mech: Mech, k: Moving, c: int, n: Floats, F: Floats, lam: Floats, load: float, x: Floats, L: Layers, row: int,
     full: bool,
 ) -> None:  # fmt: skip
-    """Rows of a port whose direction of slip follows from its force; x: slip velocity, or its derivative."""
+    """Rows of a port whose direction of slip follows from its force; x: slip velocity, or its derivative.
+
+    A direction that joints block has no slip that tells its force but x itself: where that is still 0 a trifle stands
+    for it in the matrix, so that forces along it, which do nothing, stay as they are.
+    """
     port = mech.port
     first, d = port.row[c], port.row[c + 1] - port.row[c]
     size = magnitude(port.row, c, F)
@@ -84,6 +88,7 @@ def add_found(
     mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, along if full else 0.0, load)
     m = largest_part(port.row, c, n) - first
     n_m = -F[first + m] / size
+    apart = max(along, k.slight[c])
     for a in range(d):
         n_a = -F[first + a] / size
         add(mech.order, L.A1, row + m, row + a, -n_a)
@@ -93,8 +98,8 @@ def add_found(
             continue
         add_slip(mech, k, c, a, lam, L, row + a, -n_m, full, mech.address)
         add_slip(mech, k, c, m, lam, L, row + a, n_a, full, mech.address)
-        add(mech.order, L.A1, row + a, row + a, -n_m * along / size)
-        add(mech.order, L.A1, row + a, row + m, n_a * along / size)
+        add(mech.order, L.A1, row + a, row + a, -n_m * apart / size)
+        add(mech.order, L.A1, row + a, row + m, n_a * apart / size)
     slope = 1.0 if full else eased_slope(k, c, mu * load)
     add_load(mech, k, c, lam, L, row + m, -slope * (mu + by_load * load), full, mech.address)
 

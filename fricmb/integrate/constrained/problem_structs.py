@@ -221,7 +221,8 @@ class Moving(NamedTuple):
     ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
     their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``friction_rows``);
     ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
-    ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached.
+    ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached;
+    ``slight`` (n_c,) slip velocity that is nothing in the step, by which directions that joints block are told apart.
     """
 
     s: Scratch
@@ -239,6 +240,7 @@ class Moving(NamedTuple):
     held: Floats
     part: Floats
     borne: Floats
+    slight: Floats
 
 
 class Lengths(NamedTuple):
@@ -291,6 +293,6 @@ def moving_of(problem: Problem) -> Moving:
         scratch, np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
-        np.zeros(problem.n_c), np.ones(1), np.zeros(2),
+        np.zeros(problem.n_c), np.ones(1), np.zeros(2), np.zeros(problem.n_c),
     )  # fmt: skip
 
