@@ -146,7 +146,7 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: M
     limit = np.where(varies, max(POWER, rtol) * np.abs(given).max(axis=1) + SPEED * speed * force, np.inf)[:, None]
     if not (given > limit).any():
         return
-    # where a joint carries nothing at all its friction is round-off, and all that it does nothing beside the motion
+    # where a joint carries nothing its friction is round-off: it drives by less than SPEED of the kinetic energy
     limit = limit + SPEED * mechanics.kinetic(samples).max() / max(float(samples.t[-1] - samples.t[0]), 1e-290)
     wrong = given > limit
     if not wrong.any():

@@ -31,11 +31,11 @@ BEARABLE, WIDE = 1024, 100
 LOOSE = 1e-4
 
 
-#: Contacts from which on Taylor steps are the fastest where contacts are coupled or friction depends on slip speed, and
-#: dofs to a contact from which on exact structure is: on two to fifty contacts under Stribeck laws, and on stacks, bdf
-#: took 1.3 to 2 times as long with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty;
+#: Degrees of freedom to a contact from which on exact structure is faster than Taylor steps where contacts are coupled
+#: or friction depends on slip speed: on two to fifty contacts under Stribeck laws, and on stacks, bdf took 1.3 to 2
+#: times as long as Taylor steps with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty;
 #: collocation 1.3 to 2.2 times with two and three.
-SEVERAL, DEEP = 2, 5
+DEEP = 5
 #: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
 FEW = 4
 #: Steepness of laws (see ``steepness``) beyond which Taylor steps have been seen to lose accuracy: up to 20 and 50
@@ -99,7 +99,7 @@ def _many_contacts(problem: Problem) -> tuple[Integrator, str] | None:
     if not is_coupled(problem):
         return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
     growth, narrow = steepness(problem, fastest(problem))
-    if problem.n_c >= SEVERAL and problem.n < DEEP * problem.n_c and not (growth > STEEP and narrow > NARROW):
+    if problem.n < DEEP * problem.n_c and not (growth > STEEP and narrow > NARROW):
         return many, "contacts with friction of slip speed, or coupled by bodies: Taylor steps, local corrections"
     return None
 

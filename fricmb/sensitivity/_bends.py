@@ -16,8 +16,8 @@ from fricmb.sensitivity._motions import Given
 from fricmb.sensitivity._phases import BEFORE, Phases
 
 #: Parts of a stretch in which passages are looked for; halvings of a part that has one, down to neighbouring numbers;
-#: the share of the largest value of a condition that counts as nothing.
-_PARTS, _HALVINGS, _ZERO = 4, 60, 1e-9
+#: the share of the largest value of a condition that counts as nothing, and values that do not count for it.
+_PARTS, _HALVINGS, _ZERO, _ENDLESS = 4, 60, 1e-9, 1e100
 
 #: Conditions at times (n_t,): values with slopes, always in the same order.
 Conditions = Callable[[Floats], list[Dual]]
@@ -25,7 +25,10 @@ Conditions = Callable[[Floats], list[Dual]]
 
 @dataclass(frozen=True, kw_only=True)
 class Bends:
-    """Times (n,) within the stretches of a run at which its formulas switch, and by which of the conditions (n,)."""
+    """Times (n,) at which the formulas of a run switch, and by which of the conditions (n,).
+
+    Those that lie at the end of a stretch, to round-off, stand there.
+    """
 
     t: Floats
     which: Ints
@@ -46,8 +49,9 @@ def bends_of(e: Equations, phases: Phases, sample: Any) -> Bends:
     if not any(knots.values()) and not any(function.switches() for function in _functions(e)):
         return nothing
     t, which = _passages(conditions, phases.t)
-    apart = _apart(t, phases.t)
-    return Bends(t=t[apart], which=which[apart], conditions=conditions)
+    t = _snapped(t, phases.t)
+    kept = np.flatnonzero((np.diff(t, prepend=-np.inf) > _little(t)) & (t > phases.t[0]) & (t < phases.t[-1]))
+    return Bends(t=t[kept], which=which[kept], conditions=conditions)
 
 
 def _length(g: list[Dual]) -> Any:
@@ -57,7 +61,7 @@ def _length(g: list[Dual]) -> Any:
 
 def _functions(e: Equations) -> Iterator[Function]:
     """What parts state that does not belong to the linear ones."""
-    for part in (*e.linear.rest, *e.contacts.values()):
+    for part in (*e.linear.rest, *e.contacts.values(), *e.joining()):
         for held in vars(part).values():
             if isinstance(held, Function):
                 yield held
@@ -94,7 +98,8 @@ def _brackets(t: Floats, values: Floats) -> tuple[Floats, Floats, Ints]:
     """Neighbouring times at which values have opposite signs, and numbers of the conditions."""
     low, high, which = [np.zeros(0)], [np.zeros(0)], [np.zeros(0, dtype=np.int64)]
     for i, own in enumerate(values):
-        seen = np.flatnonzero(np.abs(own) > _ZERO * np.abs(own).max(initial=0.0))
+        size = np.abs(own).max(where=np.abs(own) < _ENDLESS, initial=0.0)
+        seen = np.flatnonzero(np.abs(own) > _ZERO * size)
         changes = np.flatnonzero(np.diff(own[seen] > 0.0))
         low.append(t[seen[changes]])
         high.append(t[seen[changes + 1]])
@@ -102,13 +107,13 @@ def _brackets(t: Floats, values: Floats) -> tuple[Floats, Floats, Ints]:
     return np.concatenate(low), np.concatenate(high), np.concatenate(which)
 
 
-def _apart(t: Floats, ends: Floats) -> Ints:
-    """Numbers of those that are not at an end of a stretch, nor behind another at the same time.
+def _little(t: Floats) -> Floats:
+    """Times that are nothing apart: slopes are evaluated ``BEFORE`` the end of a stretch."""
+    return 0.5 * BEFORE * np.maximum(1.0, np.abs(t))
 
-    What is left out is so near before an end that slopes, evaluated ``BEFORE`` it, do not see it.
-    """
-    k = np.clip(np.searchsorted(ends, t, side="right") - 1, 0, ends.size - 2)
-    little = 0.5 * BEFORE * np.maximum(1.0, np.abs(t))
-    inside = (t - ends[k] > little) & (ends[k + 1] - t > little)
-    found: Ints = np.flatnonzero(inside & (np.diff(t, prepend=-np.inf) > little))
-    return found
+
+def _snapped(t: Floats, ends: Floats) -> Floats:
+    """Times in order, at the ends of stretches where they are that near to them."""
+    k = np.clip(np.searchsorted(ends, t), 1, ends.size - 1)
+    nearest = np.where(t - ends[k - 1] < ends[k] - t, ends[k - 1], ends[k])
+    return np.asarray(np.where(np.abs(t - nearest) <= _little(t), nearest, t))

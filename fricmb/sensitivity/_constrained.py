@@ -47,6 +47,10 @@ class Constrained(Equations):
     def _parts(self, scene: Any) -> Sequence[Any]:
         return with_inner(scene.parts)
 
+    def joining(self) -> Sequence[Any]:
+        """What joints state."""
+        return self.joints
+
     def _check_body(self, body: Any) -> None:
         if isinstance(body, SpaceBody):
             fits = ("velocity.", "mass", "inertia")

@@ -14,6 +14,8 @@ from fricmb.sensitivity._parts import refuse
 _MOST = 50
 #: Accelerations below this share of what friction makes are none.
 _NOTHING = 1e-12
+#: Cosine of the angle up to which a direction is next to another one.
+_NEAR = 0.9
 
 
 def field_at_rest(
@@ -74,8 +76,10 @@ def _direction_near(D: Floats, a: Floats, beside: Floats) -> Floats:
     rho = float(n @ (a - D @ n))
     for _ in range(_MOST):
         matrix = np.block([[D + rho * np.eye(len(n)), n[:, None]], [n[None], np.zeros((1, 1))]])
-        step = np.linalg.solve(matrix, np.append(a - (D @ n + rho * n), 0.5 * (1.0 - n @ n)))
+        step = np.linalg.lstsq(matrix, np.append(a - (D @ n + rho * n), 0.5 * (1.0 - n @ n)))[0]
         n, rho = n + step[:-1], rho + float(step[-1])
         if np.abs(step[:-1]).max() <= 1e-15:
             break
-    return np.asarray(n / np.linalg.norm(n))
+    unit = beside / np.linalg.norm(beside)
+    # far from there it is another solution: then what is near by is as good as is known
+    return np.asarray(n / np.linalg.norm(n) if n @ unit > _NEAR * np.linalg.norm(n) else unit)

@@ -92,6 +92,10 @@ class Equations:
         """What acts."""
         return tuple(scene.parts)
 
+    def joining(self) -> Sequence[Any]:
+        """What joints state; there are none here."""
+        return ()
+
     def _check_body(self, body: Any) -> None:
         """Refuse bodies that are not covered."""
         if not isinstance(body, Body | ModalBody):

@@ -43,7 +43,8 @@ def near_misses(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int
     for k in wide:
         r, slips = np.linalg.norm(g[e.rows(k)], axis=0), phases.mode[k] == SLIP
         inner, most = r[1:-1], max(float(r.max()), 1e-300)
-        lowest = (inner <= r[:-2]) & (inner < r[2:]) & slips[:-1] & slips[1:]
+        passed = np.isin(np.arange(1, r.size - 1), [phase for own, phase in passes(e, phases, sample) if own == k])
+        lowest = ~passed & (inner <= r[:-2]) & (inner < r[2:]) & slips[:-1] & slips[1:]
         for j in np.flatnonzero(lowest & (inner > 0.0) & (inner < _CLOSE * most)):
             yield k, float(phases.t[j + 1]), float(inner[j]) / most
 

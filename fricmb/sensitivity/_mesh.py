@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._landings import at_rest, left_out
@@ -21,7 +21,7 @@ _ROUNDS, _PARTS, _HELD = 16, 8, 1_000_000
 #: A step is divided on while its error falls by this factor each time; one that is this much too long or less is
 #: divided without being looked at again.
 _FALLS, _NEARLY = 0.5, 2.0
-#: Logarithm of the volume of states that a coarse step may lose; where in a step it is said to begin.
+#: Logarithm of the volume of states that a coarse step may lose; where a step, of length 1, is looked at for its begin.
 _LOST, _BEGIN = 0.5, 1e-7
 #: Slip speeds that change by more in a step may be near a pole of friction.
 _DOUBLES = 2.0
@@ -100,7 +100,7 @@ class Stepper:
             off[first] = np.maximum(off[first], self._layers(t[first], h[first], phase[first], scale))
         return off, np.concatenate(blind)
 
-    def steep(self, t: Floats, h: Floats) -> Any:
+    def steep(self, t: Floats, h: Floats, phase: Ints) -> Any:
         """Steps (n_t,) in which a slip speed that friction depends on more than doubles or halves.
 
         Friction may have a pole at a slip speed of little less than 0.
@@ -110,7 +110,7 @@ class Stepper:
             g = self.sample(np.concatenate([t, t + h])).g
             for k in self.varying:
                 r = np.linalg.norm(g[self.equations.rows(k)], axis=0).reshape(2, -1)
-                found |= r.max(axis=0) > _DOUBLES * r.min(axis=0)
+                found |= (self.phases.mode[k, phase] == SLIP) & (r.max(axis=0) > _DOUBLES * r.min(axis=0))
         return found
 
     def _layers(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> Floats:
@@ -163,7 +163,7 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
         if not t.size:
             break
         off, blind = stepper.misses(t, h, phase, scale)
-        steep = stepper.steep(t, h)
+        steep = stepper.steep(t, h, phase)
         limit = np.where(steep, near_pole, entire)
         # what does not fall when steps are divided is round-off of the dense output, which no mesh removes
         bad = (((off > limit) & (off < _FALLS * before)) | blind) & (number < _ROUNDS - 1)
@@ -177,7 +177,7 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
         kept.append((t[sure], h[sure], phase[sure]))
         t, h, phase, before = t[~sure], h[~sure], phase[~sure], before[~sure]
     t, h, phase = (np.concatenate([part[i] for part in kept]) for i in range(3))
-    order = np.argsort(t, kind="stable")
+    order = np.lexsort((t, phase))
     t, h, phase = t[order], h[order], phase[order]
     return Mesh(t=t, h=h, phase=phase, left_out=rest)
 

@@ -14,7 +14,7 @@ from fricmb.sensitivity._bends import bends_of
 from fricmb.sensitivity._collocation import radau
 from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._happenings import happenings
+from fricmb.sensitivity._happenings import PASS, happenings
 from fricmb.sensitivity._jumps import jumps
 from fricmb.sensitivity._landings import extrapolated, near_misses, passes, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
@@ -67,8 +67,10 @@ class Tangent:
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)
-        passed = passes(e, self.phases, sample)
+        passed = list(passes(e, self.phases, sample))
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
+        taken = {(one.contacts[0], one.phase) for one in happened if one.kinds == [PASS]}
+        self._missed = [one for one in passed if one not in taken]
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
         first = e.field(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1]).found
@@ -85,6 +87,17 @@ class Tangent:
     def _unsure(self, sample: Any) -> Iterator[str]:
         """Notes of what the errors of the run leave open."""
         e, rtol = self.equations, self.rtol
+        for jump in self.jumps.values():
+            if not jump.sound:
+                yield (
+                    f"at t = {jump.t:.10g} rates of states jump where a formula hardly switches, or by a reaction:"
+                    " derivatives of what follows are not sound"
+                )
+        for k, phase in self._missed:
+            yield (
+                f"at t = {self.phases.t[phase]:.10g} slip of contact {e.names.contacts[k]!r} passes rest while"
+                " something else happens: derivatives of what follows are not sound"
+            )
         for k, t, share in near_misses(e, self.phases, sample):
             yield (
                 f"at t = {t:.10g} slip of contact {e.names.contacts[k]!r} passes rest at {share:.0e} of its largest"

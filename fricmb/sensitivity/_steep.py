@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fricmb.integrate.problem import SLIP
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._found import whole
@@ -22,7 +23,7 @@ def steep(e: Equations, stepper: Stepper, mesh: Mesh) -> Iterator[tuple[int, flo
     tolerance of the largest, and so late or early by that over r', makes the map of states off by d times that time.
     """
     varying = [k for k in stepper.varying if e.contacts[k].d == 1]
-    at = np.flatnonzero(stepper.steep(mesh.t, mesh.h)) if varying else np.zeros(0, dtype=np.int64)
+    at = np.flatnonzero(stepper.steep(mesh.t, mesh.h, mesh.phase)) if varying else np.zeros(0, dtype=np.int64)
     if not at.size:
         return
     edges, phase = np.concatenate([mesh.t[at], mesh.t[at] + mesh.h[at]]), np.tile(mesh.phase[at], 2)
@@ -34,6 +35,7 @@ def steep(e: Equations, stepper: Stepper, mesh: Mesh) -> Iterator[tuple[int, flo
         N = Dual(value=np.broadcast_to(found.N[k].value, r.shape))
         fall = e.contacts[k].coefficient_slope(r, N) * N.value * float(W @ e.inverse @ W)
         changes, passed = (np.abs(np.diff(x.reshape(2, -1), axis=0))[0] for x in (fall, r))
-        off = float(np.sum(mesh.h[at] * changes * largest[e.rows(k)].max() / np.maximum(passed, 1e-300)))
+        slips = phases.mode[k, mesh.phase[at]] == SLIP
+        off = float(np.sum(slips * mesh.h[at] * changes * largest[e.rows(k)].max() / np.maximum(passed, 1e-300)))
         if off > _SAID:
             yield k, off

@@ -131,16 +131,19 @@ def test_many_feet_come_to_rest_beside_others_that_do_not(rtol):
     assert beside.stats.n_rejected < 2 * alone.stats.n_rejected
 
 
-def test_a_direction_that_a_guide_blocks():
+@pytest.mark.parametrize("along", ["x", "y"])
+def test_a_direction_that_a_guide_blocks(along):
     """A body on a guide slips along it alone, though its contact has two directions.
 
     Closed form: it breaks away at t = 15 from x = 1.5, x = 1 + 0.5 cos(s) + 0.1 sin(s) for s = t - 15, and sticks again
     where its velocity is the belt's, tan(s/2) = -5.
     """
-    belt = fm.Driven("belt", velocity={"x": 0.1})
-    body = fm.RigidBody("body", mass=1.0, inertia=1.0, velocity=(0.1, 0.0))
+    belt = fm.Driven("belt", velocity={along: 0.1})
+    angle = 0.0 if along == "x" else np.pi / 2.0
+    body = fm.RigidBody("body", mass=1.0, inertia=1.0, angle=angle, velocity=(0.1, 0.0) if along == "x" else (0.0, 0.1))
     rub = fm.Contact("rub", body, belt, law=fm.laws.Coulomb(mu_s=1.5, mu_k=1.0), normal_force=1.0)
-    parts = [belt, body, fm.Prismatic("guide", body), fm.Spring("k", body, axis="x", stiffness=1.0), rub]
+    guide = fm.Prismatic("guide", body, angle=angle)
+    parts = [belt, body, guide, fm.Spring("k", body, axis=along, stiffness=1.0), rub]
     for method in ("radau", "bdf"):
         sol = fm.simulate(fm.Scene("guided", parts), t_end=20.0, rtol=1e-8, method=method)
         assert [event.kind for event in sol.events] == ["slip", "stick"]

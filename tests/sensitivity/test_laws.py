@@ -1,5 +1,7 @@
 """Derivatives under every law of the catalogue, beside differences of runs."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -47,7 +49,9 @@ def test_law(name, situation):
         error = np.maximum(np.abs(derived(sol, parameter) - value) - 3.0 * unsure, 0.0).max()
         off[parameter] = error / max(np.abs(value).max(), 1e-2)
     assert off
-    assert max(off.values()) < (1e-2 if sol.stats.notes else 1e3 * _RTOL), (off, sol.stats.notes)
+    # notes say by how much of their size derivatives may be off, or to how much they are known
+    said = [float(x) for note in sol.stats.notes for x in re.findall(r"(?:by|to) (\d\S+) of their size", note)]
+    assert max(off.values()) < max(said, default=1e3 * _RTOL), (off, sol.stats.notes)
 
 
 @pytest.mark.parametrize("name", ["Ambrosio", "Dahl", "LinearRegularised", "RateAndState", "Tabulated", "Threlfall"])

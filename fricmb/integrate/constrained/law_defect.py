@@ -13,6 +13,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.slip_rows import lightness
@@ -22,22 +23,25 @@ from fricmb.integrate.step.law_defect import ROUND_OFF, between
 
 
 @kernel
-def ask(mech: Mech, k: Moving, y: State, st: Stages, c: int, line: Floats) -> None:
-    """Ask law c where a line of weights tells the step's polynomials: arguments in ``s.x``, answers in ``s.out``."""
+def ask(mech: Mech, k: Moving, y: State, st: Stages, p: int, line: Floats) -> None:
+    """Ask the law of port p at a point of the step's polynomials: arguments in ``s.x``, answers in ``s.out``.
+
+    ``line``: weights of the values at the start and the stages.
+    """
     port, s = mech.port, k.s
-    row0, z0 = port.row[c], port.z_start[c]
-    d, nz = port.row[c + 1] - row0, port.z_start[c + 1] - z0
+    row0, z0 = port.row[p], port.z_start[p]
+    d, nz = port.row[p + 1] - row0, port.z_start[p + 1] - z0
     for a in range(d):
         s.x[a] = between(line, y.g[row0 + a], st.g, row0 + a)
-    load = between(line, y.N[c], st.N, c)
-    s.x[d] = load if port.joint[c] >= 0 else max(load, 0.0)
+    load = between(line, y.N[p], st.N, p)
+    s.x[d] = load if port.joint[p] >= 0 else max(load, 0.0)
     for a in range(nz):
         s.x[d + 1 + a] = between(line, y.z[z0 + a], st.Z, z0 + a)
-    call(port.laws.address[c], s.x, 0, port.laws.p, port.laws.p_start[c], s.out, 0)
+    call(port.laws.address[p], s.x, 0, port.laws.p, port.laws.p_start[p], s.out, 0)
 
 
 @kernel
-def largest(start: float, values: Floats2, column: int) -> float:
+def largest_in_step(start: float, values: Floats2, column: int) -> float:
     """The largest magnitude of a quantity within a step."""
     size = abs(start)
     for i in range(values.shape[0]):
@@ -46,17 +50,17 @@ def largest(start: float, values: Floats2, column: int) -> float:
 
 
 @kernel
-def put_rates(mech: Mech, k: Moving, y: State, st: Stages, c: int, rates: Floats2, h: float) -> None:
-    """Rates of the states of law c at the start of the step and at its stages, into ``rates`` (s+1, n_z)."""
+def put_rates(mech: Mech, k: Moving, y: State, st: Stages, p: int, rates: Floats2, h: float) -> None:
+    """Rates of the states of port p at the start of the step and at its stages, into ``rates`` (s+1, n_z)."""
     port, s = mech.port, k.s
-    row0, z0 = port.row[c], port.z_start[c]
-    d, nz = port.row[c + 1] - row0, port.z_start[c + 1] - z0
+    row0, z0 = port.row[p], port.z_start[p]
+    d, nz = port.row[p + 1] - row0, port.z_start[p + 1] - z0
     for a in range(d):
         s.x[a] = y.g[row0 + a]
-    s.x[d] = y.N[c] if port.joint[c] >= 0 else max(y.N[c], 0.0)
+    s.x[d] = y.N[p] if port.joint[p] >= 0 else max(y.N[p], 0.0)
     for a in range(nz):
         s.x[d + 1 + a] = y.z[z0 + a]
-    call(port.laws.address[c], s.x, 0, port.laws.p, port.laws.p_start[c], s.out, 0)
+    call(port.laws.address[p], s.x, 0, port.laws.p, port.laws.p_start[p], s.out, 0)
     for a in range(nz):
         rates[0, z0 + a] = s.out[d + a]
         for i in range(st.Z.shape[0]):
@@ -66,15 +70,29 @@ def put_rates(mech: Mech, k: Moving, y: State, st: Stages, c: int, rates: Floats
             rates[i + 1, z0 + a] = value / h
 
 
+@kernel
+def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> bool:
+    """Slip velocities and loads at the stages after the last of Newton's changes; False where no law is smooth."""
+    smooth = False
+    for p in range(y.mode.shape[0]):
+        smooth = smooth or mech.port.law[p] == LAW_SMOOTH
+    for i in range(st.tab.c.shape[0] if smooth else 0):
+        move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+        forces(mech, k, st.lam[i], st.F[i], 0, 0, st.N[i], st.g[i], mech.address)
+    return smooth
+
+
 @block
 def laws_between(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> float:
     """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the stages."""
     port, tab = mech.port, st.tab
     worst = 0.0
+    if not bring_up_to_date(mech, k, y, st, h):
+        return worst
     for i in range(y.v.shape[0]):
         c.inertia[i] = (c.mass[i] * st.scale[i]) ** 2
     for p in range(y.mode.shape[0]):
-        if port.law[p] != LAW_SMOOTH or y.mode[p] == OPEN:
+        if port.law[p] != LAW_SMOOTH:
             continue
         row0, z0 = port.row[p], port.z_start[p]
         d, nz = port.row[p + 1] - row0, port.z_start[p + 1] - z0
@@ -87,10 +105,10 @@ def laws_between(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
         for j in range(tab.c.shape[0]):
             gap = h * (tab.c[j] - (tab.c[j - 1] if j > 0 else 0.0))
             ask(mech, k, y, st, p, tab.mid[j])
-            for a in range(d):
+            for a in range(d if y.mode[p] != OPEN else 0):
                 worst = max(worst, gap * force_off(k, y, st, row0, d, nz, j, a, gap, h) * st.x[2 * a + 1])
             for a in range(nz):
-                size = max(c.z[z0 + a], largest(y.z[z0 + a], st.Z, z0 + a), 1e-290)
+                size = max(c.z[z0 + a], largest_in_step(y.z[z0 + a], st.Z, z0 + a), 1e-290)
                 worst = max(worst, rate_off(k, st, c, z0, d, nz, j, a, gap) / size)
     return worst
 
@@ -106,7 +124,7 @@ def force_off(
     for b in range(d):
         stiff += abs(out[d + nz + a * (d + 1 + nz) + b])
     stiff *= st.x[2 * a]
-    grain = ROUND_OFF * largest(y.F[row0 + a], st.F, row0 + a) * (1.0 + h * stiff)
+    grain = ROUND_OFF * largest_in_step(y.F[row0 + a], st.F, row0 + a) * (1.0 + h * stiff)
     return float(max(off - grain, 0.0) / (1.0 + gap * stiff))
 
 

@@ -76,8 +76,8 @@ def add_found(
 ) -> None:  # fmt: skip
     """Rows of a port whose direction of slip follows from its force; x: slip velocity, or its derivative.
 
-    A direction that joints block has no slip that tells its force but x itself: where that is still 0 a trifle stands
-    for it in the matrix, so that forces along it, which do nothing, stay as they are.
+    Along a direction that joints block there is no slip, and its force is told by x alone, being parallel to it.  Where
+    x is still 0 a trifle stands for it in the matrix, so that forces along that direction, which do nothing, stay.
     """
     port = mech.port
     first, d = port.row[c], port.row[c + 1] - port.row[c]
@@ -88,7 +88,7 @@ def add_found(
     mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, along if full else 0.0, load)
     m = largest_part(port.row, c, n) - first
     n_m = -F[first + m] / size
-    apart = max(along, k.slight[c])
+    apart = along if abs(along) > k.slight[c] else k.slight[c]
     for a in range(d):
         n_a = -F[first + a] / size
         add(mech.order, L.A1, row + m, row + a, -n_a)

@@ -222,7 +222,8 @@ class Moving(NamedTuple):
     their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``friction_rows``);
     ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
     ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached;
-    ``slight`` (n_c,) slip velocity that is nothing in the step, by which directions that joints block are told apart.
+    ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
+    matrices for slip of 0, which leaves forces along directions that joints block open.
     """
 
     s: Scratch

@@ -14,6 +14,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, C
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
 SETTING_OUT = 3
+#: Slip velocity, or acceleration, that is nothing beside what a step, or friction, brings.
+SLIGHT = 1e-7
 
 
 @kernel

@@ -1,7 +1,8 @@
 """Looking for transitions inside a step that has been solved, and how far from one its end is.
 
-Whether a contact that sticks has left its friction cone, |F| > mu_s N, is seen here: ``cone_crossing`` and ``margin``,
-by ``cone_margin`` of ``model/law_values``.
+Whether a contact that sticks has left its friction cone, |F| > mu_s N, is seen here: within a step by
+``cone_crossing``, from squares, which are polynomials; at its end by ``margin``, with ``cone_margin`` of
+``model/law_values``.
 """
 
 from __future__ import annotations
