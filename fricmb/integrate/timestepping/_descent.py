@@ -20,6 +20,20 @@ def falls(merit: float, low: float) -> bool:
 
 
 @kernel
+def judge_step(
+    merit: float, low: float, size: float, scale: float, wary: bool, flat_steps: int, leaps: int
+) -> tuple[bool, int, int]:
+    """Whether a Newton step was the last, and how many in a row have left the merit as it was, and have raised it.
+
+    A full step of size ENOUGH leaves its square; the merit cannot tell smaller ones from round-off.
+    """
+    if not (wary or falls(merit, low)):
+        return False, flat_steps, leaps + 1
+    flat_steps = flat_steps + 1 if merit > low - 1e-11 * abs(low) else 0
+    return size <= ENOUGH * (scale + size) + 1e-300 or flat_steps == 4, flat_steps, 0
+
+
+@kernel
 def leaps_pay(run: Run) -> bool:
     """Whether full steps that raise the merit are worth it: friction along one direction is linear piece by piece.
 

@@ -14,7 +14,7 @@ from fricmb.integrate.timestepping._band import (
     solve,
     times_matrix,
 )
-from fricmb.integrate.timestepping._descent import ENOUGH, HALVINGS, LEAPS, NEWTON, falls, leaps_pay
+from fricmb.integrate.timestepping._descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
 from fricmb.integrate.timestepping._layout import N_NEWTON
 from fricmb.integrate.timestepping._run import Run
 
@@ -120,14 +120,9 @@ def newton_band(run: Run, h: float, F: Floats, g: Floats, places: Ints) -> bool:
             factor *= 0.5
         if factor == 1.0 and flat and same_piece(run):
             return True
-        if wary or falls(merit, low):
-            # a full step of this size leaves its square; the merit cannot tell smaller ones from round-off
-            flat_steps = flat_steps + 1 if merit > low - 1e-11 * abs(low) else 0
-            if size <= ENOUGH * (scale + size) + 1e-300 or flat_steps == 4:
-                return True
-            leaps = 0
-        else:
-            leaps += 1
+        done, flat_steps, leaps = judge_step(merit, low, size, scale, wary, flat_steps, leaps)
+        if done:
+            return True
         if leaps > LEAPS:
             # in vain: back to where they began, and no more of them
             for i in range(n):

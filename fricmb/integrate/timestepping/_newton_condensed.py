@@ -9,7 +9,7 @@ from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece
-from fricmb.integrate.timestepping._descent import ENOUGH, HALVINGS, LEAPS, NEWTON, falls, leaps_pay
+from fricmb.integrate.timestepping._descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
 from fricmb.integrate.timestepping._layout import N_NEWTON
 from fricmb.integrate.timestepping._run import Run
 
@@ -79,14 +79,9 @@ def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -
             factor *= 0.5
         if factor == 1.0 and flat and same_piece(run):
             return True
-        if wary or falls(merit, low):
-            # a full step of this size leaves its square; the merit cannot tell smaller ones from round-off
-            flat_steps = flat_steps + 1 if merit > low - 1e-11 * abs(low) else 0
-            if size <= ENOUGH * (scale + size) + 1e-300 or flat_steps == 4:
-                return True
-            leaps = 0
-        else:
-            leaps += 1
+        done, flat_steps, leaps = judge_step(merit, low, size, scale, wary, flat_steps, leaps)
+        if done:
+            return True
         if leaps > LEAPS:
             # in vain: back to where they began, and no more of them
             for i in range(m):
