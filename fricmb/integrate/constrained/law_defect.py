@@ -19,7 +19,7 @@ from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.slip_rows import lightness
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2, Ints
-from fricmb.integrate.step.law_defect import ROUND_OFF, between
+from fricmb.integrate.step.law_defect import between, counted_force, counted_rate
 
 
 @kernel
@@ -117,15 +117,14 @@ def laws_between(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
 def force_off(
     k: Moving, y: State, st: Stages, row0: int, d: int, nz: int, j: int, a: int, gap: float, h: float
 ) -> float:
-    """What the force of row a is off half-way to stage j, less what of it the law itself would take back at once."""
+    """What the force of row a is off half-way to stage j."""
     out = k.s.out
     off = abs(out[a] - between(st.tab.mid[j], y.F[row0 + a], st.F, row0 + a))
     stiff = 0.0
     for b in range(d):
         stiff += abs(out[d + nz + a * (d + 1 + nz) + b])
     stiff *= st.x[2 * a]
-    grain = ROUND_OFF * largest_in_step(y.F[row0 + a], st.F, row0 + a) * (1.0 + h * stiff)
-    return float(max(off - grain, 0.0) / (1.0 + gap * stiff))
+    return float(counted_force(off, largest_in_step(y.F[row0 + a], st.F, row0 + a), stiff, gap, h))
 
 
 @kernel
@@ -142,4 +141,4 @@ def rate_off(k: Moving, st: Stages, c: Control, z0: int, d: int, nz: int, j: int
     for i in range(c.rates.shape[0]):
         value += st.tab.mid[j, i] * c.rates[i, z0 + a]
     off = abs(out[d + a] - value)
-    return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(out[at + d + 1 + a])))
+    return float(counted_rate(off, size, out[at + d + 1 + a], gap))

@@ -31,6 +31,21 @@ def between(line: Floats, start: float, values: Floats2, column: int) -> float:
 
 
 @kernel
+def counted_force(off: float, size: float, stiff: float, gap: float, h: float) -> float:
+    """What counts of a force that is ``off`` over a gap of a step h, less what the law itself would take back at once.
+
+    Velocities hold the round-off of what forces do in the step, and a law of slope ``stiff`` makes forces of it.
+    """
+    return float(max(off - ROUND_OFF * size * (1.0 + h * stiff), 0.0) / (1.0 + gap * stiff))
+
+
+@kernel
+def counted_rate(off: float, size: float, slope: float, gap: float) -> float:
+    """What a state is off over a gap by a rate that is ``off``; a rate falls with its state by ``slope``."""
+    return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(slope)))
+
+
+@kernel
 def probe(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, j: int) -> None:
     """Law k at the polynomials' values half-way to node j: arguments in ``s.x``, force, rates, slopes in ``s.out``."""
     w, line = one.w, one.tab.mid[j]
@@ -64,10 +79,7 @@ def felt(packed: Packed, y: State, acc: Accuracy, a: int) -> float:
 def force_off(
     packed: Packed, s: Scratch, y: State, one: OneStep, k: int, j: int, a: int, gap: float, h: float
 ) -> float:
-    """What the force of row a is off half-way to node j, less what of it the law itself would take back at once.
-
-    Velocities hold the round-off of what forces do in the step, and a steep law makes forces of it.
-    """
+    """What the force of row a is off half-way to node j."""
     w = one.w
     row0 = packed.ports.row[k]
     d = packed.ports.row[k + 1] - row0
@@ -80,7 +92,7 @@ def force_off(
     for b in range(d):
         stiff += abs(s.out[d + nz + a * (d + 1 + nz) + b])
     stiff *= packed.ports.D[row0 + a, row0 + a]
-    return float(max(off - ROUND_OFF * size * (1.0 + h * stiff), 0.0) / (1.0 + gap * stiff))
+    return float(counted_force(off, size, stiff, gap, h))
 
 
 @kernel
@@ -96,7 +108,7 @@ def rate_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, j: int,
     for b in range(d + 1 + nz):
         size = max(size, abs(s.out[at + b] * s.x[b]))
     off = abs(s.out[d + a] - between(one.tab.mid[j], y.zd[z0 + a], w.zd, z0 + a))
-    return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(s.out[at + d + 1 + a])))
+    return float(counted_rate(off, size, s.out[at + d + 1 + a], gap))
 
 
 @kernel
