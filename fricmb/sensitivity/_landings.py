@@ -17,25 +17,32 @@ _TINY, _LAST, _FAR = 1e-4, 1e-8, 1e-3
 #: Share of the largest slip speed below which slip that passes rest is close to it.
 _CLOSE = 1e-4
 
+#: Contacts, and in which stretches (n_k,) their slip begins from rest, and ends.
+Rests = list[tuple[int, Any, Any]]
 
-def left_out(e: Equations, phases: Phases, sample: Any) -> Floats:
+
+def left_out(e: Equations, phases: Phases, rests: Rests) -> Floats:
     """Time (n_k,) that is left out before the end of a stretch in which slip in two directions ends, else 0."""
     found = np.zeros(phases.t.size - 1)
-    for k, _, ends in at_rest(e, phases, sample):
+    for k, _, ends in rests:
         if e.contacts[k].d > 1:
             found = np.where(ends, np.maximum(found, _LAST * _lasting(phases.t, phases.mode[k])), found)
     return found
 
 
-def passes(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int, int]]:
+def passes(e: Equations, rests: Rests) -> list[tuple[int, int]]:
     """Contacts whose slip in two directions comes to rest and sets out again at once, and the stretch it begins."""
-    for k, begins, ends in at_rest(e, phases, sample):
-        if e.contacts[k].d > 1:
-            yield from ((k, int(j) + 1) for j in np.flatnonzero(ends[:-1] & begins[1:]))
+    wide = [rest for rest in rests if e.contacts[rest[0]].d > 1]
+    return [(k, int(j) + 1) for k, begins, ends in wide for j in np.flatnonzero(ends[:-1] & begins[1:])]
 
 
-def near_misses(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int, float, float]]:
-    """Contacts whose slip in two directions passes rest closely, when, and how closely over their largest speed."""
+def near_misses(
+    e: Equations, phases: Phases, sample: Any, passed: list[tuple[int, int]]
+) -> Iterator[tuple[int, float, float]]:
+    """Contacts whose slip in two directions passes rest closely, when, and how closely over their largest speed.
+
+    ``passed``: what comes to rest (:func:`passes`), and does not count.
+    """
     wide = [k for k, contact in e.contacts.items() if contact.d > 1 and not contact.smooth]
     if not wide:
         return
@@ -43,23 +50,25 @@ def near_misses(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int
     for k in wide:
         r, slips = np.linalg.norm(g[e.rows(k)], axis=0), phases.mode[k] == SLIP
         inner, most = r[1:-1], max(float(r.max()), 1e-300)
-        passed = np.isin(np.arange(1, r.size - 1), [phase for own, phase in passes(e, phases, sample) if own == k])
-        lowest = ~passed & (inner <= r[:-2]) & (inner < r[2:]) & slips[:-1] & slips[1:]
+        rests = np.isin(np.arange(1, r.size - 1), [phase for own, phase in passed if own == k])
+        lowest = ~rests & (inner <= r[:-2]) & (inner < r[2:]) & slips[:-1] & slips[1:]
         for j in np.flatnonzero(lowest & (inner > 0.0) & (inner < _CLOSE * most)):
             yield k, float(phases.t[j + 1]), float(inner[j]) / most
 
 
-def at_rest(e: Equations, phases: Phases, sample: Any) -> Iterator[tuple[int, Any, Any]]:
-    """Contacts, and in which stretches (n_k,) their slip begins from rest, and ends."""
+def at_rest(e: Equations, phases: Phases, sample: Any) -> Rests:
+    """Where slip under rigid friction begins from rest, and ends."""
     h = np.diff(phases.t)
     hard = [k for k, contact in e.contacts.items() if not contact.smooth]
+    found: Rests = []
     if not hard:
-        return
+        return found
     g = sample(np.concatenate([phases.t, phases.t[:-1] + 0.5 * h])).g
     for k in hard:
         r = np.linalg.norm(g[e.rows(k)], axis=0)
         edges, middles, slips = r[: h.size + 1], r[h.size + 1 :], phases.mode[k] == SLIP
-        yield k, slips & (edges[:-1] <= _TINY * middles), slips & (edges[1:] <= _TINY * middles)
+        found.append((k, slips & (edges[:-1] <= _TINY * middles), slips & (edges[1:] <= _TINY * middles)))
+    return found
 
 
 def places_before(t: float, rest: float, mesh: Floats) -> Ints:

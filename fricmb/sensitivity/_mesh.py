@@ -55,7 +55,8 @@ class Stepper:
         self.equations, self.phases, self.sample = equations, phases, sample
         self.varying = [k for k, contact in equations.contacts.items() if contact.depends_on_speed()]
         self.sets_out = np.zeros(phases.t.size - 1, dtype=bool)
-        for k, begins, _ in at_rest(equations, phases, sample):
+        self.rests = at_rest(equations, phases, sample)
+        for k, begins, _ in self.rests:
             if k in self.varying and equations.contacts[k].d == 1:
                 self.sets_out |= begins
 
@@ -155,7 +156,7 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     small = 0.1 * max(rtol, 1e-13)
     entire = coarse.error * (small / fine.error) ** ((coarse.order + 1) / (fine.order + 1))
     near_pole = min(entire, small ** (coarse.order / fine.order))
-    rest = left_out(stepper.equations, stepper.phases, stepper.sample)
+    rest = left_out(stepper.equations, stepper.phases, stepper.rests)
     t, h, phase = graded(stepper.phases.t, rest)
     kept: list[tuple[Floats, Floats, Ints]] = []
     before = np.full(t.size, np.inf)

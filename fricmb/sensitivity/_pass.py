@@ -14,7 +14,7 @@ from fricmb.sensitivity._bends import bends_of
 from fricmb.sensitivity._collocation import radau
 from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._happenings import PASS, happenings
+from fricmb.sensitivity._happenings import PASS, Happening, happenings
 from fricmb.sensitivity._jumps import jumps
 from fricmb.sensitivity._landings import extrapolated, near_misses, passes, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
@@ -67,10 +67,8 @@ class Tangent:
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)
-        passed = list(passes(e, self.phases, sample))
+        passed = passes(e, self.stepper.rests)
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
-        taken = {(one.contacts[0], one.phase) for one in happened if one.kinds == [PASS]}
-        self._missed = [one for one in passed if one not in taken]
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
         first = e.field(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1]).found
@@ -82,9 +80,11 @@ class Tangent:
             f" {', '.join(repr(self.columns[j]) for j in by)}, which give it a speed, are one-sided"
             for name, by in one_sided_by.items()
         ]
-        self.notes = (*starts, *transitions.notes, *self._unsure(sample))
+        self.notes = (*starts, *transitions.notes, *self._unsure(sample, happened, passed))
 
-    def _unsure(self, sample: Any) -> Iterator[str]:
+    def _unsure(
+        self, sample: Any, happened: list[Happening], passed: list[tuple[int, int]]
+    ) -> Iterator[str]:
         """Notes of what the errors of the run leave open."""
         e, rtol = self.equations, self.rtol
         for jump in self.jumps.values():
@@ -93,12 +93,13 @@ class Tangent:
                     f"at t = {jump.t:.10g} rates of states jump where a formula hardly switches, or by a reaction:"
                     " derivatives of what follows are not sound"
                 )
-        for k, phase in self._missed:
+        taken = {(one.contacts[0], one.phase) for one in happened if one.kinds == [PASS]}
+        for k, phase in (one for one in passed if one not in taken):
             yield (
                 f"at t = {self.phases.t[phase]:.10g} slip of contact {e.names.contacts[k]!r} passes rest while"
                 " something else happens: derivatives of what follows are not sound"
             )
-        for k, t, share in near_misses(e, self.phases, sample):
+        for k, t, share in near_misses(e, self.phases, sample, passed):
             yield (
                 f"at t = {t:.10g} slip of contact {e.names.contacts[k]!r} passes rest at {share:.0e} of its largest"
                 f" speed: derivatives of what follows may be off by {min(rtol / share, 1.0):.0e} of their size"
