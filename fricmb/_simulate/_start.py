@@ -31,10 +31,10 @@ def find_start(mechanics: SceneMechanics, initial: Any, t_start: float) -> tuple
         raise SceneError(f"initial: got {initial!r}; expected a Solution or a dict with any of the keys {keys}")
     if t_start == 0.0:
         return start, mechanics
-    return replace(start, t=t_start), _moved(mechanics, {}, t_start)
+    return replace(start, t=t_start), _with_driven_at(mechanics, {}, t_start)
 
 
-def _moved(mechanics: SceneMechanics, wanted: Mapping[str, float], t: float) -> SceneMechanics:
+def _with_driven_at(mechanics: SceneMechanics, wanted: Mapping[str, float], t: float) -> SceneMechanics:
     shift = mechanics.driven.shift_to(wanted, t)
     total = {name: mechanics.shift.get(name, 0.0) + by for name, by in shift.items()}
     if not shift:
@@ -111,7 +111,7 @@ def _continued(mechanics: SceneMechanics, before: Solution, t_start: float) -> t
     if new.signals:
         there = np.array([end.t])
         wanted = {name: float(before.run.signal(i, there)[0][0]) for name, i in old.signals.items()}
-        mechanics = _moved(mechanics, wanted, end.t)
+        mechanics = _with_driven_at(mechanics, wanted, end.t)
     return start, mechanics
 
 

@@ -166,7 +166,7 @@ def _solve(system: MechanismSystem, v: Floats, held: np.ndarray, moving: Ints) -
     sizes = np.cumsum([0, still.size, moving.size, z.size, lam.size, F.size])
     state: State = (q, v.copy(), z, lam, F)
 
-    def moved(step: Floats, share: float) -> State:
+    def after_step(step: Floats, share: float) -> State:
         parts: list[Floats] = [share * step[a:b] for a, b in pairwise(sizes)]
         q, v, z, lam, F = (x.copy() for x in state)
         q[still] += parts[0]
@@ -181,7 +181,7 @@ def _solve(system: MechanismSystem, v: Floats, held: np.ndarray, moving: Ints) -
         step = np.asarray(-np.linalg.lstsq(J / weight[:, None], residual / weight, rcond=1e-13)[0], dtype=np.float64)
         share = 1.0
         while True:
-            there = moved(step, share)
+            there = after_step(step, share)
             following = _equations(system, there, held, still, moving)
             before, after = (float(np.linalg.norm(r / weight)) for r in (residual, following[0]))
             if after <= (1 - 0.1 * share) * before or share < 1e-3:

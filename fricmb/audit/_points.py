@@ -40,7 +40,7 @@ class Points:
         s = self.statements
         moment = s.moment(samples)
         found = s.found(moment)
-        moved = s.found(self.units.moved(moment, rng)) if s.contacts else found
+        moved = s.found(self.units.perturbed(moment, rng)) if s.contacts else found
         for k, law in s.contacts.items():
             unit = np.array([row_unit(row, self.units.v, moment.t.shape) for row in found.rows[k]])
             unit += ROUND_OFF * np.abs(s.names.row_scale[0, 0] * found.g[k])

@@ -95,7 +95,7 @@ class Changes:
         times = [rows.t[j] + 1e-9 * h] if located else (rows.t[i] + span * np.linspace(1.0, 1e-9, _PLACES)).tolist()
         least = np.inf
         for t in times:
-            moment = self._moved_to(s.moment(begin), s.moment(after), float(t))
+            moment = self._state_before_at(s.moment(begin), s.moment(after), float(t))
             found = s.found(moment)
             unit = np.array([row_unit(row, self.units.v, (1,)) for row in found.rows[k]])
             if (np.abs(found.g[k]) > 2.0 * unit + 1e-300).any() or rows.mode[k, j] == OPEN:
@@ -117,7 +117,7 @@ class Changes:
         return float(self.units.F[own].max(initial=0.0))
 
     @staticmethod
-    def _moved_to(begin: Moment, after: Moment, t: float) -> Moment:
+    def _state_before_at(begin: Moment, after: Moment, t: float) -> Moment:
         """The state before, at a time after it, with the friction that other contacts have there."""
         values = {name: value for name, value in vars(begin).items() if name != "_places"}
         step = np.array([t]) - begin.t
@@ -135,7 +135,7 @@ class Changes:
         unit = self.units.rtol * limit + 1e-7 * float(np.linalg.norm(force)) + 1e-300
         over = (limit - float(law.size(force[:, None])[0])) / unit
         for _ in range(2 if over > 1.0 else 0):
-            moved = holding(self.statements, self.units.moved(moment, rng), k, stuck, h)
+            moved = holding(self.statements, self.units.perturbed(moment, rng), k, stuck, h)
             if moved is not None:
                 shift = float(np.linalg.norm(moved[0] - force)) + abs(float(law.limit(np.array([moved[1]]))[0]) - limit)
                 unit = max(unit, self.units.rtol * limit + shift)

@@ -34,7 +34,7 @@ class Units:
     loss: Floats
     rtol: float
 
-    def moved(self, moment: Moment, rng: np.random.Generator) -> Moment:
+    def perturbed(self, moment: Moment, rng: np.random.Generator) -> Moment:
         """The moment with every value off by its unit, up or down at random."""
 
         def off(values: Floats, unit: Floats) -> Floats:

@@ -115,7 +115,7 @@ class Weak:
         slack = np.zeros_like(whole)
         for _ in range(2 if rng is not None else 0):
             assert rng is not None
-            moved = np.abs(self._rates(self.units.moved(moment, rng), said)[0] - rates)
+            moved = np.abs(self._rates(self.units.perturbed(moment, rng), said)[0] - rates)
             slack = np.maximum(slack, half * (moved.reshape(shape) @ _WEIGHTS))
         return whole, unsure, slack
 

@@ -22,7 +22,7 @@ def stdout_to_stderr(active: bool) -> Iterator[None]:
         yield
         return
     out = sys.stdout
-    kept = _moved(out)
+    kept = _redirected(out)
     _aside.append((out, kept))
     try:
         with contextlib.redirect_stdout(sys.stderr or out):
@@ -34,7 +34,7 @@ def stdout_to_stderr(active: bool) -> Iterator[None]:
             os.close(kept)
 
 
-def _moved(out: Any) -> int | None:
+def _redirected(out: Any) -> int | None:
     """A copy of the descriptor of standard output, which now is that of stderr; None where there is none."""
     try:
         out.flush()

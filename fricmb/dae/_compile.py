@@ -7,11 +7,11 @@ from typing import Any, TypeVar, cast
 
 from numba import njit
 
-from fricmb.integrate.compile.kernel_cache import kept
+from fricmb.integrate.compile.kernel_cache import cached_on_disk
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def kernel(function: _Function) -> _Function:
     """Compile at the first call, not at import; kept in the disk cache; division by zero gives inf."""
-    return cast(_Function, kept(njit(error_model="numpy")(function)))
+    return cast(_Function, cached_on_disk(njit(error_model="numpy")(function)))

@@ -26,7 +26,7 @@ def residual(address: Any, t: Any, y: Any, yp: Any, out: Any, p: Any, n: Any) ->
 
 
 @kernel
-def _moved(
+def _residual_beside(
     address: Any, t: Any, y: Any, yp: Any, p: Any, n: Any, work: Any, of_y: bool, columns: Any, factor: float, row: int
 ) -> bool:
     """Evaluate with some columns moved by ``factor`` times their increment, into a row of ``work``."""
@@ -52,15 +52,15 @@ def _fill(
     step = work[_SIZE if of_y else _RATE]
     sign = 1.0
     flags[CALLS] += 1
-    if not _moved(address, t, y, yp, p, n, work, of_y, columns, sign, _OUT):
+    if not _residual_beside(address, t, y, yp, p, n, work, of_y, columns, sign, _OUT):
         sign = -1.0
         flags[CALLS] += 1
-        if not _moved(address, t, y, yp, p, n, work, of_y, columns, sign, _OUT):
+        if not _residual_beside(address, t, y, yp, p, n, work, of_y, columns, sign, _OUT):
             return False
     both = False
     if flags[CENTRAL]:
         flags[CALLS] += 1
-        both = _moved(address, t, y, yp, p, n, work, of_y, columns, -sign, _OTHER)
+        both = _residual_beside(address, t, y, yp, p, n, work, of_y, columns, -sign, _OTHER)
     for j in columns:
         width = (base[j] + sign * step[j]) - base[j]
         back = (base[j] - sign * step[j]) - base[j]

@@ -93,7 +93,7 @@ def in_joint_coordinates(scene: Any, whole: Any) -> Any:
         dof_names=kept, q=s, v=rate, a=second,
         M=sympy.ImmutableMatrix((J.T * whole.M * J).applyfunc(_tidy)),
         rhs=sympy.ImmutableMatrix((J.T * (forces - whole.M * bias)).applyfunc(_tidy)),
-        contacts=tuple(_moved(contact, into, J) for contact in whole.contacts),
+        contacts=tuple(_contact_in_coordinates(contact, into, J) for contact in whole.contacts),
         constraints=tuple(
             replace(c, expressions=tuple(_tidy(e.xreplace(tree.pose)) for e in c.expressions))
             for c in whole.constraints if c.name not in tree.joints
@@ -102,7 +102,7 @@ def in_joint_coordinates(scene: Any, whole: Any) -> Any:
     )  # fmt: skip
 
 
-def _moved(contact: Any, into: Mapping[Any, Any], J: Any) -> Any:
+def _contact_in_coordinates(contact: Any, into: Mapping[Any, Any], J: Any) -> Any:
     """A contact or the friction of a joint in other coordinates."""
 
     def put(expression: Any) -> Any:

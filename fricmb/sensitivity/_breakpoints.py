@@ -29,7 +29,7 @@ class Timed:
     arguments: Sequence[Dual | None]
     time: int
 
-    def moved(self, t: float, columns: range) -> list[Floats]:
+    def breakpoint_derivatives(self, t: float, columns: range) -> list[Floats]:
         """Derivatives (n_p,) of the time t by parameters, one for each condition that changes sign there."""
         values = [0.0 if argument is None else float(argument.value) for argument in self.arguments]
         values[self.time] = t
@@ -90,11 +90,11 @@ class Breakpoints:
         columns = range(first, first + len(parameters))
         self.dt = np.zeros((self.t.size, len(parameters)))
         for i, time in enumerate(self.t.tolist()):
-            self.dt[i] = self._moved(time, timed, columns)
+            self.dt[i] = self._breakpoint_derivatives(time, timed, columns)
 
-    def _moved(self, t: float, timed: Sequence[Timed], columns: range) -> Floats:
+    def _breakpoint_derivatives(self, t: float, timed: Sequence[Timed], columns: range) -> Floats:
         """Derivatives of one breakpoint; refused where several that parameters move apart stand at one time."""
-        found = [(one.label, dt) for one in timed for dt in one.moved(t, columns)]
+        found = [(one.label, dt) for one in timed for dt in one.breakpoint_derivatives(t, columns)]
         for label, dt in found[1:]:
             apart = np.flatnonzero(~np.isclose(dt, found[0][1], rtol=1e-9, atol=1e-12))
             if apart.size:

@@ -26,7 +26,7 @@ def derive(sol: Any, asked: tuple[str, ...]) -> None:
         n_states=len(tangent.states),
         S=tangent.at(t, left=twice),
         end=tangent.S[-1],
-        moved=tangent.moved,
+        event_times=tangent.event_times,
         transversality=tangent.transversality,
         unsafe=tangent.unsafe,
     )

@@ -40,7 +40,7 @@ class Tangent:
     ----------
     columns : tuple of str
         What derivatives are with respect to: initial values first, where they are asked for.
-    moved : (n_events, n_columns)
+    event_times : (n_events, n_columns)
         Derivatives of the times of events; ``transversality`` (n_events,).
     notes : tuple of str
     unsafe : tuple of int
@@ -132,7 +132,7 @@ class Tangent:
         n_y, n_s = self.equations.n_y, len(self.states)
         at = {one.phase: i for i, one in enumerate(transitions.happened)}
         # one more: for what happens without an event
-        moved, transversality = np.zeros((n_events + 1, len(self.columns))), np.full(n_events + 1, np.inf)
+        event_times, transversality = np.zeros((n_events + 1, len(self.columns))), np.full(n_events + 1, np.inf)
         self.before: dict[float, Floats] = {}
         found, last = np.empty((self.mesh.t.size + 1, n_y, len(self.columns))), 0
         for k, (phase, map_) in enumerate(zip(self.mesh.phase.tolist(), self.stepper.each(self.mesh), strict=True)):
@@ -141,7 +141,7 @@ class Tangent:
                 one = transitions.happened[i]
                 self.before[one.t] = S
                 S, dt = self._over(transitions, i, S, found, k)
-                moved[one.events] = dt
+                event_times[one.events] = dt
                 transversality[one.events] = transitions.transversality(i)
                 transitions.say_unsafe(i)
             elif phase != last and phase in self.jumps:
@@ -152,7 +152,7 @@ class Tangent:
             S[:, n_s:] += map_[:, n_y:]
         found[-1] = S
         self.S, self.unsafe = found, tuple(sorted(transitions.unsafe - {n_events}))
-        self.moved, self.transversality = moved[:-1], transversality[:-1]
+        self.event_times, self.transversality = event_times[:-1], transversality[:-1]
 
     def _over(self, transitions: Transitions, i: int, S: Floats, held: Floats, k: int) -> tuple[Floats, Floats]:
         """Derivatives after a transition and of its time.

@@ -117,7 +117,7 @@ class Transitions:
         triggers = self.of(i)
         chosen = [trigger for trigger in triggers if trigger.residual <= self.zero]
         chosen = chosen or [min(triggers, key=lambda trigger: trigger.residual)]
-        dts = [self._moved(i, trigger, S, landing) for trigger in chosen]
+        dts = [self._time_derivatives(i, trigger, S, landing) for trigger in chosen]
         found, f = S, self.before.y_dot[i]
         for trigger, dt in zip(chosen, dts, strict=True):
             last = trigger is chosen[-1]
@@ -203,7 +203,7 @@ class Transitions:
         """Derivatives where a contact sticks with those that stick already."""
         return held(self.equations, self.after.found, i, self._modes(i, trigger)[0], S)
 
-    def _moved(self, i: int, trigger: Trigger, S: Floats, landing: Floats | None) -> Floats:
+    def _time_derivatives(self, i: int, trigger: Trigger, S: Floats, landing: Floats | None) -> Floats:
         """Derivatives (n_p,) of the time at which an event function vanishes."""
         if landing is not None and self.lands(i, trigger):
             return landing

@@ -31,7 +31,7 @@ class Derivatives:
         Derivatives of the state y = (q, v, z) at the times of the solution, these times held fixed.
     end : (n_y, n_columns)
         The same at the end of the run.
-    moved : (n_events, n_columns)
+    event_times : (n_events, n_columns)
         Derivatives of the times of events; ``transversality`` (n_events,).
     unsafe : tuple of int
         Numbers of the events after which derivatives are not sound.
@@ -42,15 +42,16 @@ class Derivatives:
     n_states: int
     S: Floats
     end: Floats
-    moved: Floats
+    event_times: Floats
     transversality: Floats
     unsafe: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         count = len(self.columns)
         fits = self.S.ndim == 3 and self.S.shape[1:] == self.end.shape and self.end.shape[1] == count
-        if not fits or self.moved.shape != (self.transversality.size, count) or not 0 <= self.n_states <= count:
-            raise FricmbError(f"derivatives of shapes {self.S.shape}, {self.end.shape}, {self.moved.shape} do not fit")
+        times = self.event_times.shape
+        if not fits or times != (self.transversality.size, count) or not 0 <= self.n_states <= count:
+            raise FricmbError(f"derivatives of shapes {self.S.shape}, {self.end.shape}, {times} do not fit")
         if not all(type(i) is int and 0 <= i < self.transversality.size for i in self.unsafe):
             raise FricmbError(f"derivatives: unsafe events {self.unsafe} of {self.transversality.size}")
 

@@ -78,5 +78,5 @@ class Differentiated(Recorded):
     def take_derivatives(self, derivatives: Derivatives) -> None:
         """Keep derivatives, those of its events with the events."""
         self._asked, self._derivatives = derivatives.asked, derivatives
-        events = self.events.with_derivatives(derivatives.columns, derivatives.moved, derivatives.transversality)
+        events = self.events.with_derivatives(derivatives.columns, derivatives.event_times, derivatives.transversality)
         self.__dict__["events"] = self._events = events

@@ -32,7 +32,7 @@ class Event:
     t: float
     contact: str
     kind: str
-    _moved: Moved | None = field(default=None, compare=False, repr=False)
+    _dt: TimeDerivatives | None = field(default=None, compare=False, repr=False)
 
     def sensitivity(self, name: str) -> float:
         """Derivative of the time of the event with respect to a parameter or initial value.
@@ -55,14 +55,14 @@ class Event:
         """
         return self._derivatives().transversality
 
-    def _derivatives(self) -> Moved:
-        if self._moved is None:
+    def _derivatives(self) -> TimeDerivatives:
+        if self._dt is None:
             raise SceneError("events of this run have no derivatives: simulate with sensitivities=(names)")
-        return self._moved
+        return self._dt
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moved:
+class TimeDerivatives:
     """Derivatives of an event's time: by ``columns`` (n,), and its transversality."""
 
     columns: tuple[str, ...]
@@ -90,8 +90,8 @@ class Events(Sequence[Event]):
         self._t = np.array([event.t for event in held], dtype=float)
         self._contact = np.array([place[event.contact] for event in held], dtype=np.int64)
         self._kind = np.array([EVENT_KINDS.index(event.kind) for event in held], dtype=np.int64)
-        moved = [event._moved for event in held]
-        self._moved = moved if any(one is not None for one in moved) else None
+        dt = [event._dt for event in held]
+        self._dt = dt if any(one is not None for one in dt) else None
 
     @classmethod
     def from_transitions(cls, transitions: Transitions, contacts: tuple[str, ...]) -> Events:
@@ -100,23 +100,24 @@ class Events(Sequence[Event]):
 
     @classmethod
     def _of(
-        cls, names: tuple[str, ...], t: Floats, contact: Ints, kind: Ints, moved: list[Moved | None] | None = None
-    ) -> Events:
+        cls, names: tuple[str, ...], t: Floats, contact: Ints, kind: Ints,
+        dt: list[TimeDerivatives | None] | None = None,
+    ) -> Events:  # fmt: skip
         events = cls.__new__(cls)
-        events._names, events._t, events._contact, events._kind, events._moved = names, t, contact, kind, moved
+        events._names, events._t, events._contact, events._kind, events._dt = names, t, contact, kind, dt
         return events
 
     def _part(self, chosen: Any) -> Events:
-        moved = None
-        if self._moved is not None:
-            moved = [self._moved[i] for i in np.arange(len(self))[chosen].tolist()]
-        return self._of(self._names, self._t[chosen], self._contact[chosen], self._kind[chosen], moved)
+        dt = None
+        if self._dt is not None:
+            dt = [self._dt[i] for i in np.arange(len(self))[chosen].tolist()]
+        return self._of(self._names, self._t[chosen], self._contact[chosen], self._kind[chosen], dt)
 
-    def with_derivatives(self, columns: tuple[str, ...], moved: Floats, transversality: Floats) -> Events:
+    def with_derivatives(self, columns: tuple[str, ...], dt: Floats, transversality: Floats) -> Events:
         """The same events with the derivatives of their times (n_events, n_columns)."""
         held = [
-            Moved(columns=columns, derivatives=row, transversality=rate)
-            for row, rate in zip(moved, transversality.tolist(), strict=True)
+            TimeDerivatives(columns=columns, derivatives=row, transversality=rate)
+            for row, rate in zip(dt, transversality.tolist(), strict=True)
         ]
         return self._of(self._names, self._t, self._contact, self._kind, list(held))
 
@@ -150,12 +151,12 @@ class Events(Sequence[Event]):
     def __getitem__(self, index: int | slice) -> Event | Events:
         if isinstance(index, slice):
             return self._part(index)
-        moved = None if self._moved is None else self._moved[index]
-        return Event(float(self._t[index]), self._names[self._contact[index]], EVENT_KINDS[self._kind[index]], moved)
+        dt = None if self._dt is None else self._dt[index]
+        return Event(float(self._t[index]), self._names[self._contact[index]], EVENT_KINDS[self._kind[index]], dt)
 
     def __iter__(self) -> Iterator[Event]:
-        moved = [None] * len(self) if self._moved is None else self._moved
-        columns = zip(self._t.tolist(), self._contact.tolist(), self._kind.tolist(), moved, strict=True)
+        dt = [None] * len(self) if self._dt is None else self._dt
+        columns = zip(self._t.tolist(), self._contact.tolist(), self._kind.tolist(), dt, strict=True)
         return (Event(t, self._names[contact], EVENT_KINDS[kind], one) for t, contact, kind, one in columns)
 
     def __eq__(self, other: object) -> bool:

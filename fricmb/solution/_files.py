@@ -45,7 +45,8 @@ _OLD = (
 )
 _RUN = "run_"
 _SENSITIVITY = "sensitivity_"
-_DERIVED = ("S", "end", "moved", "transversality")
+#: Attributes of :class:`Derivatives` and the entries that hold them.
+_DERIVED = {"S": "S", "end": "end", "event_times": "moved", "transversality": "transversality"}
 
 
 def save(sol: Solution, path: str | PathLike[str]) -> None:
@@ -102,7 +103,7 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
 def _entries(sol: Solution) -> dict[str, Any]:
     entries = _arrays(sol)
     if sol._asked:
-        entries |= {_SENSITIVITY + name: getattr(sol.derivatives, name) for name in _DERIVED}
+        entries |= {_SENSITIVITY + entry: getattr(sol.derivatives, name) for name, entry in _DERIVED.items()}
     run, missing = _run_of(sol)
     digests = {name: _digest(value) for name, value in (entries | run).items()}
     about = json.dumps({**_words(sol), "missing": missing, "digests": digests})
@@ -295,10 +296,10 @@ def _derivatives(held: dict[str, Any], about: dict[str, Any], n_t: int) -> Deriv
     words = about.get("sensitivities")
     if words is None:
         return None
-    arrays = {name: held[_SENSITIVITY + name] for name in _DERIVED}
+    arrays = {name: held[_SENSITIVITY + entry] for name, entry in _DERIVED.items()}
     for name, array in arrays.items():
         if array.dtype != np.float64 or np.isnan(array).any():
-            raise FricmbError(f"entry {_SENSITIVITY + name!r} holds what is no number")
+            raise FricmbError(f"entry {_SENSITIVITY + _DERIVED[name]!r} holds what is no number")
     if arrays["S"].shape[:1] != (n_t,) or arrays["transversality"].shape != held["event_t"].shape:
         raise FricmbError("the derivatives in it do not fit its times")
     asked, columns = (tuple(map(str, words[name])) for name in ("asked", "columns"))

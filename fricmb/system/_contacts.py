@@ -25,7 +25,7 @@ from fricmb.integrate.problem import (
 )
 from fricmb.scene import Contact, Joint
 from fricmb.scene._lines import Rows
-from fricmb.system._lined import moved, prescribed
+from fricmb.system._lined import built_places, prescribed
 from fricmb.system._motions import Motions
 from fricmb.system._structure import DENSE, dense_of, is_sparse, matrix_of
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
@@ -84,7 +84,7 @@ class ContactArrays:
         first, count = len(self.rows), rows.at.size
         w = np.zeros(count)
         for ends, sign in ((rows.a, 1.0), (rows.b, -1.0)):
-            at, i = np.flatnonzero(ends >= 0), moved(ends, place)
+            at, i = np.flatnonzero(ends >= 0), built_places(ends, place)
             self.lined.append((i[at], first + at, np.full(at.size, sign)))
             for number, which in prescribed(ends):
                 motion, here = self.motions.driven[names[number]], np.flatnonzero(which)

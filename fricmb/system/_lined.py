@@ -121,7 +121,7 @@ def _between(rows: Rows, first: int, last: int, built: Any) -> Rows:
     return Rows(at=rows.at[kept], a=rows.a[kept], b=rows.b[kept])
 
 
-def moved(ends: Ints, place: Ints) -> Ints:
+def built_places(ends: Ints, place: Ints) -> Ints:
     """Places in the built arrays of ends; -1 for what is no degree of freedom of them."""
     return place[np.maximum(ends, -1)]
 
@@ -143,7 +143,8 @@ def add_lines(entries: Entries, scene: Scene, chosen: Chosen) -> list[Element]:
         sums = [[float(sum(v for _, _, v in e)) for e in (t.K, t.f, t.C)] + [t.constant] for t in terms]
         numbers = np.array(sums, dtype=float).T[:, which]
         names = tuple([scene.parts[i].name for i in rows.at[index].tolist()])
-        entries.add(names, moved(rows.a[index], chosen.place), moved(rows.b[index], chosen.place), list(numbers))
+        a, b = (built_places(ends[index], chosen.place) for ends in (rows.a, rows.b))
+        entries.add(names, a, b, list(numbers))
     return odd
 
 

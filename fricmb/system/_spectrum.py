@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.by_content import by_content
+from fricmb.integrate.run.array_cache import cached_by_content
 
 
 def check_mass(M: Floats, dofs: Sequence[str]) -> None:
@@ -40,7 +40,7 @@ def check_masses(masses: Floats, dofs: Sequence[str]) -> None:
         raise SceneError(f"{dofs[int(bad[0])]}: the mass must be > 0, got {masses[bad[0]]:g}")
 
 
-@by_content
+@cached_by_content
 def spectrum(M: Floats, K: Floats, C: Floats) -> tuple[Floats, Floats]:
     """Angular frequencies (n,), rising, and damping ratios (n,) of the structure without friction.
 

@@ -95,7 +95,7 @@ def test_what_touches_a_plane_touches_it_in_the_picture(runs):
         (touch,) = sketch.touches
         assert touch.at[2] == pytest.approx(0.0, abs=1e-9)
         for i in range(11):
-            lowest = sketch.moved(0, sketch.solids[0].corners(), i)[:, 2].min()
+            lowest = sketch.points_at(0, sketch.solids[0].corners(), i)[:, 2].min()
             assert abs(lowest) < 0.1 * sketch.solids[0].corners().max()  # its thickness, its corners
         assert (touch.mode == runs[name].at(times).mode(touch.name)).all()
         assert np.linalg.norm(touch.force, axis=0).max() <= 1.0 + 1e-9
@@ -154,7 +154,7 @@ def test_a_top_stands_on_its_tip():
     )  # fmt: skip
     table = fm.space.OnPlane("table", one.station("tip"), normal=(0, 0, 1))
     sketch = space_sketch_of_scene(fm.Scene("top", [one, table, WEIGHT]))
-    corners = sketch.moved(0, sketch.solids[0].corners(), 0)
+    corners = sketch.points_at(0, sketch.solids[0].corners(), 0)
     assert corners[np.argmin(corners[:, 2])] == pytest.approx([0, 0, 0], abs=1e-12)
 
 
@@ -200,6 +200,6 @@ def test_wheels_stand_on_their_rails():
     for rail, y in zip(sketch.rails, (0.75, -0.75), strict=True):
         assert rail[:, 1:] == pytest.approx(np.array([[y, 0.0]] * 2))
         assert np.ptp(rail[:, 0]) > 1.0
-    corners = sketch.moved(0, sketch.solids[0].corners(), 0)
+    corners = sketch.points_at(0, sketch.solids[0].corners(), 0)
     assert corners[:, 2].min() == pytest.approx(0.0, abs=0.01)
     assert np.ptp(corners[:, 1]) == pytest.approx(1.5, abs=0.1)

@@ -61,7 +61,7 @@ def shifted(orbit: Orbit, over: str, p_scale: float, step: Floats) -> Orbit | No
     scaled = step[:-1].copy()
     if shooting.drive is None:
         scaled[-1] *= orbit.T
-    y, T = orbit.moved(scaled)
+    y, T = orbit.after_step(scaled)
     try:
         there = shooting.with_values({over: p})
         y = there.onto_belt(y, orbit.sticks)

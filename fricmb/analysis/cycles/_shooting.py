@@ -187,7 +187,7 @@ class Orbit:
         there = [shooting.with_values({name: value + side * h}).onto_belt(self.y, self.sticks) for side in (1.0, -1.0)]
         return np.asarray((there[0] - there[1]) / (2.0 * h))
 
-    def moved(self, step: Floats) -> tuple[Floats, float]:
+    def after_step(self, step: Floats) -> tuple[Floats, float]:
         """Start and period after a step along the columns of ``matrix``."""
         k = self.tangent.shape[1]
         return self.y + self.tangent @ step[:k], self.T + (float(step[k]) if step.size > k else 0.0)
@@ -242,7 +242,7 @@ def solve(first: Orbit, rtol: float, who: str) -> Orbit:
 def _damped(orbit: Orbit, step: Floats) -> Orbit | None:
     """The orbit after a step, or after a part of it that misses less than before."""
     for halving in range(_HALVINGS):
-        y, T = orbit.moved(step * 0.5**halving)
+        y, T = orbit.after_step(step * 0.5**halving)
         if T <= 0.0 or not np.isfinite(y).all():
             continue
         tried = orbit.shooting.orbit(y, T)

@@ -11,7 +11,7 @@ from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Floats, Problem, Templates
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 
 
@@ -63,7 +63,7 @@ def free_blocks(problem: Problem) -> Blocks:
     """The structure without contact forces in blocks; raises NoBlocks where it has no such form."""
     n, linear = problem.n, problem.linear
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
-    return kept(problem, "free blocks", lambda: blocks(M, K, C, np.zeros((n, 0)), ()))
+    return once_per_problem(problem, "free blocks", lambda: blocks(M, K, C, np.zeros((n, 0)), ()))
 
 
 def _has_ledger(problem: Problem) -> bool:
@@ -130,7 +130,7 @@ def _exact(problem: Problem, s: int) -> Exact:
 
 def exact_of(problem: Problem, s: int, safety: float, exact_up_to: float | None) -> Exact:
     """The room of a problem with s nodes, its tables kept for the next run."""
-    found = kept(problem, ("exact", s, exact_up_to), lambda: _exact(problem, s))
+    found = once_per_problem(problem, ("exact", s, exact_up_to), lambda: _exact(problem, s))
     found.par[0] = safety
     found.par[1] = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
     found.par[2] = np.inf

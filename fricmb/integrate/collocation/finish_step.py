@@ -10,7 +10,7 @@ from fricmb.integrate.collocation.block_motion import two_sum
 from fricmb.integrate.collocation.blocks_in_step import BY_VELOCITY_1
 from fricmb.integrate.collocation.layout import DAMP, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
 from fricmb.integrate.collocation.motion_in_step import is_stiff, stiff_nodes
-from fricmb.integrate.collocation.powers_in_step import moved_powers, node_powers
+from fricmb.integrate.collocation.powers_in_step import node_powers, powers_on_motion
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State, complete
@@ -231,7 +231,7 @@ def exact_record(
     node_powers(packed, s, y, one, h, row, at)
     if abs(span - h) > 1e-12 * h:
         # located within the step or just behind it
-        moved_powers(packed, s, y, one, h, span, False, one.power)
+        powers_on_motion(packed, s, y, one, h, span, False, one.power)
     for i in range(width):
         end.work[i] = y.work[i]
         for x in range(n_s):

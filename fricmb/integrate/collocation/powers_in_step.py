@@ -16,7 +16,7 @@ from fricmb.integrate.step.radau_step import OneStep
 
 
 @kernel
-def moved_powers(
+def powers_on_motion(
     packed: Packed, s: Scratch, y: State, one: OneStep, h: float, span: float, whole: bool, power: Floats2
 ) -> None:
     """Powers at the nodes of a step of length ``span`` on the motion of the step h, into ``power``.
@@ -61,7 +61,7 @@ def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, ro
     w = one.w
     width = y.rate.shape[0]
     if one.exact.flags[LEDGER] == 1:
-        moved_powers(packed, s, y, one, h, h, True, one.power)
+        powers_on_motion(packed, s, y, one, h, h, True, one.power)
     else:
         one.power[:, :] = 0.0
         for j in range(w.F.shape[0]):

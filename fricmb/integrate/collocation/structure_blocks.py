@@ -17,7 +17,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.by_content import by_content
+from fricmb.integrate.run.array_cache import cached_by_content
 
 #: A pole of the state matrix with its eigenvector.
 Pole = tuple[complex, NDArray[np.complex128]]
@@ -73,7 +73,7 @@ def _null_basis(Linv: Floats, W: Floats) -> Floats:
     return np.asarray(Linv.T @ full[:, W.shape[1] :])
 
 
-@by_content
+@cached_by_content
 def _held(M: Floats, W: Floats, stuck: tuple[int, ...]) -> tuple[Floats, Floats]:
     """Motions (n, b) that the rows ``stuck`` of W leave, and those (n, m) that move one of these rows alone."""
     rows = list(stuck)
@@ -166,7 +166,7 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     return w2, d, T
 
 
-@by_content
+@cached_by_content
 def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -> Blocks:
     """The structure M q'' + C q' + K q with the rows ``stuck`` of W held; raises NoBlocks where it has no such form."""
     N, G = _held(M, W, stuck)

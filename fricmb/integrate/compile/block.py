@@ -15,7 +15,7 @@ from numba.extending import intrinsic
 
 from fricmb.integrate.compile.block_places import PLACES
 from fricmb.integrate.compile.content import describe_signature
-from fricmb.integrate.compile.kernel_cache import kept
+from fricmb.integrate.compile.kernel_cache import cached_on_disk
 from fricmb.integrate.compile.linked import MachineCompiler
 from fricmb.integrate.compile.room import annotations_of, argument_types
 
@@ -34,7 +34,8 @@ def block(function: _Function) -> _Function:
     index = PLACES.index(function.__name__)
     notes = annotations_of(function)
     wanted = notes.pop("return")
-    compiled = kept(njit(error_model="numpy", no_cpython_wrapper=True, pipeline_class=MachineCompiler)(function))
+    wrap = njit(error_model="numpy", no_cpython_wrapper=True, pipeline_class=MachineCompiler)
+    compiled = cached_on_disk(wrap(function))
     signature_of = lambda: argument_types(function)  # noqa: E731
     _blocks[function.__name__] = (compiled, signature_of)
 

@@ -66,7 +66,7 @@ MECHANISM_STEPS = (
     "radau_step",
     "lightness",
     "add_stick",
-    "laws_between",
+    "law_defect",
 )
 FURTHER = (
     "start_history",

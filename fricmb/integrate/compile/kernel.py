@@ -7,7 +7,7 @@ from typing import Any, TypeVar, cast
 
 from numba import njit
 
-from fricmb.integrate.compile.kernel_cache import kept
+from fricmb.integrate.compile.kernel_cache import cached_on_disk
 from fricmb.integrate.compile.linked import LinkedCompiler, MachineCompiler
 from fricmb.integrate.compile.room import argument_types
 
@@ -27,7 +27,8 @@ def kernel(function: _Function) -> _Function:
 
 def entry(function: _Function) -> _Function:
     """Compile ``function`` on its first call from Python; kept in the disk cache with all that it calls."""
-    compiled = kept(njit(error_model="numpy", no_cfunc_wrapper=True, pipeline_class=MachineCompiler)(function))
+    wrap = njit(error_model="numpy", no_cfunc_wrapper=True, pipeline_class=MachineCompiler)
+    compiled = cached_on_disk(wrap(function))
     _entries[f"{function.__module__}:{function.__name__}"] = compiled
     return cast(_Function, compiled)
 

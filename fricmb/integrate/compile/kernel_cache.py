@@ -77,7 +77,7 @@ class KernelCache(Cache):  # type: ignore[misc]
         return f"{self._name}-{content_digest(self._py_func, self._options, sig, codegen.magic_tuple())}.nbc"
 
 
-def kept(compiled: Any) -> Any:
+def cached_on_disk(compiled: Any) -> Any:
     """Let a numba dispatcher or callback keep its machine code by content."""
     function = getattr(compiled, "py_func", None) or compiled._pyfunc
     options = repr(sorted(getattr(compiled, "targetoptions", {}).items()))

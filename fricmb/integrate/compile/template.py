@@ -14,7 +14,7 @@ from numba import types
 from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
-from fricmb.integrate.compile.kernel_cache import kept
+from fricmb.integrate.compile.kernel_cache import cached_on_disk
 
 #: Signature of every template.
 TEMPLATE = types.void(types.CPointer(types.float64), types.CPointer(types.float64), types.CPointer(types.float64))
@@ -23,7 +23,7 @@ TEMPLATE = types.void(types.CPointer(types.float64), types.CPointer(types.float6
 def template(function: Any) -> Any:
     """Compile ``function(x, p, out)`` as a template, kept in numba's disk cache; division by zero follows IEEE 754."""
     made = CFunc(function, (TEMPLATE.args, TEMPLATE.return_type), locals={}, options={"error_model": "numpy"})
-    kept(made).compile()
+    cached_on_disk(made).compile()
     return made
 
 

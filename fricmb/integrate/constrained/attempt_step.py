@@ -7,7 +7,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
-from fricmb.integrate.constrained.law_defect import laws_between
+from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
@@ -96,7 +96,7 @@ def radau_step(
         c.counts[1] += 1
         c.h[0] = 0.4 * h
         return REJECTED
-    error = max(error_of(c, y, st), laws_between(mech, k, y, st, c, h, mech.address) / c.rtol[0])
+    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol[0])
     if not error < 1e300:
         c.counts[1] += 1
         c.h[0] = 0.4 * h

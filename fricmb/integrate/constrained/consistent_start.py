@@ -12,7 +12,7 @@ from fricmb.integrate.constrained.least_change import Constrained, Least, constr
 from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 
 #: A constraint is satisfied to this part of the sizes that occur.
 CLOSED = 1e-12
@@ -46,7 +46,8 @@ class Assembled:
 def assembled(problem: Problem, start: Start) -> Assembled:
     """What :func:`consistent_start` finds, with the Jacobian; raises as that."""
     q, v = np.array(start.q, float), np.array(start.v, float)
-    return kept(problem, ("start", start.t, q.tobytes(), v.tobytes()), lambda: _assembled(problem, start.t, q, v))
+    key = ("start", start.t, q.tobytes(), v.tobytes())
+    return once_per_problem(problem, key, lambda: _assembled(problem, start.t, q, v))
 
 
 def _assembled(problem: Problem, t: float, q: Floats, v: Floats) -> Assembled:
@@ -64,7 +65,7 @@ def _assembled(problem: Problem, t: float, q: Floats, v: Floats) -> Assembled:
             " prescribe contradicts itself"
         )
     notes = [
-        _moved(what, before, now, problem.dof_names)
+        _note_of_change(what, before, now, problem.dof_names)
         for what, before, now in zip(("positions", "velocities"), old, (q, v), strict=True)
     ]
     return Assembled(q=q, v=v, G=there.G, notes=tuple(note for note in notes if note))
@@ -91,7 +92,7 @@ def least_change(G: object, weight: Floats, r: Floats) -> Floats:
     return change
 
 
-def _moved(what: str, old: Floats, new: Floats, names: tuple[str, ...]) -> str:
+def _note_of_change(what: str, old: Floats, new: Floats, names: tuple[str, ...]) -> str:
     change = np.abs(new - old)
     i = int(np.argmax(change)) if change.size else 0
     if not change.size or change[i] <= 1e-9 * max(np.abs(new).max(), np.abs(old).max()):

@@ -83,7 +83,7 @@ def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> b
 
 
 @block
-def laws_between(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> float:
+def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> float:
     """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the stages."""
     port, tab = mech.port, st.tab
     worst = 0.0

@@ -18,7 +18,7 @@ from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Spread, Table, _table
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 class Linear(NamedTuple):
@@ -119,7 +119,7 @@ class Mech(NamedTuple):
 
 def mech_of(problem: Problem) -> Mech:
     """The problem as the kernels take it, made once per problem object."""
-    return kept(problem, "mechanism", lambda: _pack(problem))
+    return once_per_problem(problem, "mechanism", lambda: _pack(problem))
 
 
 def mechanism_of(problem: Problem) -> Mechanism:

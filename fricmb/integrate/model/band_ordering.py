@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from fricmb.integrate.problem import Ints
-from fricmb.integrate.run.by_content import by_content
+from fricmb.integrate.run.array_cache import cached_by_content
 
 #: Fewer degrees of freedom than this are kept dense; so are bands wider than this part of n.
 SMALL, NARROW = 32, 0.15
@@ -22,7 +22,7 @@ def is_narrow(n: int, half: int) -> bool:
     return n >= SMALL and 3 * half + 1 <= NARROW * n
 
 
-@by_content
+@cached_by_content
 def narrow_order(rows: Ints, columns: Ints, n: int) -> tuple[Ints, int]:
     """Place (n,) of each of n unknowns in an order that keeps a matrix narrow, and its half-bandwidth there.
 

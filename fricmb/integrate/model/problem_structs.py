@@ -9,8 +9,8 @@ import numpy as np
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.structure import Structure, inverse_mass, pack_structure
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
-from fricmb.integrate.run.by_content import by_content
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.array_cache import cached_by_content
+from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 class Table(NamedTuple):
@@ -74,7 +74,7 @@ class Packed(NamedTuple):
     breakpoints: Floats
 
 
-@by_content
+@cached_by_content
 def _softness(D: Floats) -> float:
     """Relative softening of stuck contacts: 0, or a trifle where rows of W depend on one another (least-norm force)."""
     if len(D) == 0 or np.linalg.matrix_rank(D, hermitian=True) == len(D):
@@ -89,12 +89,12 @@ def mobility_at_contacts(problem: Problem) -> Floats:
         W = np.ascontiguousarray(problem.contacts.W)
         return np.ascontiguousarray(W.T @ (inverse_mass(problem) @ W))
 
-    return kept(problem, "mobility at contacts", make)
+    return once_per_problem(problem, "mobility at contacts", make)
 
 
 def softness(problem: Problem) -> float:
     """What :class:`Ports` calls ``soft``; known without all that is packed beside it."""
-    return kept(problem, "softness", lambda: _softness(mobility_at_contacts(problem)))
+    return once_per_problem(problem, "softness", lambda: _softness(mobility_at_contacts(problem)))
 
 
 def _table(templates: Templates) -> Table:
@@ -108,7 +108,7 @@ def _table(templates: Templates) -> Table:
 
 def packed_of(problem: Problem) -> Packed:
     """The problem as the kernels take it, made once per problem object."""
-    return kept(problem, "packed", lambda: _pack(problem))
+    return once_per_problem(problem, "packed", lambda: _pack(problem))
 
 
 def _pack(problem: Problem) -> Packed:

@@ -7,7 +7,7 @@ import ctypes
 import numpy as np
 
 from fricmb.integrate.problem import LAW_COEFFICIENT, Floats, Problem
-from fricmb.integrate.run.by_content import by_content
+from fricmb.integrate.run.array_cache import cached_by_content
 
 #: Slip speeds (relative to the largest) at which a law is looked at.
 SPEEDS = np.append(0.0, 10.0 ** np.arange(-6.0, 0.05, 0.2))
@@ -40,7 +40,7 @@ def steepness(problem: Problem, fastest: float) -> tuple[float, float]:
     return max(found)
 
 
-@by_content
+@cached_by_content
 def _slope(address: int, p: Floats, speed: float, N: float) -> tuple[float, float]:
     """Largest slope of a law's coefficient up to a slip speed, and by how much it changes up to there."""
     law, numbers = _TEMPLATE(address), (ctypes.c_double * (len(p) + 1))(*p)

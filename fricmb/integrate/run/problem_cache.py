@@ -12,7 +12,7 @@ _T = TypeVar("_T")
 _store: dict[int, dict[Any, Any]] = {}
 
 
-def kept(problem: Problem, key: Any, make: Callable[[], _T]) -> _T:
+def once_per_problem(problem: Problem, key: Any, make: Callable[[], _T]) -> _T:
     """What was made for this very problem object under ``key``; forgotten with the object."""
     mine = _store.get(id(problem))
     if mine is None:

@@ -11,7 +11,7 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare_groups import (
@@ -32,7 +32,7 @@ BLOCKS = ("taylor_series", "taylor_search", "taylor_change")
 
 def refusal(problem: Problem) -> str | None:
     """What stands against Taylor steps for a problem, or None."""
-    return kept(problem, "taylor refusal", lambda: _refusal(problem))
+    return once_per_problem(problem, "taylor refusal", lambda: _refusal(problem))
 
 
 def _refusal(problem: Problem) -> str | None:
@@ -82,7 +82,7 @@ def _scaled(matrix: Csr, by: Floats) -> Csr:
 
 def fastest(problem: Problem) -> float:
     """A bound on the frequencies and decay rates of the structure (Gershgorin)."""
-    return kept(problem, "taylor fastest", lambda: _fastest(problem))
+    return once_per_problem(problem, "taylor fastest", lambda: _fastest(problem))
 
 
 def _fastest(problem: Problem) -> float:
@@ -174,12 +174,12 @@ def _fit() -> Floats:
 
 def net_of(problem: Problem, degree: int) -> Net:
     """The arrays of a run with polynomials of this degree, all but what is kept of it; made once."""
-    return kept(problem, ("taylor", degree), lambda: _net(problem, degree))
+    return once_per_problem(problem, ("taylor", degree), lambda: _net(problem, degree))
 
 
 def _net(problem: Problem, P: int) -> Net:
     n, m, n_u = problem.n, problem.n_c, problem.n_u
-    statics = kept(problem, "taylor statics", lambda: _statics(problem))
+    statics = once_per_problem(problem, "taylor statics", lambda: _statics(problem))
     # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
     wide = 8 * ((n + 7) // 8 | 1)
     i, z = np.int64, np.zeros

@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate.run.by_content import by_content
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.array_cache import cached_by_content
+from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.taylor.groups import Groups
 
 #: Most contacts of a group: its matrix is factorised as a full one whenever one of them changes its mode.
@@ -28,7 +28,7 @@ def _labels(problem: Problem) -> tuple[int, Ints]:
     return _labels_of(W.rows, W.index, problem.n, problem.n_c)
 
 
-@by_content
+@cached_by_content
 def _labels_of(rows: Ints, columns: Ints, n: int, m: int) -> tuple[int, Ints]:
     if not (np.bincount(rows, minlength=1) > 1).any():
         return m, np.arange(m)
@@ -40,20 +40,20 @@ def _labels_of(rows: Ints, columns: Ints, n: int, m: int) -> tuple[int, Ints]:
 
 def plain_contacts(problem: Problem) -> NDArray[np.bool_]:
     """Contacts of one dof each, that no other is of, against belts of constant velocity, of constant coefficients."""
-    return kept(problem, "taylor plain", lambda: _plain_contacts(problem))
+    return once_per_problem(problem, "taylor plain", lambda: _plain_contacts(problem))
 
 
 def _plain_contacts(problem: Problem) -> NDArray[np.bool_]:
     contacts, m = problem.contacts, problem.n_c
     W, Wu = contacts.csr("W"), contacts.csr("Wu")
-    _, label = kept(problem, "taylor labels", lambda: _labels(problem))
+    _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
     plain = (np.bincount(W.index, minlength=m) == 1) & (np.diff(Wu.start) == 0) & (contacts.law == LAW_CONSTANT)
     return np.asarray(plain & (np.bincount(label)[label] == 1))
 
 
-def is_coupled(problem: Problem) -> bool:
+def coupled_or_rate_dependent(problem: Problem) -> bool:
     """Whether contacts touch each other, or friction depends on slip speed."""
-    count, _ = kept(problem, "taylor labels", lambda: _labels(problem))
+    count, _ = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
     return count < problem.n_c or bool((problem.contacts.law != LAW_CONSTANT).any())
 
 
@@ -82,14 +82,14 @@ def _lists(label: Ints, count: int) -> tuple[Ints, Ints]:
 
 def group_statics(problem: Problem) -> dict[str, Any]:
     """Groups with their matrices, laws with their places."""
-    return kept(problem, "taylor groups", lambda: _group_statics(problem))
+    return once_per_problem(problem, "taylor groups", lambda: _group_statics(problem))
 
 
 def _groups(problem: Problem) -> tuple[int, Ints]:
     """Number of groups, and the group of every contact, -1 of plain ones."""
     group = np.full(problem.n_c, -1, dtype=np.int64)
     others = ~plain_contacts(problem)
-    _, label = kept(problem, "taylor labels", lambda: _labels(problem))
+    _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
     found, group[others] = np.unique(label[others], return_inverse=True)
     return len(found), group
 

@@ -1,4 +1,4 @@
-"""When steps of Newton's method are taken, and when it ends; the same in the band and condensed (see _cones)."""
+"""When steps of Newton's method are taken, and when it ends; the same in the band and condensed (see _proximal)."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from fricmb.integrate.csr import on_one_pattern
 from fricmb.integrate.model.band_ordering import narrow_order
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.timestepping._run import Run
 
 #: Most contact rows that may be condensed, and numbers that a factorisation may hold.
@@ -23,7 +23,7 @@ BLOCKS = ("review_balls", "take_step")
 
 def refusal(problem: Problem) -> str | None:
     """What stands against time stepping, or None."""
-    return kept(problem, "timestepping refusal", lambda: _refusal(problem))
+    return once_per_problem(problem, "timestepping refusal", lambda: _refusal(problem))
 
 
 def _refusal(problem: Problem) -> str | None:
@@ -116,7 +116,7 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
 
 def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, bool, int]:
     """The arrays of a run with room for so many rows; whether contacts are condensed, and the band's half width."""
-    statics = kept(problem, ("timestepping", contacts), lambda: _statics(problem, contacts))
+    statics = once_per_problem(problem, ("timestepping", contacts), lambda: _statics(problem, contacts))
     n, m, nc, n_u = problem.n, problem.m, problem.n_c, problem.n_u
     band, condensed = statics["band"], statics["condensed"]
     slots = (SLOTS if n * (2 * band + 1) < 1e6 else 4) if condensed else 2

@@ -17,7 +17,6 @@ from fricmb.integrate.problem import (
 )
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import mark_stuck
-from fricmb.integrate.timestepping._cones import solve_contacts
 from fricmb.integrate.timestepping._free import (
     add_normals,
     add_responses,
@@ -42,6 +41,7 @@ from fricmb.integrate.timestepping._layout import (
     SOUND,
     VARYING,
 )
+from fricmb.integrate.timestepping._proximal import solve_contacts
 from fricmb.integrate.timestepping._review import first_balls, review_balls, slide_radius
 from fricmb.integrate.timestepping._run import Run
 

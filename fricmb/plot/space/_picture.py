@@ -97,14 +97,14 @@ class SpaceDrawing:
         depth = [float(place[:, i] @ towards) for place in self.sketch.places]
         for k, (faces, line) in enumerate(zip(self.solids, self.edges, strict=True)):
             solid = self.sketch.solids[k]
-            moved = [self.sketch.moved(k, face, i) for face in solid.faces]
+            moved = [self.sketch.points_at(k, face, i) for face in solid.faces]
             base = (self.paint.body, self.paint.stick)
             faces.set_verts(moved)
             faces.set_facecolor([shaded(base[s], face) for s, face in zip(solid.shades, moved, strict=True)])
             over = 0.5 * float(np.searchsorted(np.sort(depth), depth[k])) / len(depth)
             faces.set_zorder(4 + over)
             line.set_zorder(4 + over + 0.2 / len(depth))
-            turned = [self.sketch.moved(k, edge, i) for edge in solid.lines]
+            turned = [self.sketch.points_at(k, edge, i) for edge in solid.lines]
             facing = [self.sketch.turns[k, :, :, i].T @ towards @ out >= 0.0 for out in solid.outward]
             line.set_data_3d(*joined([edge for edge, seen in zip(turned, facing, strict=True) if seen]))
             middle = self.sketch.places[k, :, i]

@@ -124,7 +124,7 @@ class SpaceSketch:
         """The longest edge of the box."""
         return float(np.ptp(self.box, axis=1).max())
 
-    def moved(self, solid: int, points: Floats, i: int) -> Floats:
+    def points_at(self, solid: int, points: Floats, i: int) -> Floats:
         """Points (k, 3) of a solid in picture i."""
         if solid == FIXED:
             return points
@@ -132,7 +132,7 @@ class SpaceSketch:
 
     def where(self, spot: Spot, i: int) -> Floats:
         """A spot in picture i."""
-        return np.asarray(self.moved(spot[0], spot[1][None], i)[0])
+        return np.asarray(self.points_at(spot[0], spot[1][None], i)[0])
 
     def path(self, solid: int) -> Floats | None:
         """The way (n, 3) of a solid, where it goes farther than it is large."""
@@ -153,7 +153,7 @@ class SpaceSketch:
         """Let floors reach as far as what stands on them, and fit the box to everything."""
         n = self.t.size
         seen = np.unique(np.linspace(0, n - 1, 40).astype(int))
-        corners = [self.moved(k, solid.corners(), i) for k, solid in enumerate(self.solids) for i in seen]
+        corners = [self.points_at(k, solid.corners(), i) for k, solid in enumerate(self.solids) for i in seen]
         corners += [self.where(pin, 0)[None] for pin in self.pins] + self.rails
         corners += [self.where(end, i)[None] for link in self.links for end in (link.a, link.b) for i in seen]
         every = np.concatenate(corners) if corners else np.zeros((1, 3))

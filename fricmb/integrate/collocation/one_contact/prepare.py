@@ -16,8 +16,8 @@ from fricmb.integrate.collocation.structure_blocks import blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate.run.by_content import by_content
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.array_cache import cached_by_content
+from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 def is_single(problem: Problem) -> bool:
@@ -31,13 +31,13 @@ def is_single(problem: Problem) -> bool:
         and contacts.mu_0[0] > 0
         and problem.n_z == 0
         and len(problem.elements.table.address) == 0
-        and kept(problem, "linear signals", lambda: linear_signals(problem)) is not None
+        and once_per_problem(problem, "linear signals", lambda: linear_signals(problem)) is not None
     )
 
 
 def linear_part(problem: Problem) -> tuple[Floats, Floats]:
     """(u at t = 0, u') of signals that are linear in time."""
-    found = kept(problem, "linear signals", lambda: linear_signals(problem))
+    found = once_per_problem(problem, "linear signals", lambda: linear_signals(problem))
     return found if found is not None else (np.zeros(problem.n_u), np.zeros(problem.n_u))
 
 
@@ -66,7 +66,7 @@ class Rows(NamedTuple):
     events: Floats
 
 
-@by_content
+@cached_by_content
 def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
     """Inverse mass, motion of the dofs per contact force, Delassus matrix, its inverse, what holds the rows."""
     Minv = np.asarray(np.linalg.inv(M), dtype=float)
@@ -114,7 +114,7 @@ def _model(problem: Problem) -> Model:
 
 def model(problem: Problem) -> Model:
     """Constants of a one-contact problem."""
-    return kept(problem, "model", lambda: _model(problem))
+    return once_per_problem(problem, "model", lambda: _model(problem))
 
 
 def fastest_block(problem: Problem) -> float:
@@ -175,7 +175,7 @@ def _nothing(s: int) -> Run:
 
 def run_of(problem: Problem, s: int) -> Run:
     """The constants of a one-contact problem with s nodes, to look at rows with: there is nothing to work in."""
-    return kept(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)._asdict()))
+    return once_per_problem(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)._asdict()))
 
 
 def with_rows(run: Run, new: Rows) -> Run:

@@ -21,7 +21,7 @@ from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.stop import ended
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
@@ -45,7 +45,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
     """
     size = problem.n, problem.m, s
     p = model(problem)
-    content = kept(problem, "model content", lambda: b"".join([held.tobytes() for held in p]))
+    content = once_per_problem(problem, "model content", lambda: b"".join([held.tobytes() for held in p]))
     with _turn:
         free = _store.setdefault(size, [])
         place = next((i for i, (other, _) in enumerate(free) if other == content), None)

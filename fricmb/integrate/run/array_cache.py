@@ -16,7 +16,7 @@ _T = TypeVar("_T")
 MANY, LARGE = 32, 65_536
 
 
-def by_content(function: Callable[_P, _T]) -> Callable[_P, _T]:
+def cached_by_content(function: Callable[_P, _T]) -> Callable[_P, _T]:
     """The function with its last results kept, for small arrays; what it returns must never be written to.
 
     Arguments are arrays, and other things that can be keys of a dict.
