@@ -11,7 +11,7 @@ from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.model.steep_laws import steepness
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.run.problem_cache import kept
+from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 def many_rows(rtol: float) -> int:
@@ -50,7 +50,7 @@ def is_banded(problem: Problem) -> bool:
 
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
-    return kept(problem, ("choice", rtol), lambda: _choose(problem, rtol))
+    return once_per_problem(problem, ("choice", rtol), lambda: _choose(problem, rtol))
 
 
 def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
@@ -61,10 +61,12 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
-    if problem.n_c > 1 and (many := _many_contacts(problem)) is not None:
+    if problem.n_c > 1 and (many := _taylor_where_fastest(problem)) is not None:
         return many
-    if problem.n >= WIDE and 0 < problem.m + problem.n_v <= many_rows(rtol) and is_banded(problem):
-        return Bdf(), "few contacts on a structure that is a narrow band: the general method, transitions located"
+    contact_rows = problem.m + problem.n_v
+    if problem.n >= WIDE and 0 < contact_rows <= many_rows(rtol) and is_banded(problem):
+        why = f"{problem.n} degrees of freedom in a narrow band, {contact_rows} rows of contacts"
+        return Bdf(), f"{why}: the general method, transitions located"
     fast = Guarded()
     refusal = fast.refuses(problem) or too_far_apart(problem) if is_single(problem) else "several ports"
     if refusal is None:
@@ -87,20 +89,21 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     return Bdf(), f"the general method: {reason}"
 
 
-def _many_contacts(problem: Problem) -> tuple[Integrator, str] | None:
+def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
     """Taylor steps and why, where they are the fastest of several contacts."""
     from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
     from fricmb.integrate.taylor.prepare import fastest
-    from fricmb.integrate.taylor.prepare_groups import is_coupled
+    from fricmb.integrate.taylor.prepare_groups import coupled_or_rate_dependent
 
+    contacts = f"{problem.n_c} contacts"
     many = GuardedFewTaylor() if problem.n_c < FEW else GuardedTaylor()
     if many.refuses(problem) is not None:
         return None
-    if not is_coupled(problem):
-        return many, "many contacts under constant friction between few neighbours: Taylor steps, local corrections"
+    if not coupled_or_rate_dependent(problem):
+        return many, f"{contacts} under constant friction, none sharing a body: Taylor steps, local corrections"
     growth, narrow = steepness(problem, fastest(problem))
     if problem.n < DEEP * problem.n_c and not (growth > STEEP and narrow > NARROW):
-        return many, "contacts with friction of slip speed, or coupled by bodies: Taylor steps, local corrections"
+        return many, f"{contacts} with friction of slip speed, or sharing bodies: Taylor steps, local corrections"
     return None
 
 
