@@ -88,7 +88,9 @@ def _combined(motions: list[Motion], slopes: Sequence[Dual], turned: Dual) -> tu
 def _driven(joint: Joint, drive: tuple[Any, ...], seeds: Seeds) -> tuple[Given, Given, Given]:
     """A prescribed function of time of a joint, with its two derivatives."""
     kind, value, start = drive
-    orders: list[Given] = [Given(value, f"{joint.name}.drive", seeds, order=k) for k in range(3)]
+    # the number that is prescribed is known by the name of its slot, of those that may hold functions of time
+    (slot,) = (path for path, held in joint.slots().items() if held is value and joint._takes_expression(path))
+    orders: list[Given] = [Given(value, f"{joint.name}.{slot}", seeds, order=k) for k in range(3)]
     if kind != "rate":
         offset = Given(start, "", seeds)
         return _Shifted(orders[0], offset), orders[1], orders[2]

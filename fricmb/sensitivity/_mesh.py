@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.integrate.problem import SLIP, STICK, Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._found import whole
 from fricmb.sensitivity._landings import at_rest, left_out
 from fricmb.sensitivity._phases import BEFORE, Phases
 
@@ -23,6 +24,9 @@ _ROUNDS, _PARTS, _HELD = 16, 8, 1_000_000
 _FALLS, _NEARLY = 0.5, 2.0
 #: Logarithm of the volume of states that a coarse step may lose; where a step, of length 1, is looked at for its begin.
 _LOST, _BEGIN = 0.5, 1e-7
+#: Parts of a step at which slip over the time tells, by a polynomial, its direction at the begin; weights for that.
+_AFTER = np.array([0.25, 0.5, 0.75, 1.0])
+_TO_BEGIN = np.array([4.0, -6.0, 4.0, -1.0])
 #: Slip speeds that change by more in a step may be near a pole of friction.
 _DOUBLES = 2.0
 
@@ -56,6 +60,7 @@ class Stepper:
         self.varying = [k for k, contact in equations.contacts.items() if contact.depends_on_speed()]
         self.sets_out = np.zeros(phases.t.size - 1, dtype=bool)
         self.rests = at_rest(equations, phases, sample)
+        self.turning = [(k, begins) for k, begins, _ in self.rests if equations.contacts[k].d > 1]
         for k, begins, _ in self.rests:
             if k in self.varying and equations.contacts[k].d == 1:
                 self.sets_out |= begins
@@ -90,7 +95,7 @@ class Stepper:
             at = [*range(low.c.size - 1), c.size - 1]
             less = step_maps(low, h[own], slopes[:, at], rates[:, at], e.n, e.n_y)
             maps = step_maps(high, h[own], slopes[:, low.c.size - 1 :], rates[:, low.c.size - 1 :], e.n, e.n_y)
-            found.append(_difference(less - maps, maps, scale, e.n_y))
+            found.append(_difference(self._along(less - maps, t[own], h[own], phase[own]), maps, scale, e.n_y))
             kept = np.linalg.slogdet(maps[..., : e.n_y])[1]
             traces = np.trace(slopes[..., e.n : 2 * e.n], axis1=2, axis2=3)
             traces = traces + np.trace(rates[..., 2 * e.n : e.n_y], axis1=2, axis2=3)
@@ -113,6 +118,30 @@ class Stepper:
                 r = np.linalg.norm(g[self.equations.rows(k)], axis=0).reshape(2, -1)
                 found |= (self.phases.mode[k, phase] == SLIP) & (r.max(axis=0) > _DOUBLES * r.min(axis=0))
         return found
+
+    def _along(self, off: Floats, t: Floats, h: Floats, phase: Ints) -> Floats:
+        """Differences of maps (n_t, n_y, n_y + n_p) for what derivatives there may be at the begin of each step.
+
+        Where slip in several directions sets out its own derivative is along it, because it was 0 before.  What is
+        across would vanish at a rate like 1/r, of which no two formulas say the same, nor do shorter steps.
+        """
+        e = self.equations
+        for k, begins in self.turning:
+            first = np.flatnonzero(begins[phase] & (t == self.phases.t[phase]))
+            if not first.size:
+                continue
+            after, mode = t[first] + h[first] * _AFTER[:, None], self.phases.mode[:, phase[first]]
+            found = e.field(self.sample(after[0]), mode, self.phases.sign[:, phase[first]]).found
+            g = self.sample(after.ravel()).g[e.rows(k)].reshape(-1, *after.shape)
+            n = np.einsum("a,dat->td", _TO_BEGIN, g / _AFTER[:, None])
+            n /= np.linalg.norm(n, axis=1)[:, None] + 1e-300
+            slopes = whole(found.g[k], first.size, e.columns)[1][..., :-1]
+            for i, j in enumerate(first.tolist()):
+                held = [c for c, contact in e.contacts.items() if not contact.smooth and mode[c, i] == STICK]
+                B = e.projector(found, [*held, k], i)[1][:, -len(n[i]) :]
+                across = slopes[i] - np.outer(n[i], n[i] @ slopes[i])
+                off[j] -= off[j][:, e.n : 2 * e.n] @ B @ across
+        return off
 
     def _layers(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> Floats:
         """How far slopes at the begin of steps (n_t,) are, over the step, from what its nodes tell of them."""

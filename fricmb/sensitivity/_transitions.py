@@ -27,8 +27,9 @@ from fricmb.sensitivity._triggers import Trigger, Triggers
 
 #: An event function counts as 0 within this share of its scale, or this many tolerances.
 _ZERO, _TOLERANCES = 1e-7, 100.0
-#: Where in a stretch before slip passes rest its direction is looked at, from its end.
-_NEAR = 1e-3
+#: Where in a stretch before slip passes rest its direction is looked at, from its end; at least this long before, over
+#: 1 or the time: collocation comes up to such an instant by ever shorter steps.
+_NEAR, _LEAST = 1e-3, 1e-10
 #: Below this normalised rate a transition is too close to one that only touches to be trusted.
 TOUCHES = 1e-3
 
@@ -83,9 +84,9 @@ class Transitions:
         samples, mode = take(self.samples, [i for i, _, _ in found]), self.phases.mode[:, phase]
         sign, contacts = self.phases.sign[:, phase], [k for _, k, _ in found]
         t, near = self.phases.t, [0.5 if self.happened[i].kinds != [PASS] else _NEAR for i, _, _ in found]
+        aside = [max(x * (t[k + 1] - t[k]), _LEAST * max(1.0, t[k])) for k, x in zip(phase, near, strict=True)]
         beside = self.sample(np.array([
-            t[k + 1] - x * (t[k + 1] - t[k]) if ends else t[k] + x * (t[k + 1] - t[k])
-            for k, x, (_, _, ends) in zip(phase, near, found, strict=True)
+            t[k + 1] - x if ends else t[k] + x for k, x, (_, _, ends) in zip(phase, aside, found, strict=True)
         ])).g  # fmt: skip
         passing = [ends and self.happened[i].kinds == [PASS] for i, _, ends in found]
         own = field_at_rest(self.equations, samples, mode, sign, contacts, beside, passing)

@@ -163,7 +163,7 @@ class Rotor(SpaceBody):
 
     def gyroscopic(self) -> Element:
         """What turns the axis sideways."""
-        return Gyroscopic(self.name, self, C=self.inertia_axial)
+        return Gyroscopic(self.name, self, inertia_axial=self.inertia_axial)
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,11 +181,11 @@ class UnitAxis(InnerConstraint):
 
 @dataclass(frozen=True, eq=False)
 class Gyroscopic(Element):
-    """The force ``C s' n x n'`` on the axis of a rotor."""
+    """The force ``C s' n x n'`` on the axis of a rotor; C has the name that it has there, by which it is known."""
 
     body: End = GROUND
     _: KW_ONLY
-    C: Any
+    inertia_axial: Any
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Axis and spin."""
@@ -194,4 +194,4 @@ class Gyroscopic(Element):
 
     def define_force(self, x: tuple[Any, ...], x_dot: tuple[Any, ...], t: Any) -> tuple[Any, ...]:
         """Does no work."""
-        return (*(self.C * x_dot[3] * c for c in cross(x, x_dot)), 0)
+        return (*(self.inertia_axial * x_dot[3] * c for c in cross(x, x_dot)), 0)

@@ -1,5 +1,6 @@
 """Derivatives by differences of runs: what the tangent pass is compared with, and shares no code with."""
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -51,6 +52,39 @@ def derived(sol: Any, name: str) -> np.ndarray:
     """The same of the tangent pass."""
     signals = [*sol.dof_names, *(f"{dof}.velocity" for dof in sol.dof_names)]
     return np.array([*(sol.sensitivity(s, name)[-1] for s in signals), *(e.sensitivity(name) for e in sol.events)])
+
+
+def surest(
+    scene: Any, name: str, *, steps: Sequence[float] = (2e-3, 2e-4), **options: Any
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """A difference of runs and how sure it is: of two steps the better, and no surer than the two agree."""
+    found = [difference(scene, name, step=step, **options) for step in steps]
+    sure = sorted((one for one in found if one is not None), key=lambda one: one[1].max())
+    if len(sure) < 2:
+        return sure[0] if sure else None
+    (value, unsure), (other, less) = sure
+    return value, np.maximum(unsure, np.maximum(np.abs(value - other) - less, 0.0))
+
+
+def shares_off(sol: Any, names: Sequence[str], **options: Any) -> dict[str, float]:
+    """Of derivatives of a run how far they are from the surest differences, less what these are unsure by.
+
+    In shares of the largest; by parameters whose differences mean anything.
+    """
+    found = {}
+    for name in names:
+        best = surest(sol.scene, name, **options)
+        if best is not None:
+            value, unsure = best
+            error = np.maximum(np.abs(derived(sol, name) - value) - 3.0 * unsure, 0.0).max()
+            found[name] = float(error / max(np.abs(value).max(), 1e-2))
+    return found
+
+
+def said(sol: Any) -> list[float]:
+    """By how much of their size derivatives may be off as notes of a run say, or to how much they are known."""
+    sizes = re.compile(r"(?:by|to) (\d\S+?),? (?:of their size|')")
+    return [float(x) for note in sol.stats.notes for x in sizes.findall(note)]
 
 
 def worst(

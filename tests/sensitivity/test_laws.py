@@ -1,14 +1,12 @@
 """Derivatives under every law of the catalogue, beside differences of runs."""
 
-import re
-
 import numpy as np
 import pytest
 
 import fricmb as fm
 from tests.oracle.table import LAWS, SITUATIONS, case
 
-from .differences import derived, difference
+from .differences import derived, said, shares_off, surest
 
 #: Brings compiled code, and is refused.
 _LEFT_OUT = {"Contensou"}
@@ -23,16 +21,6 @@ def _of(name: str, situation: str):
     return scene, ("sole.normal_force", *[p for p in own if scene.parameters[p] != 0.0][:1])
 
 
-def _surest(scene, name, t_end):
-    """A difference of runs and how sure it is: of two steps the better, and no surer than the two agree."""
-    found = [difference(scene, name, step=step, t_end=t_end) for step in (2e-3, 2e-4)]
-    sure = sorted((one for one in found if one is not None), key=lambda one: one[1].max())
-    if len(sure) < 2:
-        return sure[0] if sure else None
-    (value, unsure), (other, less) = sure
-    return value, np.maximum(unsure, np.maximum(np.abs(value - other) - less, 0.0))
-
-
 @pytest.mark.parametrize("situation", _SITUATIONS)
 @pytest.mark.parametrize("name", sorted(LAWS.keys() - _LEFT_OUT))
 def test_law(name, situation):
@@ -40,18 +28,9 @@ def test_law(name, situation):
     scene, names = _of(name, situation)
     t_end = SITUATIONS[situation].t_end
     sol = fm.simulate(scene, t_end=t_end, rtol=_RTOL, sensitivities=names)
-    off = {}
-    for parameter in names:
-        surest = _surest(scene, parameter, t_end)
-        if surest is None:
-            continue
-        value, unsure = surest
-        error = np.maximum(np.abs(derived(sol, parameter) - value) - 3.0 * unsure, 0.0).max()
-        off[parameter] = error / max(np.abs(value).max(), 1e-2)
+    off = shares_off(sol, names, t_end=t_end)
     assert off
-    # notes say by how much of their size derivatives may be off, or to how much they are known
-    said = [float(x) for note in sol.stats.notes for x in re.findall(r"(?:by|to) (\d\S+) of their size", note)]
-    assert max(off.values()) < max(said, default=1e3 * _RTOL), (off, sol.stats.notes)
+    assert max(off.values()) < max(said(sol), default=1e3 * _RTOL), (off, sol.stats.notes)
 
 
 @pytest.mark.parametrize("name", ["Ambrosio", "Dahl", "LinearRegularised", "RateAndState", "Tabulated", "Threlfall"])
@@ -62,7 +41,7 @@ def test_law_in_a_joint(name):
     names = ("arm.inertia", *own[:1])
     sol = fm.simulate(scene, t_end=3.0, rtol=_RTOL, sensitivities=names)
     for parameter in names:
-        value, unsure = _surest(scene, parameter, 3.0)
+        value, unsure = surest(scene, parameter, t_end=3.0)
         error = np.maximum(np.abs(derived(sol, parameter) - value) - 3.0 * unsure, 0.0).max()
         assert error < 1e3 * _RTOL * np.abs(value).max()
         assert unsure.max() < 1e-3 * np.abs(value).max()

@@ -54,6 +54,16 @@ def test_dry_pendulum(name, own):
     assert sol.unsafe_events == ()
 
 
+def large_top():
+    """Moments of inertia that differences may change."""
+    return models.heavy_top(mass=5.0, inertia_across=0.2, inertia_axial=0.25, reach=0.4, spin=12.0)
+
+
+def skidding():
+    """A ball on a turntable under regularised friction, which lets it creep."""
+    return models.turntable(law=fm.laws.TanhRegularised(mu=0.3, v_reg=0.01), velocity=(1.3, 0.2))
+
+
 @pytest.mark.parametrize(
     ("make", "names", "t_end"),
     [
@@ -61,6 +71,8 @@ def test_dry_pendulum(name, own):
         (models.slider_crank, ("slider.mass", "crank.angular_velocity"), 0.08),
         (models.painleve_rod, ("tip.friction.mu_s", "rod.angular_velocity"), 1.0),
         (models.heavy_top, ("top.mass", "gravity.acceleration.z"), 0.3),
+        (large_top, ("top.inertia_axial", "top.inertia_across"), 0.3),
+        (skidding, ("table.turning", "ball.velocity.x"), 1.0),
     ],
 )
 def test_against_differences(make, names, t_end):
