@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.collocation.one_contact.prepare import is_single
 from fricmb.integrate.collocation.suits import against, port_rows, too_far_apart
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.methods.bdf import Bdf
 from fricmb.integrate.methods.free_vibration import Exact
+from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.model.steep_laws import steepness
-from fricmb.integrate.problem import Problem
+from fricmb.integrate.problem import LAW_SMOOTH, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 
 
@@ -55,8 +58,6 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
 
 def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     if problem.mechanism is not None:
-        from fricmb.integrate.methods.radau import Radau
-
         return Radau(), "bodies that turn or joints: one-step on the index-reduced system"
     exact = Exact()
     if exact.refuses(problem) is None:
@@ -86,7 +87,8 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
         return stepping, f"{crowd}; {_refusal_of_taylor(problem)}"
     if steps and problem.n > BEARABLE and problem.n_c and not is_banded(problem):
         return stepping, f"{problem.n} degrees of freedom in no narrow band: implicit steps over transitions"
-    return Bdf(), f"the general method: {reason}"
+    general = Radau() if np.any(problem.contacts.law == LAW_SMOOTH) else Bdf()
+    return general, f"the general method: {reason}"
 
 
 def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:

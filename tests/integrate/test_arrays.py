@@ -13,12 +13,15 @@ from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
 from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step
+from fricmb.integrate.methods.run_rooms import implicit_step, made
+from fricmb.integrate.methods.run_setup import Collector, set_accuracy
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Ints, Linear, Problem, Signals, Start, Templates
+from fricmb.integrate.run.workspace import Workspace
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_error import step_error
@@ -35,6 +38,11 @@ def one_try(
     error = step_error(packed, s, y, one, acc, h, address)
     finish(packed, s, end, one, acc, h, address)
     return error
+
+
+def begun(problem, start, t_end):
+    """A run in rooms of its own."""
+    return Collector(problem, start, t_end, Workspace(made(problem)).rooms)
 
 
 @entry
@@ -100,7 +108,7 @@ def test_which_contacts_hold_at_an_instant(seed):
     arrays = Arrays(seed, n=6, m=4)
     F, rate = modes_at_rest(arrays)
     rest = Start(t=0.0, q=np.zeros(6), v=np.zeros(6), z=np.zeros(0))
-    run = Collector(arrays.problem(), rest, 1.0)
+    run = begun(arrays.problem(), rest, 1.0)
     run.begin()
     np.testing.assert_allclose(run.y.F, F, atol=1e-9)
     assert ((run.y.mode == STICK) == (np.abs(F) < arrays.mu * arrays.N * (1 - 1e-12))).all()
@@ -152,9 +160,9 @@ def test_a_step_of_given_modes(seed, stages):
     mode = np.where(slipping, SLIP, STICK).astype(np.int8)
     start = Start(t=0.0, q=q, v=v, z=np.zeros(0), mode=mode, direction=sign * slipping)
     problem = arrays.problem()
-    run = Collector(problem, start, 1.0)
-    acc = accuracy(run, Tolerance(rtol=rtol))
-    one = one_step(problem, radau(stages), run.counts)
+    run = begun(problem, start, 1.0)
+    acc = set_accuracy(run, Tolerance(rtol=rtol))
+    one = room(implicit_step(problem, radau(stages)))
     run.begin()
     assert (np.asarray(run.y.mode) == mode).all()
     run.end.q[:], run.end.v[:], run.end.mode[:], run.end.n[:] = q, v, mode, sign * slipping
@@ -185,10 +193,10 @@ def test_a_step_is_as_accurate_as_its_order():
 
     problem, errors = arrays.problem(), []
     for h in (1.6, 0.8):
-        run = Collector(problem, Start(t=0.0, q=q, v=v, z=np.zeros(0)), 10.0)
-        one = one_step(problem, radau(5), run.counts)
+        run = begun(problem, Start(t=0.0, q=q, v=v, z=np.zeros(0)), 10.0)
+        one = room(implicit_step(problem, radau(5)))
         run.begin()
-        one_try(run.packed, run.scratch, run.y, run.end, one, accuracy(run, Tolerance(rtol=1e-3)), h, run.address)
+        one_try(run.packed, run.scratch, run.y, run.end, one, set_accuracy(run, Tolerance(rtol=1e-3)), h, run.address)
         exact = solve_ivp(rates, (0.0, h), np.concatenate([q, v]), method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
         errors.append(np.abs(np.asarray(run.end.v) - exact[4:]).max())
     assert 8.0 < np.log2(errors[0] / errors[1]) < 11.0

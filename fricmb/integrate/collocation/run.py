@@ -16,18 +16,16 @@ from fricmb.integrate.compile.block_places import CORE, PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.attempt_step import Clock
-from fricmb.integrate.methods.run_setup import Collector, accuracy, run_loop
-from fricmb.integrate.methods.time_loop import drive
-from fricmb.integrate.model.accelerations import State
-from fricmb.integrate.model.forces import scratch
+from fricmb.integrate.methods.one_step import one_step_loop
+from fricmb.integrate.methods.run_rooms import exact_step_rooms, run_rooms
+from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
+from fricmb.integrate.model.instant_rooms import InstantRooms
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes2, Floats, Floats2, Ints, Problem, Start
-from fricmb.integrate.step.contact_unknowns import port_state
 from fricmb.integrate.step.coulomb_newton import plain_ports
 from fricmb.integrate.step.exact_structure import Exact
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.radau_step import OneStep, one_step_of
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.step_matrix import Factor
 from fricmb.integrate.step.tableau import radau
@@ -69,20 +67,15 @@ def _no_factor() -> Factor:
     ))  # fmt: skip
 
 
-def exact_step(problem: Problem, exact: Exact, counts: Ints) -> OneStep:
-    """Room for exact steps."""
+def exact_step(problem: Problem, exact: Exact) -> OneStep:
+    """Arrays for exact steps."""
     s = exact.nx.shape[2]
-    none, nc = np.zeros((0, 0)), problem.n_c
-    empty = np.zeros(0)
+    none, empty = np.zeros((0, 0)), np.zeros(0)
     stages = Stages(
         none, none, none, none, none, np.zeros(s), empty, empty, np.zeros((s, s)), np.zeros((0, 0), complex),
         none, empty,
     )  # fmt: skip
-    return room(OneStep(
-        radau(s), _no_factor(), room(stages), port_state(problem, s), np.zeros(nc + problem.n_z),
-        np.zeros(problem.n), np.zeros(2), counts, np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s),
-        np.zeros(s + 1), np.zeros((s, nc)), exact,
-    ))  # fmt: skip
+    return one_step_of(problem, radau(s), _no_factor(), stages, exact)
 
 
 class ExactRun(RowTrajectory):
@@ -99,13 +92,13 @@ class ExactRun(RowTrajectory):
         self._nodes, self._exact_up_to = exact
 
     def _fill(
-        self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
+        self, rooms: InstantRooms, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
     ) -> None:
         packed, problem = packed_of(self.problem), self.problem
         exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         sample_exact(
-            packed, scratch(problem), y, exact, self._values, self._mode, packed.breakpoints, index, t, side, out,
+            packed, rooms.s, rooms.y, exact, self._values, self._mode, packed.breakpoints, index, t, side, out,
             modes, sizes, pivots, addresses("complete"),
         )  # fmt: skip
 
@@ -121,14 +114,9 @@ def run_general(
     nonlinear = len(problem.elements.table.address) > 0 or varies
     exact = exact_of(problem, s, safety, exact_up_to)
     columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
-    run = Collector(problem, start, t_end, places=places(bool(plain), nonlinear), columns=columns)
-    one = exact_step(problem, exact, run.counts)
-    acc = accuracy(run, tolerance)
-
-    def go_on(clock: Clock) -> int:
-        return drive(
-            run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
-        )
-
-    run.made = partial(ExactRun, exact=(s, exact_up_to))
-    return run_loop(run, run.begin(), go_on, memory, progress)
+    steps = exact_step_rooms(problem, exact, lambda: exact_step(problem, exact))
+    with run_rooms(problem) as rooms, steps as (one,):
+        run = Collector(problem, start, t_end, rooms, one, places=places(bool(plain), nonlinear), columns=columns)
+        set_accuracy(run, tolerance)
+        run.made = partial(ExactRun, exact=(s, exact_up_to))
+        return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)

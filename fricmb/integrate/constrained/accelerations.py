@@ -25,7 +25,7 @@ from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contac
 from fricmb.integrate.constrained.problem_structs import Mech, Moving, mech_of, mechanism_of
 from fricmb.integrate.constrained.slip_rows import add_stick
 from fricmb.integrate.model.forces import element_powers, gather
-from fricmb.integrate.problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem, Start
+from fricmb.integrate.problem import NORMAL_LAW, STICK, Codes, Floats, Ints, Pivots, Problem
 from fricmb.integrate.run.stop import stopped
 
 
@@ -61,15 +61,6 @@ def state_of(problem: Problem) -> State:
         np.zeros(nc), np.zeros(rows), np.zeros(rows), np.zeros(nz), np.ones(nc, np.int8), np.zeros(rows),
         np.zeros(nc + 2), np.zeros(nc + 2),
     )  # fmt: skip
-
-
-def set_out(y: State, start: Start) -> None:
-    """Bring an empty state to a start, forces still to be found."""
-    y.t[0], y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
-    if start.mode is not None:
-        y.mode[:] = start.mode
-    if start.direction is not None:
-        y.n[:] = start.direction
 
 
 class Instant(NamedTuple):

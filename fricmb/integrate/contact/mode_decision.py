@@ -17,7 +17,6 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.contact.disc_projection import release
 from fricmb.integrate.model.accelerations import (
     INFINITE,
@@ -31,7 +30,7 @@ from fricmb.integrate.model.accelerations import (
 from fricmb.integrate.model.forces import Scratch, normal_force
 from fricmb.integrate.model.friction_discs import share
 from fricmb.integrate.model.law_values import break_away, coefficient, magnitude
-from fricmb.integrate.model.problem_structs import Packed, Ports, Table
+from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
@@ -51,7 +50,6 @@ class Rest(NamedTuple):
 
     ports: Ports
     w: PortState
-    laws: Table
     mode: Codes
     part: Codes
     rested: Codes
@@ -60,26 +58,34 @@ class Rest(NamedTuple):
     small: Floats
 
 
-def rest(problem: Problem, packed: Packed) -> Rest:
-    """Room for the acceleration problem of a scene."""
-    nc = problem.n_c
+def rest_of(problem: Problem) -> Rest:
+    """Arrays for the acceleration problem of a scene."""
+    nc, ports = problem.n_c, packed_of(problem).ports
     plain = Contacts(
         row=problem.contacts.row, W=problem.contacts.W, w=problem.contacts.w, Wu=problem.contacts.Wu,
         z_start=np.zeros(nc + 1, np.int64), law=np.zeros(nc, np.int8), normal=np.zeros(nc, np.int8),
         Wn=problem.contacts.Wn,
     )  # fmt: skip
     w = port_state(replace(problem, contacts=plain), 1)
-    ports = packed.ports._replace(
+    ports = ports._replace(
+        mu_s=ports.mu_s.copy(),
+        mu_0=ports.mu_0.copy(),
         law=np.zeros(nc, np.int8),
-        mu_s=packed.ports.mu_s.copy(),
-        mu_0=packed.ports.mu_0.copy(),
         N=np.zeros(nc),
         var=np.full(nc, -1, np.int64),
         acts=np.zeros(nc, np.int8),
         z_start=np.zeros(nc + 1, np.int64),
     )
     mode, part, rested = (np.zeros(nc, np.int8) for _ in range(3))
-    return room(Rest(ports, w, packed.laws, mode, part, rested, np.zeros(nc), np.zeros((1, 1)), np.zeros(nc)))
+    return Rest(ports, w, mode, part, rested, np.zeros(nc), np.zeros((1, 1)), np.zeros(nc))
+
+
+def fill_rest(r: Rest, packed: Packed) -> None:
+    """Put the contacts of a scene into arrays made for another of the same sizes."""
+    for name in ("row", "W", "w", "Wu", "D", "mu_s", "mu_0", "Wn", "N0", "soft", "noise"):
+        mine, given = getattr(r.ports, name), getattr(packed.ports, name)
+        if mine is not given:
+            mine[...] = given
 
 
 @kernel
@@ -111,7 +117,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         elif r.part[k] == 2:
             r.mode[k] = SLIP
     for trial in range(6 * nc + 10):
-        if stopped() or not try_modes(y, r, s, address):
+        if stopped() or not try_modes(packed, y, r, s, address):
             break
         worst, back = find_wrong(y, r, held, least * big)
         if worst >= 0:
@@ -122,7 +128,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
             r.mode[worst] = SLIP
         elif back >= 0:
             r.mode[back] = STICK
-        elif not hold_again(y, r, s, held, least * big, address):
+        elif not hold_again(packed, y, r, s, held, least * big, address):
             break
         else:
             take_modes(packed, y, r, w.n[0], w.F[0])
@@ -160,7 +166,9 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
 
 
 @kernel
-def hold_again(y: State, r: Rest, s: Scratch, held: Floats, least: float, address: Ints) -> bool:
+def hold_again(
+    packed: Packed, y: State, r: Rest, s: Scratch, held: Floats, least: float, address: Ints
+) -> bool:
     """Where several were released, hold those that come to rest and need not slip; False without convergence.
 
     A contact that was released first may be able to stick once another has let go.  What breaks away (part 2) takes
@@ -177,7 +185,7 @@ def hold_again(y: State, r: Rest, s: Scratch, held: Floats, least: float, addres
         if r.mode[k] != SLIP or r.part[k] != 1 or r.rested[k] == 1 or count < 2:
             continue
         r.mode[k] = STICK
-        changed = not try_modes(y, r, s, address)
+        changed = not try_modes(packed, y, r, s, address)
         if not changed:
             worst, back = find_wrong(y, r, held, least)
             changed = worst >= 0 or back >= 0
@@ -185,11 +193,11 @@ def hold_again(y: State, r: Rest, s: Scratch, held: Floats, least: float, addres
             r.mode[k] = SLIP
         else:
             count -= 1
-    return not changed or try_modes(y, r, s, address)
+    return not changed or try_modes(packed, y, r, s, address)
 
 
 @kernel
-def try_modes(y: State, r: Rest, s: Scratch, address: Ints) -> bool:
+def try_modes(packed: Packed, y: State, r: Rest, s: Scratch, address: Ints) -> bool:
     """Forces and directions under ``r.mode``, from directions ``y.n``; False without convergence."""
     w = r.w
     for k in range(r.mode.shape[0]):
@@ -199,7 +207,7 @@ def try_modes(y: State, r: Rest, s: Scratch, address: Ints) -> bool:
             w.Fo[0, a] = 0.0
             w.gb[0, a] = y.a0[a]
             w.n[0, a] = y.n[a]
-    return bool(solve_ports(r.ports, r.laws, s, w, r.hA, r.mode, r.tol, address) >= 0)
+    return bool(solve_ports(r.ports, packed.laws, s, w, r.hA, r.mode, r.tol, address) >= 0)
 
 
 @kernel

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -28,7 +29,9 @@ from fricmb.integrate.methods.backward_differences import (
     start_history,
 )
 from fricmb.integrate.methods.bdf_step import bdf_step, note_loads
-from fricmb.integrate.methods.run_setup import Collector, accuracy, cost, one_step, run_loop, stages_for
+from fricmb.integrate.methods.one_step import run_one_step
+from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
+from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.time_loop import arrive, crowded
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
@@ -58,8 +61,8 @@ def calm(packed: Packed, y: State, h: float) -> bool:
     return True
 
 
-#: One-step steps to wait where BDF is not to be tried; first steps of the one-step method, in which its size settles.
-NEVER, SETTLE = 1 << 60, 8
+#: First steps of the one-step method, in which its size settles.
+SETTLE = 8
 
 
 @entry
@@ -152,27 +155,28 @@ class Bdf(Integrator):
             return constrained.run_mechanism(
                 problem, start, t_end, tolerance, count, progress, memory, multistep=True
             )
-        stages = stages_for(problem, tolerance.rtol, self.stages)
-        run = Collector(problem, start, t_end, "start_history", "bdf_step")
-        acc = accuracy(run, tolerance)
-        one = one_step(problem, radau(stages), run.counts)
-        multi = one_step(problem, one_stage(), run.counts)
-        code = run.begin()
-        jacobian_at(run.packed, run.scratch, run.y, multi.fac)
-        spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
-        signals = 2 * problem.n + problem.n_z + problem.n_c + 2
-        past = differences(signals, t_end - start.t, cost(problem, stages) / cost(problem, 1))
-        guard = guard_of(problem, spectral)
-        past.status[WAIT], past.status[SLOWER] = SETTLE, 1
+        formula = radau(stages_for(problem, tolerance.rtol, self.stages))
         if np.any(problem.contacts.law == LAW_SMOOTH):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:
             # as many steps of Radau are far more accurate there
-            past.status[WAIT] = NEVER
+            return run_one_step(problem, start, t_end, formula, tolerance, memory, progress)
+        single, several = step_rooms(problem, one_stage()), step_rooms(problem, formula)
+        with run_rooms(problem) as rooms, several as (one,), single as (multi,):
+            run = Collector(problem, start, t_end, rooms, one, multi, further=("start_history", "bdf_step"))
+            set_accuracy(run, tolerance)
+            code = run.begin()
+            return run_loop(run, code, bdf_loop(run, one, multi), memory, progress)
 
-        def go_on(clock: Clock) -> int:
-            return drive_bdf(
-                run.packed, run.scratch, run.y, run.end, one, multi, acc, past, guard, run.rest, run.old,
-                run.rows, clock, run.address,
-            )  # fmt: skip
 
-        return run_loop(run, code, go_on, memory, progress)
+def bdf_loop(run: Collector, one: OneStep, multi: OneStep) -> Callable[[], int]:
+    """The loop over steps of BDF, ``multi``, with those of the one-step method between them, ``one``."""
+    problem = run.problem
+    jacobian_at(run.packed, run.scratch, run.y, multi.fac)
+    spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
+    signals = 2 * problem.n + problem.n_z + problem.n_c + 2
+    past = differences(signals, run.t_end - run.start.t, cost(problem, len(one.tab.c)) / cost(problem, 1))
+    past.status[WAIT], past.status[SLOWER] = SETTLE, 1
+    return partial(
+        drive_bdf, run.packed, run.scratch, run.y, run.end, one, multi, run.acc, past, guard_of(problem, spectral),
+        run.rest, run.old, run.rows, run.clock, run.address,
+    )  # fmt: skip

@@ -12,15 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.methods.bdf2_paper_step import Last, drive_paper
-from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step, run_loop
+from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
+from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 from fricmb.integrate.trajectory import Trajectory
@@ -56,16 +57,12 @@ class Bdf2Paper(Integrator):
         """
         if step is None or not step > 0.0:
             raise ValueError(f"bdf2-paper needs a step > 0, got {step!r}")
-        run = Collector(problem, start, t_end, "solve_with")
-        # its equations are solved to round-off: their error is not to be seen beside that of the formula
-        acc = accuracy(run, Tolerance(rtol=1e-8))
-        one = one_step(problem, one_stage(), run.counts)
-        code = run.begin()
-        y = run.y
-        values = np.zeros(2 * problem.n + problem.n_z)
-        last = room(Last(values, np.zeros(1), y.mode.copy(), y.n.copy(), y.mode.copy()))
-
-        def go_on(clock: Clock) -> int:
-            return drive_paper(run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end, run.address)
-
-        return run_loop(run, code, go_on, None, progress)
+        with run_rooms(problem) as rooms, step_rooms(problem, one_stage()) as (one,):
+            run = Collector(problem, start, t_end, rooms, one, further=("solve_with",))
+            # its equations are solved to round-off: their error is not to be seen beside that of the formula
+            acc = set_accuracy(run, Tolerance(rtol=1e-8))
+            code, y = run.begin(), run.y
+            values = np.zeros(2 * problem.n + problem.n_z)
+            last = room(Last(values, np.zeros(1), y.mode.copy(), y.n.copy(), y.mode.copy()))
+            given = (run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end, run.address)
+            return run_loop(run, code, partial(drive_paper, *given), None, progress)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import ClassVar
 
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.methods.attempt_step import Clock
-from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step, run_loop
+from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
+from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.time_loop import drive
 from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.step.tableau import collocated
+from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.tableau import Tableau, collocated
 from fricmb.integrate.trajectory import Trajectory
 
 
@@ -60,14 +62,24 @@ class OneStepMethod(Integrator):
         memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
-        run = Collector(problem, start, t_end)
-        acc = accuracy(run, tolerance)
         tableau = collocated(tuple(float(c) for c in self.nodes(problem, tolerance.rtol)))
-        one = one_step(problem, tableau, run.counts)
+        return run_one_step(problem, start, t_end, tableau, tolerance, memory, progress)
 
-        def go_on(clock: Clock) -> int:
-            return drive(
-                run.packed, run.scratch, run.y, run.end, one, acc, run.rest, run.old, run.rows, clock, run.address
-            )
 
-        return run_loop(run, run.begin(), go_on, memory, progress)
+def run_one_step(
+    problem: Problem, start: Start, t_end: float, tableau: Tableau, tolerance: Tolerance, memory: float | None,
+    progress: Callable[[float], None] | None,
+) -> Trajectory:  # fmt: skip
+    """A run by the formula of a tableau; see ``Integrator.integrate``."""
+    with run_rooms(problem) as rooms, step_rooms(problem, tableau) as (one,):
+        run = Collector(problem, start, t_end, rooms, one)
+        set_accuracy(run, tolerance)
+        return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)
+
+
+def one_step_loop(run: Collector, one: OneStep) -> Callable[[], int]:
+    """The loop over the steps of one formula."""
+    return partial(
+        drive, run.packed, run.scratch, run.y, run.end, one, run.acc, run.rest, run.old, run.rows, run.clock,
+        run.address,
+    )  # fmt: skip

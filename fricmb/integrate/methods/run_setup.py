@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
-from fricmb.integrate.compile.room import room
-from fricmb.integrate.contact.event_location import Before
 from fricmb.integrate.contact.initial_modes import begin, natural_scales
-from fricmb.integrate.contact.mode_decision import rest
+from fricmb.integrate.contact.mode_decision import fill_rest
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.attempt_step import Clock
-from fricmb.integrate.model.accelerations import state
-from fricmb.integrate.model.forces import scratch
+from fricmb.integrate.methods.run_rooms import RunRooms
+from fricmb.integrate.model.accelerations import set_out
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.recorder import rows, widths
 from fricmb.integrate.output.row_trajectory import RowTrajectory
@@ -23,12 +19,7 @@ from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.band_matrix import places_of
-from fricmb.integrate.step.contact_unknowns import port_state
-from fricmb.integrate.step.exact_structure import no_exact
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
-from fricmb.integrate.step.stages import stages
-from fricmb.integrate.step.step_matrix import factor
-from fricmb.integrate.step.tableau import Tableau
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 3e7
@@ -38,58 +29,48 @@ CHUNK, CHUNK_BYTES = 4096, 3e7
 NOISE = 1e-11
 
 
-def accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
+def set_accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
     """Running scales at the start; ``atol``, or a trifle of what the scene's forces bring, gives floors under them."""
-    problem, start = run.problem, run.start
+    start, acc = run.start, run.acc
+    acc.rtol[0] = tolerance.rtol
     given = (tolerance.atol_q, tolerance.atol_v)
-    floor_q, floor_v = (
-        NOISE * natural if atol is None else np.array(np.broadcast_to(np.asarray(atol) / tolerance.rtol, problem.n))
-        for atol, natural in zip(given, (run.natural_q, run.natural_v), strict=True)
-    )
-    q, v, z = (np.abs(np.asarray(x, float)) for x in (start.q, start.v, start.z))
-    r, grain = np.zeros(problem.n_c), np.zeros(problem.n)
-    return room(Accuracy(np.array([tolerance.rtol]), q, v, z, r, floor_q, floor_v, grain))
-
-
-def one_step(problem: Problem, tableau: Tableau, counts: np.ndarray) -> OneStep:
-    """Room for steps of one tableau."""
-    s, nc = len(tableau.c), problem.n_c
-    return room(OneStep(
-        tableau, factor(problem, tableau), stages(problem, tableau), port_state(problem, s),
-        np.zeros(nc + problem.n_z), np.zeros(problem.n), np.zeros(2), counts, np.zeros((s, nc + 2)),
-        np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1), np.zeros((s, nc)), no_exact(),
-    ))  # fmt: skip
+    for floor, atol, natural in zip((acc.floor_q, acc.floor_v), given, (run.natural_q, run.natural_v), strict=True):
+        floor[:] = NOISE * natural if atol is None else np.asarray(atol) / tolerance.rtol
+    for scale, value in ((acc.q, start.q), (acc.v, start.v), (acc.z, start.z)):
+        scale[:] = np.abs(value)
+    return acc
 
 
 class Collector:
     """State and rooms of one run; takes the rows out of the kernels' room chunk by chunk.
 
-    ``made``: what is made of them in the end; ``columns``: what a method adds to a row.
+    ``rooms``: lent, all else is made; ``steps``: rooms of the formulas, which count their work; ``made``: what is made
+    of rows in the end; ``columns``: what a method adds to a row.
     """
 
     made: Callable[..., RowTrajectory] = staticmethod(RowTrajectory)
 
     def __init__(
-        self, problem: Problem, start: Start, t_end: float, *further: str, places: Ints | None = None, columns: int = 0
-    ) -> None:
+        self, problem: Problem, start: Start, t_end: float, rooms: RunRooms, *steps: OneStep,
+        further: tuple[str, ...] = (), places: Ints | None = None, columns: int = 0,
+    ) -> None:  # fmt: skip
         self.problem = problem
         self.start = start
         self.t_end = t_end
+        self.steps = steps
         self.packed = packed_of(problem)
-        self.scratch = scratch(problem)
-        self.y = state(problem, start)
-        self.end = state(problem, start)
+        self.scratch, self.y, self.end, self.rest, self.old, self.acc, self.clock = rooms
+        set_out(self.y, start)
+        set_out(self.end, start)
         self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
-        self.rest = rest(problem, self.packed)
-        self.old = room(Before(np.zeros(problem.n_c, np.int8), np.zeros(problem.m)))
         self.rows = rows(problem, self.chunk, columns)
-        self.counts = np.zeros(8, np.int64)
         half = int(self.packed.structure.half[0])
         self.address = places_of(half, "step_error", *further) if places is None else places
         self.natural_v, self.natural_q = natural_scales(
             problem, self.packed, self.scratch, start.t, t_end - start.t, start.q
         )
         self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
+        fill_rest(self.rest, self.packed)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
         self.chunks = Chunks(self.rows, "values", "kind", "mode")
 
@@ -108,7 +89,8 @@ class Collector:
             self.chunks.take()
         if self.chunks.broken:
             failure = failure or FAILURES[FAIL_INFINITE]
-        found = self.chunks.transitions(), counters(self.counts), end_of(self.y), failure
+        counts = np.sum([one.counts for one in self.steps], axis=0)
+        found = self.chunks.transitions(), counters(counts), end_of(self.y), failure
         return self.made(self.problem, self.chunks.parts, *found)
 
 
@@ -131,12 +113,13 @@ def cost(problem: Problem, stages: int) -> float:
 
 
 def run_loop(
-    run: Collector, code: int, step: Callable[[Clock], int], memory: float | None,
+    run: Collector, code: int, step: Callable[[], int], memory: float | None,
     progress: Callable[[float], None] | None,
 ) -> RowTrajectory:  # fmt: skip
     """Let ``step`` fill the room for rows, again and again, until the end of the run, of memory, or a failure."""
     if code == DONE:
-        code = run.chunks.fill(partial(step, clock_of(run)), run.y.t, memory, progress)
+        set_clock(run)
+        code = run.chunks.fill(step, run.y.t, memory, progress)
     if code == DONE:
         return run.trajectory(None)
     return run.trajectory(ended() or (None if code == FULL else FAILURES[code]))
@@ -154,8 +137,9 @@ def first_step(run: Collector) -> float:
     return float(max(h, 1e-12 * span))
 
 
-def clock_of(run: Collector) -> Clock:
+def set_clock(run: Collector) -> None:
     """Step control at the start of a run."""
-    h = np.array([first_step(run)])
-    span = np.array([run.start.t, run.t_end])
-    return room(Clock(h, h.copy(), span, run.packed.breakpoints, np.zeros(2, np.int64), np.zeros(2), np.zeros(2)))
+    clock = run.clock
+    clock.h[0] = clock.usual[0] = first_step(run)
+    clock.span[:] = run.start.t, run.t_end
+    clock.stops[:] = run.packed.breakpoints

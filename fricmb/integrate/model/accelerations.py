@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_real
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.forces import (
     Scratch,
     belt_velocity,
@@ -65,17 +64,23 @@ class State(NamedTuple):
     way: Floats
 
 
-def state(problem: Problem, start: Start) -> State:
-    """The state at the start of a run (forces and modes still to be found)."""
-    n, m, nc = problem.n, problem.m, problem.n_c
-    mode = np.full(nc, SLIP, np.int8) if start.mode is None else np.array(start.mode, np.int8)
-    direction = np.zeros(m) if start.direction is None else np.array(start.direction, float)
-    q, v, z = (np.array(x, dtype=float) for x in (start.q, start.v, start.z))
-    return room(State(
-        np.array([float(start.t)]), q, v, z, np.zeros_like(z), np.zeros(m), np.zeros(nc), direction, np.zeros(m),
-        np.zeros(n), np.zeros(n), mode, np.zeros(nc + 2), np.zeros(nc + 2), np.zeros(m), np.zeros(m), np.zeros(m),
-        np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n), np.zeros(m),
-    ))  # fmt: skip
+def state_of(problem: Problem) -> State:
+    """An empty state: at the origin, at rest, slipping."""
+    n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
+    return State(
+        np.zeros(1), np.zeros(n), np.zeros(n), np.zeros(nz), np.zeros(nz), np.zeros(m), np.zeros(nc), np.zeros(m),
+        np.zeros(m), np.zeros(n), np.zeros(n), np.full(nc, SLIP, np.int8), np.zeros(nc + 2), np.zeros(nc + 2),
+        np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n), np.zeros(m),
+    )  # fmt: skip
+
+
+def set_out(y: Any, start: Start) -> None:
+    """Bring an empty state, with joints or without, to a start; forces and modes are still to be found."""
+    y.t[0], y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
+    if start.mode is not None:
+        y.mode[:] = start.mode
+    if start.direction is not None:
+        y.n[:] = start.direction
 
 
 @kernel

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.problem_structs import Packed, Ports, Spread, Table
 from fricmb.integrate.model.structure import Structure
@@ -27,20 +26,21 @@ class Scratch(NamedTuple):
     window: Floats
 
 
-def scratch(problem: Problem) -> Scratch:
-    """Room for evaluating the given problem."""
+def longest_call(problem: Problem) -> tuple[int, int]:
+    """Most numbers that a template of the problem takes, and most that one gives."""
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 3
     n_x = max(8, states + 2)
     for templates in (problem.elements.table, problem.contacts.normal_table):
         n_x = max(n_x, int(np.max(np.diff(templates.x_start), initial=0)))
     n_f = int(np.max(np.diff(problem.elements.f_start), initial=0))
-    n_out = max(8 + n_f * (n_x + 4), 2 + n_x, states * (states + 3) + 4)
-    window = np.array([-np.inf, np.inf])
-    return room(
-        Scratch(
-            np.zeros(1 + 2 * problem.n + 2 * problem.n_u), np.zeros(problem.n_u), np.zeros(n_x), np.zeros(n_out), window
-        )
-    )
+    return n_x, max(8 + n_f * (n_x + 4), 2 + n_x, states * (states + 3) + 4)
+
+
+def scratch_of(problem: Problem) -> Scratch:
+    """Empty arrays for evaluating the given problem."""
+    X, ddu = np.zeros(1 + 2 * problem.n + 2 * problem.n_u), np.zeros(problem.n_u)
+    x, out = (np.zeros(size) for size in longest_call(problem))
+    return Scratch(X, ddu, x, out, np.array([-np.inf, np.inf]))
 
 
 @kernel

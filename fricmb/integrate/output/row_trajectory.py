@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.model.accelerations import State, state
-from fricmb.integrate.model.forces import scratch
+from fricmb.integrate.model.instant_rooms import InstantRooms, instant_rooms
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
@@ -99,10 +98,10 @@ class RowTrajectory(Trajectory):
         n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
         out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
         modes = np.zeros((len(t), nc), np.int8)
-        start = Start(t=0.0, q=np.zeros(n), v=np.zeros(n), z=np.zeros(nz))
         index = index.astype(np.int64)
         side = np.where(self._arriving[index] & (t <= self._times[index]), np.nextafter(t, -np.inf), self._times[index])
-        self._fill(state(problem, start), index, t, side, out, modes, energies)
+        with instant_rooms(problem) as rooms:
+            self._fill(rooms, index, t, side, out, modes, energies)
         ends = np.cumsum([1, n, n, nz, m, nc, m, nc + 2])
         _, q, v, z, F, N, g, work = np.split(np.ascontiguousarray(out.T), ends[:-1])
         return MotionSamples(t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T)), work
@@ -117,9 +116,9 @@ class RowTrajectory(Trajectory):
         return passed < first
 
     def _fill(
-        self, y: State, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
+        self, rooms: InstantRooms, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
     ) -> None:
-        """Rows of values and modes at times within the rows ``index``; ``y`` is room for a state.
+        """Rows of values and modes at times within the rows ``index``.
 
         ``side``: a time on the side of a breakpoint on which each is; ``energies``: whether they are needed.
         """
@@ -128,6 +127,6 @@ class RowTrajectory(Trajectory):
         rows = int(np.diff(self._steps).max(initial=1)) + 1
         part = np.zeros((rows if energies else 0, 2, problem.n_c + 2))
         sample_rows(
-            packed, scratch(problem), y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side, part,
+            packed, rooms.s, rooms.y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side, part,
             out, modes, sizes, pivots, addresses("complete"),
         )  # fmt: skip

@@ -21,13 +21,21 @@ LINE = 64
 class Workspace(Generic[_Rooms]):
     """Several rooms, all arrays of which lie in one piece of memory; rooms inside them are left where they are.
 
+    Where that is too much to be kept, arrays are left where they are, too.
+
     Attributes
     ----------
     rooms : named tuple of rooms
+    kept : whether they may be lent again
     """
 
     def __init__(self, values: _Rooms) -> None:
         arrays = _arrays_of(values)
+        self.kept = sum(array.nbytes for array in arrays) <= LARGE
+        kind: Any = type(values)
+        if not self.kept:
+            self.rooms = cast(_Rooms, kind._make([room(held) for held in values]))
+            return
         starts = np.cumsum([0, *(-(-array.nbytes // LINE) * LINE for array in arrays)]).tolist()
         self._memory = np.zeros(starts[-1], dtype=np.uint8)
         views = []
@@ -35,15 +43,9 @@ class Workspace(Generic[_Rooms]):
             view = self._memory[start : start + array.nbytes].view(array.dtype).reshape(array.shape)
             view[...] = array
             views.append(view)
-        kind: Any = type(values)
         places = iter(views)
         self.rooms = cast(_Rooms, kind._make([room(_placed(held, places)) for held in values]))
         self._blank = self._memory.copy()
-
-    @property
-    def nbytes(self) -> int:
-        """Size of the arrays."""
-        return self._memory.nbytes
 
     def clear(self) -> None:
         """Make all arrays what they were at first."""
@@ -69,22 +71,28 @@ def _placed(values: Any, places: Iterator[Any]) -> Any:
     ])  # fmt: skip
 
 
-_store: dict[Any, list[Workspace[Any]]] = {}
+#: Workspaces by their kind.
+Store = dict[Any, list[Workspace[Any]]]
+_store: Store = {}
 
 
 @contextmanager
-def lent(key: Any, make: Callable[[], _Rooms]) -> Iterator[_Rooms]:
-    """Rooms like those that ``make`` makes, for as long as they are needed; equal keys mean equal rooms."""
-    free = _store.get(key)
+def lent(key: Any, make: Callable[[], _Rooms], among: Store | None = None) -> Iterator[_Rooms]:
+    """Rooms like those that ``make`` makes, for as long as they are needed; equal keys mean equal rooms.
+
+    ``among``: those to find them among, of one scene for instance; by default of all scenes.
+    """
+    store = _store if among is None else among
+    free = store.get(key)
     if free is None:
-        for old in list(_store)[: len(_store) + 1 - KINDS]:
-            _store.pop(old, None)
-        free = _store[key] = []
+        for old in list(store)[: len(store) + 1 - KINDS]:
+            store.pop(old, None)
+        free = store[key] = []
     try:
         held = free.pop()  # of several threads one gets it
     except IndexError:
         held = Workspace(make())
     yield held.rooms
-    if len(free) < MANY and held.nbytes <= LARGE:
+    if held.kept and len(free) < MANY:
         held.clear()
         free.append(held)

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, smooth_force
 from fricmb.integrate.model.problem_structs import Ports, Table
@@ -45,7 +44,7 @@ class PortState(NamedTuple):
 
 
 def port_state(problem: Problem, s: int) -> PortState:
-    """Room for the ports of a problem at s stages."""
+    """Arrays for the ports of a problem at s stages."""
     m, nc, nz = problem.m, problem.n_c, problem.n_z
     nv = problem.n_v
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0))
@@ -69,7 +68,7 @@ def port_state(problem: Problem, s: int) -> PortState:
     G = np.zeros((s * (m + nv), s * (m + nv)))
     sizes, pivots = np.zeros(4, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
     solver = [np.zeros((unknowns, unknowns)), np.zeros(unknowns), np.zeros(s * (m + nv)), sizes, pivots]
-    return room(PortState._make([*rooms, local, G, *solver]))
+    return PortState._make([*rooms, local, G, *solver])
 
 
 @kernel

@@ -12,8 +12,8 @@ from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_state, set_time
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed, Ports
-from fricmb.integrate.problem import Floats, Floats2, Ints
-from fricmb.integrate.step.contact_unknowns import PortState
+from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.step.contact_unknowns import PortState, port_state
 from fricmb.integrate.step.exact_structure import Exact
 from fricmb.integrate.step.stage_predictor import start_at_rest, start_on_last
 from fricmb.integrate.step.stages import Stages, solve_stages
@@ -61,6 +61,16 @@ class OneStep(NamedTuple):
     series: Floats
     N: Floats2
     exact: Exact
+
+
+def one_step_of(problem: Problem, tableau: Tableau, fac: Factor, st: Stages, exact: Exact) -> OneStep:
+    """Arrays for steps of one tableau."""
+    s, nc = len(tableau.c), problem.n_c
+    return OneStep(
+        tableau, fac, st, port_state(problem, s), np.zeros(nc + problem.n_z), np.zeros(problem.n), np.zeros(2),
+        np.zeros(8, np.int64), np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1),
+        np.zeros((s, nc)), exact,
+    )  # fmt: skip
 
 
 @kernel

@@ -15,7 +15,6 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_state, set_time, structure_force
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Problem
@@ -46,13 +45,13 @@ class Stages(NamedTuple):
 
 
 def stages(problem: Problem, tableau: Tableau) -> Stages:
-    """Room for the stages of one step."""
+    """Arrays for the stages of one step."""
     n, s = problem.n, len(tableau.c)
     rooms = [np.zeros((s, n)) for _ in range(5)]
     levels = len(tableau.lam)
     history = [np.zeros(s), np.zeros(n), np.zeros(n), np.zeros((s, s)), np.zeros((levels, n), complex)]
     history += [np.zeros((s, s)), np.zeros(s)]
-    return room(Stages._make([*rooms, *history]))
+    return Stages._make([*rooms, *history])
 
 
 @kernel

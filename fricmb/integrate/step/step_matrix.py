@@ -15,7 +15,6 @@ from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_complex
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.forces import Scratch, normal_gradient, structure_jacobian
 from fricmb.integrate.model.problem_structs import Packed, packed_of
 from fricmb.integrate.problem import Complexes, Complexes2, Complexes3, Floats, Floats2, Floats3, Ints, Pivots, Problem
@@ -55,7 +54,7 @@ SLOTS, SLOT_BYTES = 24, 6.4e7
 
 
 def factor(problem: Problem, tableau: Tableau) -> Factor:
-    """Room for factors."""
+    """Arrays for factors."""
     n, s, levels = problem.n, len(tableau.c), len(tableau.lam)
     nv = problem.n_v
     mi = problem.m + nv
@@ -64,13 +63,13 @@ def factor(problem: Problem, tableau: Tableau) -> Factor:
     width = n if half < 0 else 3 * half + 1
     each = 16.0 * levels * n * width + 8.0 * s * s * mi * (n + mi)
     k = 2 if changes(problem) else int(np.clip(SLOT_BYTES / max(each, 1.0), 2, SLOTS))
-    return room(Factor(
+    return Factor(
         np.zeros((k * levels, n, width), complex), np.zeros((k, s * n, s * mi)), np.zeros((k, s * mi, s * mi)),
         np.zeros(k), np.zeros(2, np.int64), np.zeros(entries), np.zeros(entries), np.zeros((nv, n)), np.zeros((nv, n)),
         np.zeros((n, n) if half < 0 else (0, 0), complex), np.zeros((levels, mi, n), complex),
         np.zeros(0 if half < 0 else k * levels * n, np.int32),
         band_sizes(n, half), np.zeros(n, complex),
-    ))  # fmt: skip
+    )  # fmt: skip
 
 
 def changes(problem: Problem) -> bool:

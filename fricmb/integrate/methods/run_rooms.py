@@ -1,0 +1,78 @@
+"""Rooms that the runs of scenes without joints work in, lent by their sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.contact.event_location import Before
+from fricmb.integrate.contact.mode_decision import Rest, rest_of
+from fricmb.integrate.methods.attempt_step import Clock
+from fricmb.integrate.model.accelerations import State, state_of
+from fricmb.integrate.model.forces import Scratch, scratch_of
+from fricmb.integrate.model.instant_rooms import sizes_of
+from fricmb.integrate.problem import Problem
+from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.run.workspace import Store, lent
+from fricmb.integrate.step.exact_structure import Exact, no_exact
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, one_step_of
+from fricmb.integrate.step.stages import stages
+from fricmb.integrate.step.step_matrix import changes, factor
+from fricmb.integrate.step.tableau import Tableau
+
+
+class RunRooms(NamedTuple):
+    """Evaluation, the present state and the end of a step, contacts at rest, modes before, scales, step control."""
+
+    s: Scratch
+    y: State
+    end: State
+    rest: Rest
+    old: Before
+    acc: Accuracy
+    clock: Clock
+
+
+class StepRooms(NamedTuple):
+    """For steps of one formula."""
+
+    one: OneStep
+
+
+def run_rooms(problem: Problem) -> AbstractContextManager[RunRooms]:
+    """Rooms for a run by any method; states are empty."""
+    return lent(("run", sizes_of(problem)), lambda: made(problem))
+
+
+def step_rooms(problem: Problem, tableau: Tableau) -> AbstractContextManager[StepRooms]:
+    """Rooms for implicit steps of a formula."""
+    key = "steps", sizes_of(problem), changes(problem), tuple(tableau.c.tolist()), len(tableau.lam)
+    return lent(key, lambda: StepRooms(implicit_step(problem, tableau)))
+
+
+def exact_step_rooms(
+    problem: Problem, exact: Exact, make: Callable[[], OneStep]
+) -> AbstractContextManager[StepRooms]:
+    """Rooms for steps with an exact structure, which is the scene's own and lives as long as it."""
+    among: Store = once_per_problem(problem, "rooms of exact steps", dict)
+    return lent(id(exact), lambda: StepRooms(make()), among)
+
+
+def implicit_step(problem: Problem, tableau: Tableau) -> OneStep:
+    """Empty arrays for implicit steps."""
+    return one_step_of(problem, tableau, factor(problem, tableau), stages(problem, tableau), no_exact())
+
+
+def made(problem: Problem) -> RunRooms:
+    """Empty arrays for a run."""
+    n, nc, nz = problem.n, problem.n_c, problem.n_z
+    floats = [np.zeros(size) for size in (1, n, n, nz, nc, n, n, n)]
+    stops = np.zeros(problem.signals.breakpoints.size)
+    clock = Clock(np.zeros(1), np.zeros(1), np.zeros(2), stops, np.zeros(2, np.int64), np.zeros(2), np.zeros(2))
+    return RunRooms(
+        scratch_of(problem), state_of(problem), state_of(problem), rest_of(problem),
+        Before(np.zeros(nc, np.int8), np.zeros(problem.m)), Accuracy._make(floats), clock,
+    )  # fmt: skip
