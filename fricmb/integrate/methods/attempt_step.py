@@ -51,13 +51,14 @@ PATIENCE = 10
 class Clock(NamedTuple):
     """Step control: ``h`` (1,) next step, ``usual`` (1,) step to start with after a transition, ``span`` (2,) bounds.
 
-    ``stops`` breakpoints; ``same`` (2,) transitions in a row at one instant, and since the time ``retry[1]``;
-    ``found``, ``retry[0]`` room for locating.
+    ``longest`` (1,) step of all; ``stops`` breakpoints; ``same`` (2,) transitions in a row at one instant, and since
+    the time ``retry[1]``; ``found``, ``retry[0]`` room for locating.
     """
 
     h: Floats
     usual: Floats
     span: Floats
+    longest: Floats
     stops: Floats
     same: Ints
     found: Floats
@@ -90,10 +91,7 @@ def advance(
     """
     order = one.tab.c.shape[0]
     t = y.t[0]
-    # a hundred steps at least: where nothing moves, no error says how fast a load changes (with exact structure loads
-    # are among what is collocated, and the error knows them)
-    part = 0.01 if one.exact.ladder.shape[0] == 0 else 0.02
-    h = min(clock.h[0], part * (clock.span[1] - clock.span[0]))
+    h = min(clock.h[0], clock.longest[0])
     if h >= left * (1.0 - 1e-9):
         h = left
     elif one.exact.ladder.shape[0] > 0:

@@ -71,7 +71,8 @@ def made(problem: Problem) -> RunRooms:
     n, nc, nz = problem.n, problem.n_c, problem.n_z
     floats = [np.zeros(size) for size in (1, n, n, nz, nc, n, n, n)]
     stops = np.zeros(problem.signals.breakpoints.size)
-    clock = Clock(np.zeros(1), np.zeros(1), np.zeros(2), stops, np.zeros(2, np.int64), np.zeros(2), np.zeros(2))
+    h, usual, longest = (np.zeros(1) for _ in range(3))
+    clock = Clock(h, usual, np.zeros(2), longest, stops, np.zeros(2, np.int64), np.zeros(2), np.zeros(2))
     return RunRooms(
         scratch_of(problem), state_of(problem), state_of(problem), rest_of(problem),
         Before(np.zeros(nc, np.int8), np.zeros(problem.m)), Accuracy._make(floats), clock,

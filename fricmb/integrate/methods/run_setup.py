@@ -12,6 +12,7 @@ from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.run_rooms import RunRooms
 from fricmb.integrate.model.accelerations import set_out
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.output.recorder import rows, widths
 from fricmb.integrate.output.row_trajectory import RowTrajectory
 from fricmb.integrate.problem import Ints, Problem, Start
@@ -20,6 +21,7 @@ from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.band_matrix import places_of
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.stages import STIFF
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 3e7
@@ -137,9 +139,34 @@ def first_step(run: Collector) -> float:
     return float(max(h, 1e-12 * span))
 
 
+#: Parts of a run that a step may take: where signals are prescribed, with exact structure, and else.
+SAMPLED, COLLOCATED, FREE = 0.01, 0.02, 0.1
+
+
+def longest_step(run: Collector) -> float:
+    """The longest step that is taken, whatever its error.
+
+    Where nothing moves no error says how fast a prescribed load changes, so these are looked at a hundred times; with
+    exact structure they are among what is collocated, and the error knows them.  Without loads the error knows all
+    but what stiff parts leave to round-off, which grows with steps.
+    """
+    problem, span = run.problem, run.t_end - run.start.t
+    if len(run.steps[0].exact.ladder):
+        return COLLOCATED * span
+    loaded = problem.n_u > 0 or len(problem.elements.table.address) > 0
+    return SAMPLED * span if loaded or structure_is_stiff(run.packed.structure, FREE * span) else FREE * span
+
+
+def structure_is_stiff(structure: Structure, h: float) -> bool:
+    """Whether forces of springs and dampers over a step h are far above those of inertia; see ``stages.is_stiff``."""
+    inertia = np.repeat(structure.M[structure.own], np.diff(structure.first))
+    return bool(np.any(h * (np.abs(structure.C) + h * np.abs(structure.K)) > STIFF * inertia))
+
+
 def set_clock(run: Collector) -> None:
     """Step control at the start of a run."""
     clock = run.clock
     clock.h[0] = clock.usual[0] = first_step(run)
     clock.span[:] = run.start.t, run.t_end
+    clock.longest[0] = longest_step(run)
     clock.stops[:] = run.packed.breakpoints
