@@ -10,6 +10,7 @@ import numpy as np
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._blame import blame, undefined
 from fricmb._simulate._closes import ledger_note
+from fricmb._simulate._digits import digit_notes
 from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
 from fricmb._simulate._misses import miss_notes
@@ -57,7 +58,8 @@ def make_solution(
         t = trajectory.ends[1]
         reason, end = failure, t
     if not ended:
-        reason = undefined(mechanics, trajectory, t) or f"{reason}{blame(mechanics, trajectory, t)}"
+        digits = "".join(f"; {note}" for note in digit_notes(trajectory, None))
+        reason = undefined(mechanics, trajectory, t) or f"{reason}{blame(mechanics, trajectory, t)}{digits}"
     # of a long run that takes much longer than ending it: Ctrl-C does not wait for it
     later = partial(_sound_part, mechanics, trajectory, stats, span, end)
     raise IntegrationError(f"{method} stopped at t = {t:.10g}: {reason}", t=t, reason=reason, later=later)
@@ -83,7 +85,7 @@ def find_notes(sol: Solution) -> tuple[str, ...]:
         notes = ledger_note(sol, rtol)
     except IntegrationError as error:
         notes = (f"energies are beyond what numbers hold: {error.reason}",)
-    return (*notes, *miss_notes(sol, piece.trajectory, rtol))
+    return (*notes, *digit_notes(piece.trajectory, rtol), *miss_notes(sol, piece.trajectory, rtol))
 
 
 def _sound_part(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
+
 import numpy as np
 
 from fricmb.integrate.collocation.exact_room import free_blocks
@@ -21,6 +24,8 @@ WIDE, LARGEST = 5, 400
 #: Ratio of squared frequencies above which an eigenproblem leaves too few digits of the slow ones, and from which what
 #: is left of them is round-off of zero.
 APART, NOTHING = 1e11, 5e13
+#: Round-off of the sum of a row of K, relative to its diagonal.
+ROW_GRAIN = 1e-15
 
 
 def too_far_apart(problem: Problem) -> str | None:
@@ -32,10 +37,24 @@ def too_far_apart(problem: Problem) -> str | None:
     w2 = np.abs(free_blocks(problem).w2)
     most = w2.max(initial=0.0)
     least = w2[w2 > most / NOTHING].min(initial=most)
+    if np.any(w2 <= most / NOTHING) and hides_springs(problem):
+        return f"frequencies of {np.sqrt(most):.3g} beside some that an eigenproblem cannot tell from 0"
     if most <= APART * least:
         return None
     slow, fast = np.sqrt(least), np.sqrt(most)
     return f"frequencies from {slow:.3g} to {fast:.3g}: an eigenproblem leaves the slow ones too few digits"
+
+
+def hides_springs(problem: Problem) -> bool:
+    """Whether some row of K has a sum that is more than round-off of the row, and too little for an eigenproblem.
+
+    That is a spring to ground beside stiff ones: what looks like a free motion is none.
+    """
+    n = problem.n
+    K = problem.linear.csr("Kx").block(slice(0, n), slice(0, n))
+    sums = np.array([math.fsum(K.value[a:b]) for a, b in pairwise(K.start)])
+    own = np.abs(K.diagonal())
+    return bool(np.any((np.abs(sums) > ROW_GRAIN * own) & (np.abs(sums) < 10.0 / NOTHING * own)))
 
 
 def port_rows(problem: Problem) -> int:

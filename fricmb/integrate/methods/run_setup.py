@@ -153,12 +153,13 @@ def longest_step(run: Collector) -> float:
     problem, span = run.problem, run.t_end - run.start.t
     if len(run.steps[0].exact.ladder):
         return COLLOCATED * span
-    loaded = problem.n_u > 0 or len(problem.elements.table.address) > 0
+    uniform = problem.signals.uniform.size == problem.n_u and bool(np.all(problem.signals.uniform))
+    loaded = not uniform or len(problem.elements.table.address) > 0
     return SAMPLED * span if loaded or structure_is_stiff(run.packed.structure, FREE * span) else FREE * span
 
 
 def structure_is_stiff(structure: Structure, h: float) -> bool:
-    """Whether forces of springs and dampers over a step h are far above those of inertia; see ``stages.is_stiff``."""
+    """Whether forces of springs and dampers over a step h are far above those of inertia; see ``stages.stiffness``."""
     inertia = np.repeat(structure.M[structure.own], np.diff(structure.first))
     return bool(np.any(h * (np.abs(structure.C) + h * np.abs(structure.K)) > STIFF * inertia))
 

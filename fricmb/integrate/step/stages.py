@@ -118,24 +118,30 @@ def structure_correction(packed: Packed, tab: Tableau, fac: Factor, st: Stages, 
                 dV[i, a] -= (T[i, x] * value).real
 
 
-#: Forces of the structure beside inertia over a step from which on one solution with the inverses is not enough, and
-#: how often it is refined then.
-STIFF, REFINEMENTS = 1e4, 4
+#: Forces of the structure beside inertia over a step from which on one solution with the inverses is not enough, how
+#: often it is refined then, and what the last time may change, in units of ``scale``: inverses that have lost all
+#: digits of what is soft refine nothing, and a shorter step is to be taken.
+STIFF, REFINEMENTS, UNSETTLED = 1e4, 4, 100.0
 
 
 @kernel
-def is_stiff(packed: Packed, fac: Factor, hA: Floats2) -> bool:
-    """Whether rounding (of M + sigma C + sigma^2 K, of starts far from stiff motion) takes digits from soft motion."""
+def stiffness(packed: Packed, fac: Factor, hA: Floats2) -> float:
+    """Forces of the structure beside inertia over a step, by the stiffest entry, in units of STIFF.
+
+    Above 1 rounding (of M + sigma C + sigma^2 K, of starts far from stiff motion) takes digits from soft motion.
+    """
     h = 0.0
     for j in range(hA.shape[0]):
         h += hA[hA.shape[0] - 1, j]
     structure, K, C = packed.structure, fac.K, fac.C
+    most = 0.0
     for i in range(structure.f.shape[0]):
         inertia = structure.M[structure.own[i]]
         for e in range(structure.first[i], structure.first[i + 1]):
-            if h * (abs(C[e]) + h * abs(K[e])) > STIFF * inertia:
-                return True
-    return False
+            force = h * (abs(C[e]) + h * abs(K[e]))
+            if force > most * inertia:
+                most = force / inertia
+    return most / STIFF
 
 
 @block
@@ -161,7 +167,10 @@ def solve_stages(
     m = ports.row[-1]
     mi = w.Fin.shape[1]
     linear = packed.elements.address.shape[0] == 0 and mi == m
-    once = linear and not is_stiff(packed, fac, st.hA)
+    stiff = stiffness(packed, fac, st.hA)
+    once = linear and stiff <= 1.0
+    # what velocities leave unsolved is a force of stiff springs, by which contacts let go: it has to be as small
+    done = 1e-3 / max(1.0, stiff) if linear else 1e-3
     last = np.inf
     P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
     w.G[:] = fac.G[fac.slot[0]]
@@ -197,10 +206,14 @@ def solve_stages(
                 change = max(change, abs(value) / scale[a])
         if not change < np.inf:
             return -1
-        if once or (linear and (iteration == REFINEMENTS or change > 0.1 * last)):
+        if once:
+            break
+        if linear and (iteration == REFINEMENTS or change > 0.1 * last):
+            if change > UNSETTLED:
+                return -1
             break
         rate = change / last
-        if change < 1e-3 or (iteration > 0 and rate < 0.9 and change * rate / (1.0 - rate) < 0.1):
+        if change < done or (not linear and iteration > 0 and rate < 0.9 and change * rate / (1.0 - rate) < 0.1):
             break
         if iteration > 1 and rate > 2.0:
             return -1

@@ -1,0 +1,58 @@
+"""Whether the digits of positions resolve the forces of stiff springs: what no step can mend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from fricmb._simulate._closes import FIXED
+from fricmb._simulate._joined import JoinedRun
+from fricmb.integrate import Trajectory
+from fricmb.integrate.problem import EVENT_SLIP, Floats, Problem
+
+#: Relative round-off of a number.
+EPS = float(np.finfo(float).eps)
+
+
+def digit_notes(trajectory: Trajectory, rtol: float | None) -> tuple[str, ...]:
+    """Sentences for ``stats.notes`` where round-off of positions is a force that matters to contacts that let go.
+
+    A spring K between positions q gives forces in steps of K times the last digit of q.  A contact lets go when the
+    force that it holds reaches its limit, so the time of that is no better known than that force.
+    """
+    runs = [run for _, run in trajectory.runs] if isinstance(trajectory, JoinedRun) else [trajectory]
+    least = FIXED if rtol is None else rtol
+    asked = "" if rtol is None else f" (rtol = {rtol:g} is not reached)"
+    return tuple(
+        f"round-off of positions times the stiffest springs is {part:.1e} of the friction limit of contact {name!r}:"
+        f" when it lets go, and what follows from that, is no more exact{asked}"
+        for run in runs
+        for name, part in _unresolved(run, least)
+    )
+
+
+def _unresolved(run: Trajectory, least: float) -> Iterator[tuple[str, float]]:
+    """Contacts whose forces are resolved to a part of their limit above ``least``, and that part."""
+    problem = run.problem
+    if problem.mechanism is not None or problem.n_c == 0:
+        return
+    seen = run.row_motion()
+    noise = force_grain(problem, np.abs(seen.q).max(axis=1, initial=0.0))
+    contacts = problem.contacts
+    events = run.transitions
+    for k in np.unique(events.contact[events.kind == EVENT_SLIP]):
+        limit = float(contacts.mu_s[k] * seen.N[k].max(initial=0.0))
+        grain = float(noise[contacts.row[k] : contacts.row[k + 1]].max())
+        if grain > least * limit > 0.0:
+            yield problem.contact_names[k], grain / limit
+
+
+def force_grain(problem: Problem, q: Floats) -> Floats:
+    """Round-off on the rows of contacts (m,) of the forces of springs, at positions as large as q (n,)."""
+    n = problem.n
+    K = problem.linear.csr("Kx").block(slice(0, n), slice(0, n))
+    on_dofs = EPS * (replace(K, value=np.abs(K.value)) @ q)
+    W = problem.contacts.csr("W")
+    return np.bincount(W.index, np.abs(W.value) * on_dofs[W.rows], problem.m)

@@ -1,0 +1,51 @@
+"""Runs borrow the rooms that they work in: those of one run never reach another."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+
+SCENES = {
+    "lugre": lambda: fm.models.belt_oscillator(
+        law=fm.laws.LuGre(sigma0=1e3, sigma1=10.0, sigma2=0.1, mu_s=1.2, mu_k=1.0, v_s=0.1)
+    ),
+    "planar": fm.models.planar_oscillator,
+    "row": lambda: fm.models.stick_slip_chain(3, laws=[fm.laws.Stribeck(mu_s=1.3, mu_k=1.0, v_s=0.1)] * 3),
+}
+
+
+def motion(sol):
+    return np.concatenate([np.asarray(x, float).ravel() for x in (sol.t, sol.q, sol.v, [e.t for e in sol.events])])
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_inside_another_changes_nothing(name, method):
+    """From a callback in the middle of a run the same scene is run, with other values and with the same."""
+    scene, how = SCENES[name](), {"t_end": 6.0, "rtol": 1e-6, "method": method}
+    alone = motion(fm.simulate(scene, **how))
+    mass = next(p for p in scene.parameters if p.endswith(".mass"))
+    other = {mass: 1.5 * scene.parameters[mass]}
+    inner, parts = [], []
+
+    def look(part):
+        parts.append(part.t_end)
+        inner.append(motion(fm.simulate(scene, **how)))
+        fm.simulate(scene, parameters=other, **how)
+
+    chunks = fm.simulate(scene, on_chunk=look, chunk=2.0, **how)
+    assert len(parts) > 1
+    assert all(np.array_equal(one, alone) for one in inner)
+    np.testing.assert_allclose(chunks.q[:, -1], fm.simulate(scene, **how).q[:, -1], rtol=1e-4, atol=1e-6)
+    assert np.array_equal(motion(fm.simulate(scene, **how)), alone)
+
+
+def test_without_prescribed_loads_a_run_takes_few_steps():
+    """A puck that comes to rest: as many steps as its motion needs, not a hundred; with a load in time a hundred."""
+    puck = fm.models.puck_on_belt()
+    assert fm.simulate(puck, t_end=1.0, rtol=1e-4, method="radau").stats.n_steps < 40
+    body = next(p for p in puck.parts if isinstance(p, fm.Body))
+    pulse = fm.Force("pulse", body, axis=next(iter(body.axes)), value=1e-3 * fm.t**2)
+    assert fm.simulate(fm.Scene("pulse", [*puck.parts, pulse]), t_end=1.0, rtol=1e-4, method="radau").stats.n_steps > 90
