@@ -55,4 +55,4 @@ def force_grain(problem: Problem, q: Floats) -> Floats:
     K = problem.linear.csr("Kx").block(slice(0, n), slice(0, n))
     on_dofs = EPS * (replace(K, value=np.abs(K.value)) @ q)
     W = problem.contacts.csr("W")
-    return np.bincount(W.index, np.abs(W.value) * on_dofs[W.rows], problem.m)
+    return np.bincount(W.index, np.abs(W.value) * on_dofs[W.rows], problem.m).astype(float)
