@@ -41,8 +41,9 @@ def _unresolved(run: Trajectory, least: float) -> Iterator[tuple[str, float]]:
     seen = run.row_motion()
     noise = force_grain(problem, np.abs(seen.q).max(axis=1, initial=0.0))
     contacts = problem.contacts
-    events = run.transitions
-    for k in np.unique(events.contact[events.kind == EVENT_SLIP]):
+    events, span = run.transitions, np.ptp(run.ends)
+    # what sets out at the start has not been held
+    for k in np.unique(events.contact[(events.kind == EVENT_SLIP) & (events.t > run.ends[0] + 1e-6 * span)]):
         limit = float(contacts.mu_s[k] * seen.N[k].max(initial=0.0))
         grain = float(noise[contacts.row[k] : contacts.row[k + 1]].max())
         if grain > least * limit > 0.0:

@@ -32,6 +32,7 @@ FOUND = {
     ("line", 3006): "exact structure: no step without a scale where springs alone are held by a varying normal force",
     ("modes", 31027): "slip that begins without a jump of its acceleration ended, and began again, 2e-12 later",
     ("modes", 31387): "the same where two contacts rub",
+    ("roller", 120004): "slip that sets out under falling friction: growth that was over within one step",
     ("stack", 3005): "Taylor steps: plates went with a belt whose velocity jumps",
     ("stack", 2026): "time stepping: contacts broke away on lines through the jumps of what holds them",
     ("stack", 1001): "time stepping: a rest that came late in a step was left again",

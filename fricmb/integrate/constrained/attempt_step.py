@@ -13,6 +13,7 @@ from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import dips, near_singular, nears_singular, step_to_singular
+from fricmb.integrate.constrained.slip_growth import too_long
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
@@ -97,6 +98,7 @@ def radau_step(
         c.h[0] = 0.4 * h
         return REJECTED
     error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol[0])
+    error = max(error, too_long(mech, k, y, st, h, s + 1))
     if not error < 1e300:
         c.counts[1] += 1
         c.h[0] = 0.4 * h

@@ -11,8 +11,8 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
-from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats
+from fricmb.integrate.model.problem_structs import Packed, Table
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate.step.radau_step import OneStep
 
 #: Longest step, in times by which slip grows e-fold.
@@ -35,14 +35,15 @@ def damped(packed: Packed, k: int) -> float:
 
 
 @kernel
-def drive(packed: Packed, s: Scratch, k: int, g: Floats, N: float, z: Floats, h: float) -> float:
+def drive(
+    laws: Table, row: Ints, z_start: Ints, s: Scratch, k: int, g: Floats, N: float, z: Floats, h: float
+) -> float:
     """Part of the slope of a smooth law's force by velocity that drives, along the velocity; states follow within h."""
-    ports = packed.ports
-    row0, z0 = ports.row[k], ports.z_start[k]
-    d, nz = ports.row[k + 1] - row0, ports.z_start[k + 1] - z0
-    smooth_force(packed.laws, k, s, g, row0, d, N, z, z0, nz)
+    row0, z0 = row[k], z_start[k]
+    d, nz = row[k + 1] - row0, z_start[k + 1] - z0
+    smooth_force(laws, k, s, g, row0, d, N, z, z0, nz)
     width = d + 1 + nz
-    speed = magnitude(ports.row, k, g)
+    speed = magnitude(row, k, g)
     value = 0.0
     for a in range(d):
         for b in range(d):
@@ -61,9 +62,9 @@ def fall_of(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, h: float
     """Largest slope, at the start and at the stages, by which friction of contact k falls with slip speed."""
     ports, w = packed.ports, one.w
     if ports.law[k] == LAW_SMOOTH:
-        value = drive(packed, s, k, y.g, y.N[k], y.z, h)
+        value = drive(packed.laws, ports.row, ports.z_start, s, k, y.g, y.N[k], y.z, h)
         for j in range(w.r.shape[0]):
-            value = max(value, drive(packed, s, k, w.g[j], w.N[j, k], w.z[j], h))
+            value = max(value, drive(packed.laws, ports.row, ports.z_start, s, k, w.g[j], w.N[j, k], w.z[j], h))
         return float(value)
     speed = magnitude(ports.row, k, y.g)
     value = -coefficient(ports, packed.laws, k, s, speed, y.N[k])[1] * y.N[k]

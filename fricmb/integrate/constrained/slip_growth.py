@@ -1,0 +1,52 @@
+"""Growth of slip in scenes with joints where friction falls with speed: see ``step.slip_growth``."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.slip_rows import lightness
+from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats
+from fricmb.integrate.step.slip_growth import LONGEST, drive
+
+
+@kernel
+def fall_at(mech: Mech, k: Moving, p: int, g: Floats, N: float, z: Floats, h: float) -> float:
+    """Slope by which friction of port p falls with slip speed."""
+    port = mech.port
+    load = N if port.joint[p] >= 0 else max(N, 0.0)
+    if port.law[p] == LAW_SMOOTH:
+        return drive(port.laws, port.row, port.z_start, k.s, p, g, load, z, h)
+    return float(-coefficient(port, port.laws, p, k.s, magnitude(port.row, p, g), load)[1] * abs(load))
+
+
+@kernel
+def growth(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> float:
+    """Length of the step from y, whose stages are solved, in units of the longest that sees slip grow.
+
+    Bodies count as if they had no joints: they are heavier with them, and slip grows slower.
+    """
+    port = mech.port
+    worst = 0.0
+    for p in range(y.mode.shape[0]):
+        if y.mode[p] != SLIP or port.law[p] == LAW_CONSTANT:
+            continue
+        fall = fall_at(mech, k, p, y.g, y.N[p], y.z, h)
+        for j in range(st.g.shape[0]):
+            fall = max(fall, fall_at(mech, k, p, st.g[j], st.N[j, p], st.Z[j], h))
+        if fall <= 0.0:
+            continue
+        light = 0.0
+        for a in range(port.row[p + 1] - port.row[p]):
+            light = max(light, lightness(mech, k, p, a, y.lam, mech.mass, mech.address))
+        worst = max(worst, h * fall * light / LONGEST)
+    return float(worst)
+
+
+@kernel
+def too_long(mech: Mech, k: Moving, y: State, st: Stages, h: float, order: int) -> float:
+    """The error of a step that is too long to see slip grow, such that control by ``order`` shortens it; else 0."""
+    ratio = growth(mech, k, y, st, h)
+    return float(ratio**order) if ratio > 1.0 else 0.0
