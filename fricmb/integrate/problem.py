@@ -272,6 +272,12 @@ class Problem:
         return len(self.linear.fx) - self.n_u
 
     @property
+    def loads_bend(self) -> bool:
+        """Whether some prescribed signal is not known to be linear in time."""
+        uniform = self.signals.uniform
+        return bool(self.n_u > 0 and not (uniform.size and uniform.all()))
+
+    @property
     def n_u(self) -> int:
         """Number of prescribed signals."""
         return len(self.signals.table.address)

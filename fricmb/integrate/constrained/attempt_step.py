@@ -73,7 +73,7 @@ def radau_step(
     s = st.tab.c.shape[0]
     t = y.t[0]
     left = stop - t
-    h = c.h[0]
+    h = min(c.h[0], c.longest[0])
     if h >= left:
         h = left
     elif h > 0.5 * left:

@@ -152,7 +152,7 @@ def select_order(y: State, c: Control, past: Differences, formula: Formula, erro
     if k < MAX_ORDER:
         higher = scaled(y, c, past, formula, past.D[k + 2], 1.0 / (k + 2))
     best_k, best = best_order(k, lower, error, higher)
-    change_order(past, best_k, ladder(min(best, GROWTH), BDF_RUNGS))
+    change_order(past, best_k, ladder(min(best, GROWTH, c.longest[0] / past.h[0]), BDF_RUNGS))
 
 
 @kernel

@@ -26,6 +26,7 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.step.step_control import SAMPLED
 
 CHUNK = 1024
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
@@ -86,6 +87,7 @@ def _set_up(rooms: Rooms, problem: Problem, start: Start, t_end: float, toleranc
     for state in (y, rooms.end, rooms.before):
         set_out(state, start)
     c.rtol[0], c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
+    c.longest[0] = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
     c.v[:], c.z[:] = np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol

@@ -22,6 +22,7 @@ from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.band_matrix import places_of
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
+from fricmb.integrate.step.step_control import SAMPLED
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 3e7
@@ -139,8 +140,8 @@ def first_step(run: Collector) -> float:
     return float(max(h, 1e-12 * span))
 
 
-#: Parts of a run that a step may take: where signals are prescribed, with exact structure, and else.
-SAMPLED, COLLOCATED, FREE = 0.01, 0.02, 0.1
+#: Parts of a run that a step may take with exact structure, and where no loads are prescribed.
+COLLOCATED, FREE = 0.02, 0.1
 
 
 def longest_step(run: Collector) -> float:
@@ -153,9 +154,9 @@ def longest_step(run: Collector) -> float:
     problem, span = run.problem, run.t_end - run.start.t
     if len(run.steps[0].exact.ladder):
         return COLLOCATED * span
-    uniform = problem.signals.uniform.size == problem.n_u and bool(np.all(problem.signals.uniform))
-    loaded = not uniform or len(problem.elements.table.address) > 0
-    return SAMPLED * span if loaded or structure_is_stiff(run.packed.structure, FREE * span) else FREE * span
+    nonlinear = len(problem.elements.table.address) > 0
+    short = problem.loads_bend or nonlinear or structure_is_stiff(run.packed.structure, FREE * span)
+    return SAMPLED * span if short else FREE * span
 
 
 def structure_is_stiff(structure: Structure, h: float) -> bool:

@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.step.step_control import SAMPLED
 from fricmb.integrate.timestepping._doubts import kinks, short_phases
 from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, begin, drive
 from fricmb.integrate.timestepping._layout import (
@@ -152,7 +153,8 @@ class TimeStepping(Integrator):
         x = run.x
         x[TIME], x[END], x[RESIDUAL] = start.t, t_end, self.residual
         x[TOL], x[LEEWAY] = TIGHT * tolerance.rtol**1.5, LOOSE / (TIGHT * tolerance.rtol**0.5)
-        x[LONGEST], x[SHORTEST], x[FIXED] = span, 1e-9 * span, self.fixed_step or 0.0
+        x[LONGEST] = SAMPLED * span if problem.loads_bend else span
+        x[SHORTEST], x[FIXED] = 1e-9 * span, self.fixed_step or 0.0
         x[STEP] = min(0.01 * span, 0.3 / fastest) if fastest > 0.0 else 0.01 * span
         x[SETTLED] = 1e-10 if self.fixed_step else min(1e-4, 0.01 * tolerance.rtol)
         x[SAME] = float(isinstance(start, SteppedStart))

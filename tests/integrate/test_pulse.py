@@ -1,0 +1,64 @@
+"""Loads that come and go while nothing moves: no error of a step says that they do, so they are looked at."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import fricmb as fm
+
+AT, WIDTH, PEAK, END = 5.013, 0.05, 30.0, 10.0
+PULSE = PEAK * sympy.exp(-(((fm.t - AT) / WIDTH) ** 2))
+
+
+def pulse(t):
+    return PEAK * np.exp(-(((t - AT) / WIDTH) ** 2))
+
+
+def first_slide(inertia, force, hold, rub, start):
+    """When and where one degree of freedom at rest lets go under ``force(t, x)`` beyond ``hold``, and turns."""
+    t0 = brentq(lambda t: force(t, start) - hold, AT - 6.0 * WIDTH, AT, xtol=1e-13)
+
+    def turns(_t, y):
+        return y[1] if _t > t0 + 0.01 else 1.0
+
+    turns.terminal, turns.direction = True, -1
+    run = solve_ivp(
+        lambda t, y: [y[1], (force(t, y[0]) - rub) / inertia], (t0, END), [start, 0.0], method="DOP853", rtol=1e-12,
+        atol=1e-13, events=turns, max_step=0.01,
+    )  # fmt: skip
+    return t0, run.t_events[0][0], run.y_events[0][0][0]
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf", "collocation", "taylor", "timestepping"])
+def test_a_block_that_rests_is_pushed(method):
+    body = fm.Body("block", mass=1.0)
+    scene = fm.Scene("pushed", [
+        body, fm.Spring("spring", body, axis="x", stiffness=1.0), fm.Force("pulse", body, axis="x", value=PULSE),
+        fm.Contact("sole", body, law=fm.laws.Coulomb(mu_s=1.0, mu_k=0.8), normal_force=1.0),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=END, rtol=1e-6, method=method)
+    lets_go, turns, way = first_slide(1.0, lambda t, x: pulse(t) - x, 1.0, 0.8, 0.0)
+    close = 5e-3 if method == "timestepping" else 1e-5
+    assert [e.t for e in sol.events][:2] == pytest.approx([lets_go, turns], abs=close)
+    assert sol(turns)[0] == pytest.approx(way, rel=close)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_slide_that_rests_on_its_guide_is_pushed(method):
+    """With a joint, a guide along x that bears the weight: steps grew beyond the pulse, which the run then knew nothing of."""
+    body = fm.RigidBody("block", mass=1.0, inertia=1.0)
+    law = fm.laws.Coulomb(mu_s=1.0, mu_k=0.8)
+    guide = fm.Prismatic("guide", body, fm.ground_point(0.0, 0.0), friction=law)
+    scene = fm.Scene("pushed", [
+        body, guide, fm.Force("pulse", body, axis="x", value=PULSE),
+        fm.Spring("spring", body, axis="x", stiffness=1.0),
+        fm.Gravity("gravity", acceleration={"y": -1.0}),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=END, rtol=1e-6, method=method)
+    lets_go, turns, way = first_slide(1.0, lambda t, x: pulse(t) - x, 1.0, 0.8, 0.0)
+    assert [e.t for e in sol.events][:2] == pytest.approx([lets_go, turns], abs=1e-5)
+    assert sol.at([turns]).q[sol.dof_names.index("block.x"), 0] == pytest.approx(way, rel=1e-5)
