@@ -49,7 +49,7 @@ def test_a_block_that_rests_is_pushed(method):
 
 @pytest.mark.parametrize("method", ["radau", "bdf"])
 def test_a_slide_that_rests_on_its_guide_is_pushed(method):
-    """With a joint, a guide along x that bears the weight: steps grew beyond the pulse, which the run then knew nothing of."""
+    """With a joint, a guide along x that bears the weight: steps grew beyond the pulse and passed it by."""
     body = fm.RigidBody("block", mass=1.0, inertia=1.0)
     law = fm.laws.Coulomb(mu_s=1.0, mu_k=0.8)
     guide = fm.Prismatic("guide", body, fm.ground_point(0.0, 0.0), friction=law)
