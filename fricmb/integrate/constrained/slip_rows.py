@@ -9,7 +9,8 @@ from fricmb.integrate.constrained.forces import call_joint, directions, friction
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row
 from fricmb.integrate.constrained.problem_structs import Mech, Moving
 from fricmb.integrate.model.forces import gather
-from fricmb.integrate.model.law_values import cone_margin, magnitude
+from fricmb.integrate.model.friction_cone import cone_margin
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.

@@ -15,6 +15,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.friction_cone import load_factor
 from fricmb.integrate.model.friction_discs import largest, least_energy, relative_acceleration, units
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Ports
@@ -54,9 +55,7 @@ def release(ports: Ports, y: State, part: Codes, mode: Codes, F: Floats) -> bool
                 if rate > excess:
                     worst, excess = k, rate
                 continue
-            size = magnitude(ports.row, k, F)
-            hold = ports.mu_s[k] * y.N[k]
-            ratio = size / hold if hold > 0.0 else (2.0 if size > 0.0 else 0.0)
+            ratio = load_factor(ports, k, F, ports.mu_s[k] * y.N[k])
             if ratio > excess:
                 worst, excess = k, ratio
         if worst < 0:

@@ -16,7 +16,8 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
 from fricmb.integrate.model.accelerations import State, share_load
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.law_values import coefficient, magnitude, stick_limit
+from fricmb.integrate.model.friction_cone import stick_limit
+from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import AFTER, BEFORE, Rows, record, record_event
 from fricmb.integrate.problem import (
@@ -252,6 +253,7 @@ def passes_by(packed: Packed, s: Scratch, y: State, end: State, acc: Accuracy, k
     whole = D[row0, row0] * D[row0 + 1, row0 + 1] - D[row0, row0 + 1] * D[row0 + 1, row0]
     hold0 = D[row0 + 1, row0 + 1] * b0 - D[row0, row0 + 1] * b1
     hold1 = D[row0, row0] * b1 - D[row0 + 1, row0] * b0
+    # in the cone (model/friction_cone), D not divided by
     if np.hypot(hold0, hold1) <= stick_limit(packed.ports, packed.laws, k, s, N) * abs(whole):
         return False
     beside = abs(n[row0] * b1 - n[row0 + 1] * b0) / max(np.hypot(b0, b1), 1e-290)

@@ -14,7 +14,8 @@ from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
 from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
-from fricmb.integrate.model.law_values import magnitude, stick_limit
+from fricmb.integrate.model.friction_cone import cone_margin
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record, record_event
 from fricmb.integrate.problem import (
@@ -120,10 +121,10 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
                 continue
         if ports.law[k] == LAW_SMOOTH or mode[k] != STICK:
             continue
-        size = magnitude(ports.row, k, w.F[0])
-        if size > stick_limit(ports, packed.laws, k, s, w.N[0, k]):
+        if cone_margin(ports, packed.laws, k, s, w.F[0], w.N[0, k]) < 0.0:
             mode[k] = SLIP
             changed = True
+            size = magnitude(ports.row, k, w.F[0])
             for a in range(row0, row0 + d):
                 y.n[a] = -w.F[0, a] / size
     return changed

@@ -33,7 +33,7 @@ from fricmb.integrate.methods.backward_differences import (
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.model.accelerations import State, complete
 from fricmb.integrate.model.forces import Scratch, normal_force
-from fricmb.integrate.model.law_values import cone_margin, stick_limit
+from fricmb.integrate.model.friction_cone import cone_margin, stick_limit
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.output.recorder import STEP, Rows, record
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints

@@ -19,8 +19,9 @@ from fricmb.integrate.model.forces import (
     set_time,
     structure_force,
 )
+from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.friction_discs import share
-from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force, stick_limit
+from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.model.problem_structs import Packed, Ports
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start

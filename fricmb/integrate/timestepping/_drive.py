@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._error import doubtful, step_error
-from fricmb.integrate.timestepping._free import length, set_signals, set_window
+from fricmb.integrate.timestepping._free import set_signals, set_window
 from fricmb.integrate.timestepping._layout import (
     DRIVES,
     END,
@@ -206,7 +207,7 @@ def keep_behind(run: Run, t: float) -> None:
         for a in range(row0, row0 + d):
             size = max(abs(run.w[HERE, a]), abs(run.w[MIDDLE, a]))
             jumps = jumps or abs(run.w[HERE, a] - run.w[MIDDLE, a]) > ROUND_OFF * size
-        speed = length(run.g[HERE], row0, d)
+        speed = magnitude(run.row, c, run.g[HERE])
         if run.mode[HERE, c] == SLIP and speed > 0.0:
             radius = slide_radius(run, c, speed, run.push[HERE, c])
             for a in range(row0, row0 + d):
@@ -223,7 +224,7 @@ def probe(run: Run, t: float) -> None:
         some = some or run.mode[HERE, c] == STICK
     if not some:
         return
-    h = min(PROBE * run.x[STEP], 0.5 * (run.window[1] - t))
+    h = min(PROBE * run.x[STEP], 0.5 * (run.s.window[1] - t))
     if not h > 0.0:
         return
     take_step(run, HERE, WHOLE, t, h, run.places)
@@ -254,7 +255,7 @@ def relative_velocities(run: Run, fine: float) -> None:
                 j = run.w_dof[e]
                 size = max(size, part_of * abs(part), part_of * abs(run.w_coef[e]) * (run.top_v[j] + run.floor_v[j]))
             run.g[HERE, a] = value
-        if length(run.g[HERE], row0, d) <= size or (run.mode[HERE, c] == STICK and size == 0.0):
+        if magnitude(run.row, c, run.g[HERE]) <= size or (run.mode[HERE, c] == STICK and size == 0.0):
             for a in range(row0, row0 + d):
                 run.g[HERE, a] = 0.0
 
@@ -266,8 +267,7 @@ def begin(run: Run, given: bool) -> None:
     set_signals(run, HERE, run.x[TIME])
     relative_velocities(run, ROUND_OFF)
     for c in range(run.mode.shape[1]):
-        row0 = run.row[c]
-        still = length(run.g[HERE], row0, run.row[c + 1] - row0) == 0.0
+        still = magnitude(run.row, c, run.g[HERE]) == 0.0
         if not given or not still:
             run.mode[HERE, c] = STICK if still else SLIP
     if not given and run.mode.shape[1] > 0:

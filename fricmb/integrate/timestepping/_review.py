@@ -12,9 +12,9 @@ import math
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.template import call
-from fricmb.integrate.problem import LAW_COEFFICIENT, STICK, Ints
-from fricmb.integrate.timestepping._free import length
+from fricmb.integrate.model.friction_cone import friction_size, stick_limit, stick_limit_slope
+from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.problem import STICK, Ints
 from fricmb.integrate.timestepping._layout import (
     BROKEN,
     CAUGHT,
@@ -36,16 +36,12 @@ DECIDING = 6
 @kernel
 def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
     """mu(r, N) N; 0 where that is negative, through which iterates may pass."""
-    if run.law[c] != LAW_COEFFICIENT:
-        return float(run.mu_0[c] * N)
-    run.args[0] = speed
-    run.args[1] = N
-    call(run.laws.address[c], run.args, 0, run.laws.p, run.laws.p_start[c], run.out, 0)
-    if not abs(run.out[0]) < math.inf:
+    mu = coefficient(run, run.laws, c, run.s, speed, N)[0]
+    if not abs(mu) < math.inf:
         run.x[FAULT] = NO_NUMBER
-    elif run.out[0] < 0.0 and run.x[FAULT] == SOUND:
+    elif mu < 0.0 and run.x[FAULT] == SOUND:
         run.x[FAULT] = DRIVES
-    return float(max(0.0, run.out[0]) * N)
+    return float(max(0.0, mu) * N)
 
 
 @kernel
@@ -55,8 +51,8 @@ def first_balls(run: Run, one: int, two: int) -> None:
         row0 = run.row[c]
         d = run.row[c + 1] - row0
         N = run.push[two, c]
-        speed = length(run.g[one], row0, d)
-        run.brake[c] = run.mu_s[c] * N
+        speed = magnitude(run.row, c, run.g[one])
+        run.brake[c] = stick_limit(run, run.laws, c, run.s, N)
         run.slide[c] = slide_radius(run, c, speed, N)
         run.share[c] = 0.0
         if run.mode[one, c] == STICK:
@@ -78,12 +74,11 @@ def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool
     gap = t + 0.5 * h - run.when[one, c]
     if run.known[one, c] == 0 or gap <= 0.0 or run.last[c] >= 0.0 or run.tried[c] == 1:
         return False
-    size = 0.0
     for a in range(run.row[c], run.row[c + 1]):
-        size = math.hypot(size, run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a]))
+        run.gf[a] = run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a])
     limit = run.brake[c] + 0.5 * h / gap * (run.brake[c] - run.grip[one, c])
     # what is held at its limit stays there: what the contacts are solved to is no reason to slip
-    return bool(size > limit + 2.0 * run.x[RESIDUAL] * run.brake[c])
+    return bool(friction_size(run.row, c, run.gf) > limit + 2.0 * run.x[RESIDUAL] * run.brake[c])
 
 
 @kernel
@@ -105,7 +100,8 @@ def pressed_in_slip(run: Run, one: int, c: int, t: float, h: float, N: float) ->
     if run.var[c] == 0 or run.known[one, c] == 0 or gap <= 0.0:
         return N
     later = 0.5 * h * max(run.share[c], 0.0) / gap
-    return float(max(0.0, N + later * (run.brake[c] - run.grip[one, c]) / max(run.mu_s[c], 1e-300)))
+    slope = stick_limit_slope(run, run.laws, c, run.s, N)
+    return float(max(0.0, N + later * (run.brake[c] - run.grip[one, c]) / max(slope, 1e-300)))
 
 
 @kernel
@@ -114,7 +110,7 @@ def break_by_jolt(run: Run, one: int, two: int, c: int, t: float, h: float) -> N
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     s = run.last[c] if run.known[one, c] == 1 else 0.0
-    size = length(run.away, row0, d)
+    size = magnitude(run.row, c, run.away)
     run.share[c] = s
     slide = slide_radius(run, c, 0.0, pressed_in_slip(run, one, c, t, h, run.push[two, c]))
     for a in range(row0, row0 + d):
@@ -181,7 +177,7 @@ def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     soft = run.soft[c]
-    g0 = length(run.g[one], row0, d)
+    g0 = magnitude(run.row, c, run.g[one])
     ge, ee = 0.0, 0.0
     for a in range(row0, row0 + d):
         before = -run.slide[c] * run.g[one, a] / g0
@@ -195,7 +191,7 @@ def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
         holding = run.F[two, a] - run.g[two, a] / soft
         run.away[a] = before + (holding - before) / (1.0 - s)
     run.share[c] = s
-    run.status[c] = CAUGHT if length(run.away, row0, d) <= run.brake[c] else PASSED
+    run.status[c] = CAUGHT if friction_size(run.row, c, run.away) <= run.brake[c] else PASSED
 
 
 @kernel
@@ -204,9 +200,9 @@ def slip_on(run: Run, one: int, two: int, c: int, turn: int) -> bool:
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     before = run.status[c]
-    if before in (HELD, BROKEN) or length(run.g[one], row0, d) == 0.0:
+    if before in (HELD, BROKEN) or magnitude(run.row, c, run.g[one]) == 0.0:
         return False
-    if turn >= DECIDING and not (before == CAUGHT and length(run.g[two], row0, d) > 0.0):
+    if turn >= DECIDING and not (before == CAUGHT and magnitude(run.row, c, run.g[two]) > 0.0):
         return False
     along = 0.0
     for a in range(row0, row0 + d):
@@ -259,9 +255,7 @@ def spread(run: Run, c: int, share: float) -> None:
 @kernel
 def hold_on(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
     """Whether a contact that sticks at the beginning of the step breaks away in it; one that did so in vain is held."""
-    row0 = run.row[c]
-    d = run.row[c + 1] - row0
-    end = length(run.g[two], row0, d)
+    end = magnitude(run.row, c, run.g[two])
     if run.status[c] == HELD:
         if end > 0.0 or will_break(run, one, two, c, t, h):
             break_away(run, one, two, c, t, h)
@@ -292,7 +286,7 @@ def turned(run: Run, one: int, two: int, c: int) -> bool:
     e0, e1 = run.g[two, row0], run.g[two, row0 + 1]
     m0, m1 = 0.5 * (e0 + run.g[one, row0]), 0.5 * (e1 + run.g[one, row0 + 1])
     end, middle = math.hypot(e0, e1), math.hypot(m0, m1)
-    if min(end, min(middle, length(run.g[one], row0, 2))) <= 2.0 * run.soft[c] * run.rho[c]:
+    if min(end, min(middle, magnitude(run.row, c, run.g[one]))) <= 2.0 * run.soft[c] * run.rho[c]:
         return False
     run.delta[row0] = run.rho[c] * (e0 / end - m0 / middle)
     run.delta[row0 + 1] = run.rho[c] * (e1 / end - m1 / middle)
@@ -304,7 +298,7 @@ def mean_speed(run: Run, one: int, two: int, c: int) -> float:
     """Slip speed at which the coefficient of the step is taken."""
     row0 = run.row[c]
     d = run.row[c + 1] - row0
-    start, end = length(run.g[one], row0, d), length(run.g[two], row0, d)
+    start, end = magnitude(run.row, c, run.g[one]), magnitude(run.row, c, run.g[two])
     if run.status[c] != FREE or start == 0.0:
         s = run.share[c] if run.status[c] != BROKEN else 0.0
         return float(0.5 * (s * start + (1.0 - s) * end))
@@ -320,7 +314,7 @@ def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, pl
     worst = 0.0
     largest = 1e-300
     for c in range(run.status.shape[0]):
-        run.brake[c] = run.mu_s[c] * run.push[two, c]
+        run.brake[c] = stick_limit(run, run.laws, c, run.s, run.push[two, c])
         largest = max(largest, run.brake[c])
     choose_statuses(run, one, two, t, h, turn)
     for c in range(run.status.shape[0]):
@@ -342,13 +336,13 @@ def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, pl
             run.slide[c] = slide_radius(run, c, mean_speed(run, one, two, c), pressed)
             run.rho[c] = run.slide[c]
             s = run.share[c]
-            size = length(run.away, row0, d)
+            size = magnitude(run.row, c, run.away)
             for a in range(row0, row0 + d):
                 run.delta[a] = 0.0
                 if status == BROKEN:
                     run.delta[a] = run.away[a]
                 elif status == PASSED:
-                    before = -run.slide[c] * run.g[one, a] / length(run.g[one], row0, d)
+                    before = -run.slide[c] * run.g[one, a] / magnitude(run.row, c, run.g[one])
                     after = run.slide[c] * run.away[a] / size
                     run.delta[a] = s * (before - after)
             if status == FREE and d == 2:

@@ -170,7 +170,7 @@ def _add_floors(run: Run, span: float) -> None:
     row_of = np.repeat(np.arange(len(run.row) - 1), np.diff(run.row))
     contact = np.repeat(row_of, np.diff(run.w_start))
     push = np.zeros(len(run.load))
-    np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (run.mu_s * normal)[contact])
+    np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (np.abs(run.mu_s) * normal)[contact])
     largest = float(np.max(push / mass, initial=0.0))
     run.floor_v[:] += 0.1 * largest * time
     run.floor_q[:] += 0.1 * largest * time**2
