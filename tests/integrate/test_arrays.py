@@ -15,9 +15,9 @@ from scipy.integrate import solve_ivp
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.run_setup import Collector, accuracy, one_step
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Ints, Linear, Problem, Signals, Start, Templates
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder

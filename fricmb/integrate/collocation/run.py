@@ -19,9 +19,9 @@ from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.methods.run_setup import Collector, accuracy, run_loop
 from fricmb.integrate.methods.time_loop import drive
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import scratch
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.state import State
 from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate.step.contact_unknowns import port_state

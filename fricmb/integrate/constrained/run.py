@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.accelerations import State, set_out
 from fricmb.integrate.constrained.bdf_history import formula_of, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
 from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of
 from fricmb.integrate.constrained.recorder import record_of
+from fricmb.integrate.constrained.state import State, set_out
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import Rooms, run_rooms

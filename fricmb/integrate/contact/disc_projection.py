@@ -14,11 +14,11 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.friction_cone import load_factor
 from fricmb.integrate.model.friction_discs import largest, least_energy, relative_acceleration, units
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Ports
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats
 
 #: Relative accelerations that are none, beside the largest that there would be without friction.

@@ -19,20 +19,13 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.contact.disc_projection import release
-from fricmb.integrate.model.accelerations import (
-    INFINITE,
-    State,
-    accelerate,
-    complete,
-    kinematics,
-    known_forces,
-    solve_response,
-)
+from fricmb.integrate.model.accelerations import accelerate, complete, kinematics, known_forces, solve_response
 from fricmb.integrate.model.forces import Scratch, normal_force
 from fricmb.integrate.model.friction_cone import break_away, load_factor
 from fricmb.integrate.model.friction_discs import share
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed, Ports, Table
+from fricmb.integrate.model.state import INFINITE, State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports

@@ -8,14 +8,14 @@ from functools import partial
 import numpy as np
 
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.contact.event_location import Before
 from fricmb.integrate.contact.initial_modes import begin, natural_scales
 from fricmb.integrate.contact.mode_decision import rest
+from fricmb.integrate.contact.transition import Before
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.attempt_step import Clock
-from fricmb.integrate.model.accelerations import state
 from fricmb.integrate.model.forces import scratch
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.state import state
 from fricmb.integrate.output.recorder import rows, widths
 from fricmb.integrate.output.row_trajectory import RowTrajectory
 from fricmb.integrate.problem import Ints, Problem, Start

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_real
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.forces import (
     Scratch,
     belt_velocity,
@@ -23,60 +20,12 @@ from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.friction_discs import share
 from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.model.problem_structs import Packed, Ports
+from fricmb.integrate.model.state import INFINITE, NEGATIVE, State
 from fricmb.integrate.model.structure import Structure
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots
 
-#: What can be wrong with a state: see State.fault.
-NEGATIVE, INFINITE = 1.0, 2.0
 #: Softening of redundant contacts at rest, and rounds of refinement that take it out again (SOFT^rounds < round-off).
 SOFT, REFINEMENTS = 1e-4, 5
-
-
-class State(NamedTuple):
-    """The state of a run with all that follows from it; ``t`` (1,), ``n`` (m,) directions of slip.
-
-    ``a`` (n,) accelerations, ``zd`` (n_z,) rates, ``work`` and ``rate`` (n_c+2,) energies and powers (see ``powers``).
-    ``a0`` (m,) relative accelerations without the forces of stuck contacts, ``size`` (m,)
-    sums of magnitudes behind g (its round-off), ``wd`` (m,) rates of the prescribed part.
-    ``fault`` (1,): NEGATIVE where a slip coefficient has turned so, INFINITE where an acceleration has.
-    ``low`` (n,): what the last additions to q have lost to round-off.  ``way`` (m,): see ``share``.
-    """
-
-    t: Floats
-    q: Floats
-    v: Floats
-    z: Floats
-    zd: Floats
-    F: Floats
-    N: Floats
-    n: Floats
-    g: Floats
-    a: Floats
-    f: Floats
-    mode: Codes
-    work: Floats
-    rate: Floats
-    a0: Floats
-    size: Floats
-    wd: Floats
-    J: Floats
-    rhs: Floats
-    fault: Floats
-    low: Floats
-    way: Floats
-
-
-def state(problem: Problem, start: Start) -> State:
-    """The state at the start of a run (forces and modes still to be found)."""
-    n, m, nc = problem.n, problem.m, problem.n_c
-    mode = np.full(nc, SLIP, np.int8) if start.mode is None else np.array(start.mode, np.int8)
-    direction = np.zeros(m) if start.direction is None else np.array(start.direction, float)
-    q, v, z = (np.array(x, dtype=float) for x in (start.q, start.v, start.z))
-    return room(State(
-        np.array([float(start.t)]), q, v, z, np.zeros_like(z), np.zeros(m), np.zeros(nc), direction, np.zeros(m),
-        np.zeros(n), np.zeros(n), mode, np.zeros(nc + 2), np.zeros(nc + 2), np.zeros(m), np.zeros(m), np.zeros(m),
-        np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n), np.zeros(m),
-    ))  # fmt: skip
 
 
 @kernel
@@ -272,3 +221,15 @@ def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots
         share_load(packed, s, y.mode, y.N, y.F, y.way, 1.0)
     powers(packed, s, y.F, y.N, y.g, y.rate)
     return True
+
+
+@kernel
+def slip_rate(packed: Packed, y: State, k: int) -> float:
+    """Rate of the slip speed of contact k in its direction, n . (W^T a - w')."""
+    value = 0.0
+    for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+        rate = -y.wd[a]
+        for i in range(y.q.shape[0]):
+            rate += packed.ports.W[i, a] * y.a[i]
+        value += y.n[a] * rate
+    return value

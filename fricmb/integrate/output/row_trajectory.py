@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.model.accelerations import State, state
 from fricmb.integrate.model.forces import scratch
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.state import State, state
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Ints, Problem, Start

@@ -10,11 +10,12 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, share_load
+from fricmb.integrate.model.accelerations import share_load
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
 from fricmb.integrate.model.friction_cone import cone_margin, squared_margin, stick_limit
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
 from fricmb.integrate.step.radau_step import OneStep

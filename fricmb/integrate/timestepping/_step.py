@@ -17,7 +17,7 @@ from fricmb.integrate.problem import (
     Ints,
 )
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.timestepping._balls import mark_stuck
+from fricmb.integrate.timestepping._balls import mark_stuck, slide_radius
 from fricmb.integrate.timestepping._free import (
     add_normals,
     add_responses,
@@ -42,7 +42,7 @@ from fricmb.integrate.timestepping._layout import (
     VARYING,
 )
 from fricmb.integrate.timestepping._proximal import solve_contacts
-from fricmb.integrate.timestepping._review import first_balls, review_balls, slide_radius
+from fricmb.integrate.timestepping._review import first_balls, review_balls
 from fricmb.integrate.timestepping._run import Run
 
 #: Most rounds of balls and normal forces in a step.

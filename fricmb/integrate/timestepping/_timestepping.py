@@ -13,7 +13,7 @@ from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.timestepping._doubts import kinks, short_phases
-from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, begin, drive
+from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, drive
 from fricmb.integrate.timestepping._layout import (
     BAND,
     CONDENSED,
@@ -41,6 +41,7 @@ from fricmb.integrate.timestepping._layout import (
 )  # fmt: skip
 from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
 from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping._start import begin
 from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
 from fricmb.integrate.trajectory import Counters, Transitions
 
