@@ -1,5 +1,6 @@
 """What a run or a scene says: spectra of the motion, stability of steady sliding, laws under a prescribed motion."""
 
+from fricmb.analysis._crossings import Crossing
 from fricmb.analysis._eigenvalues import Eigenvalues, StabilityMap, complex_eigenvalues, stability_map
 from fricmb.analysis._errors import AliasingWarning, AnalysisError
 from fricmb.analysis._ledger import EnergyLedger, Phase, energy_ledger
@@ -12,7 +13,6 @@ from fricmb.analysis._regimes import Regime, compare_regimes
 from fricmb.analysis._sampling import Samples, uniform
 from fricmb.analysis._spectrum import maximum_entropy_spectrum
 from fricmb.analysis._steady import SteadySliding, steady_sliding
-from fricmb.analysis._track import Crossing
 from fricmb.analysis._welch import Spectrogram, spectrogram, welch_spectrum
 from fricmb.analysis.cycles import (
     Branch,

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fricmb.analysis._crossings import Crossing, crossings
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._steady import SteadySliding, steady_sliding
-from fricmb.analysis._track import Complexes, Crossing, Pairs, checked_values, crossings, follow, refine
+from fricmb.analysis._track import Complexes, Pairs, checked_values, follow, refine
 from fricmb.values import DIMENSIONS, Units
 
 if TYPE_CHECKING:

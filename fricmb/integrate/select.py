@@ -12,7 +12,6 @@ from fricmb.integrate.methods.bdf import Bdf
 from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
-from fricmb.integrate.model.steep_laws import steepness
 from fricmb.integrate.problem import LAW_SMOOTH, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 
@@ -41,9 +40,6 @@ LOOSE = 1e-4
 DEEP = 5
 #: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
 FEW = 4
-#: Steepness of laws (see ``steepness``) beyond which Taylor steps have been seen to lose accuracy: up to 20 and 50
-#: errors were those asked for, from 23 and 70 on some were up to 1e6 times larger.
-STEEP, NARROW = 20.0, 50.0
 
 
 def is_banded(problem: Problem) -> bool:
@@ -94,7 +90,6 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
 def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
     """Taylor steps and why, where they are the fastest of several contacts."""
     from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
-    from fricmb.integrate.taylor.prepare import fastest
     from fricmb.integrate.taylor.prepare_groups import coupled_or_rate_dependent
 
     contacts = f"{problem.n_c} contacts"
@@ -103,8 +98,7 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
         return None
     if not coupled_or_rate_dependent(problem):
         return many, f"{contacts} under constant friction, none sharing a body: Taylor steps, local corrections"
-    growth, narrow = steepness(problem, fastest(problem))
-    if problem.n < DEEP * problem.n_c and not (growth > STEEP and narrow > NARROW):
+    if problem.n < DEEP * problem.n_c:
         return many, f"{contacts} with friction of slip speed, or sharing bodies: Taylor steps, local corrections"
     return None
 

@@ -83,13 +83,22 @@ class Friction:
             found.put_rate(self.states + i, rate)
 
     def _slipping(self, g: list[Dual], N: Dual, sign: Floats) -> list[Dual]:
-        """Friction in slip: against the sign that a phase has in one direction, against its direction in two."""
+        """Friction in slip: against the sign that a phase has in one direction, against its direction in two.
+
+        ``sign`` in two directions is nan, but at times at which this contact's slip begins or ends: its direction then.
+        """
         if self.d == 1:
             (sign,) = sign
             r = Dual(value=np.maximum(sign * g[0].value, _REST), slopes={j: sign * s for j, s in g[0].slopes.items()})
             return [self._coefficient(r, N).times(N) * -sign]
-        if not np.isnan(sign).any():
-            return self.beginning(N, sign)
+        rests = ~np.isnan(sign).any(axis=0)
+        if not rests.any():
+            return self._turning(g, N)
+        begins, slides = self.beginning(N, np.where(rests, sign, 0.0)), self._turning(g, N)
+        return [masked(one, rests) + masked(other, ~rests) for one, other in zip(begins, slides, strict=True)]
+
+    def _turning(self, g: list[Dual], N: Dual) -> list[Dual]:
+        """Friction against the direction of slip g."""
         length = np.maximum(np.sqrt(sum(np.square(x.value) for x in g)), _REST)
         n = [x.value / length for x in g]
         r = composed(length, zip(n, g, strict=True))

@@ -24,7 +24,7 @@ _ROUNDS, _PARTS, _HELD = 16, 8, 1_000_000
 _FALLS, _NEARLY = 0.5, 2.0
 #: Logarithm of the volume of states that a coarse step may lose; where a step, of length 1, is looked at for its begin.
 _LOST, _BEGIN = 0.5, 1e-7
-#: Parts of a step at which slip over the time tells, by a polynomial, its direction at the begin; weights for that.
+#: Parts of a step whose directions of slip tell, by a polynomial, that at the begin; weights for that.
 _AFTER = np.array([0.25, 0.5, 0.75, 1.0])
 _TO_BEGIN = np.array([4.0, -6.0, 4.0, -1.0])
 #: Slip speeds that change by more in a step may be near a pole of friction.
@@ -133,7 +133,7 @@ class Stepper:
             after, mode = t[first] + h[first] * _AFTER[:, None], self.phases.mode[:, phase[first]]
             found = e.field(self.sample(after[0]), mode, self.phases.sign[:, phase[first]]).found
             g = self.sample(after.ravel()).g[e.rows(k)].reshape(-1, *after.shape)
-            n = np.einsum("a,dat->td", _TO_BEGIN, g / _AFTER[:, None])
+            n = np.einsum("a,dat->td", _TO_BEGIN, g / (np.linalg.norm(g, axis=0) + 1e-300))
             n /= np.linalg.norm(n, axis=1)[:, None] + 1e-300
             slopes = whole(found.g[k], first.size, e.columns)[1][..., :-1]
             for i, j in enumerate(first.tolist()):

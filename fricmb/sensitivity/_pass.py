@@ -71,7 +71,7 @@ class Tangent:
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
-        first = e.field(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1]).found
+        first = e.said(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1])
         S = e.settled(first, S)
         one_sided_by, S = one_sided(e, first, mode, S), held(e, first, 0, mode, S)
         self._march(S, transitions, len(sol.events))

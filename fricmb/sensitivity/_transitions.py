@@ -17,8 +17,8 @@ from fricmb.integrate.problem import STICK, Codes, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._breakpoints import Breakpoints
-from fricmb.sensitivity._directions import field_at_rest
-from fricmb.sensitivity._equations import Equations, Field
+from fricmb.sensitivity._directions import field_at_rest, put
+from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._found import total, whole
 from fricmb.sensitivity._happenings import PASS, Happening
 from fricmb.sensitivity._phases import BESIDE, Phases
@@ -27,8 +27,8 @@ from fricmb.sensitivity._triggers import Trigger, Triggers
 
 #: An event function counts as 0 within this share of its scale, or this many tolerances.
 _ZERO, _TOLERANCES = 1e-7, 100.0
-#: Where in a stretch before slip passes rest its direction is looked at, from its end; at least this long before, over
-#: 1 or the time: collocation comes up to such an instant by ever shorter steps.
+#: Where in a stretch beside rest the direction of slip is looked at, from there; at least this far, over 1 or the time:
+#: collocation comes up to such an instant by ever shorter steps.
 _NEAR, _LEAST = 1e-3, 1e-10
 #: Below this normalised rate a transition is too close to one that only touches to be trusted.
 TOUCHES = 1e-3
@@ -83,15 +83,14 @@ class Transitions:
         phase = [self.happened[i].phase - ends for i, _, ends in found]
         samples, mode = take(self.samples, [i for i, _, _ in found]), self.phases.mode[:, phase]
         sign, contacts = self.phases.sign[:, phase], [k for _, k, _ in found]
-        t, near = self.phases.t, [0.5 if self.happened[i].kinds != [PASS] else _NEAR for i, _, _ in found]
-        aside = [max(x * (t[k + 1] - t[k]), _LEAST * max(1.0, t[k])) for k, x in zip(phase, near, strict=True)]
+        t = self.phases.t
+        aside = [max(_NEAR * (t[k + 1] - t[k]), _LEAST * max(1.0, t[k])) for k in phase]
         beside = self.sample(np.array([
             t[k + 1] - x if ends else t[k] + x for k, x, (_, _, ends) in zip(phase, aside, found, strict=True)
         ])).g  # fmt: skip
-        passing = [ends and self.happened[i].kinds == [PASS] for i, _, ends in found]
-        own = field_at_rest(self.equations, samples, mode, sign, contacts, beside, passing)
+        own = field_at_rest(self.equations, samples, mode, sign, contacts, beside, [ends for _, _, ends in found])
         for j, (i, _, ends) in enumerate(found):
-            _put(self.before if ends else self.after, i, own, j)
+            put(self.before if ends else self.after, i, own, j)
 
     def _moves_on(self, i: int, k: int) -> bool:
         """Whether slip begins with a speed: what a contact touches has jumped."""
@@ -124,9 +123,8 @@ class Transitions:
             last = trigger is chosen[-1]
             after = self.after.y_dot[i] if last else self._with(i, trigger)
             if self.lands(i, trigger):
-                # its direction has settled: all that is left of the slip goes
                 stops = self.after.y_dot[i] if not last else self._with(i, trigger)
-                found = self._stopped(i, trigger, found) + np.outer(stops - after, dt)
+                found = self._stopped(i, trigger, found, f - stops) + np.outer(stops - after, dt)
             else:
                 found = found + np.outer(f - after, dt)
             f = after
@@ -146,15 +144,16 @@ class Transitions:
     def landing_times(self, i: int, S: Floats, g: Floats) -> tuple[Floats, Floats]:
         """Derivatives (n_t, n_p) of a landing's time from states before it (n_t, n_y, n_p) with g (m, n_t).
 
-        And by how much they are off where g is by a tolerance.
+        And by how much they may be off, g being off by a tolerance and directions being what they are.
         """
         k = self.landing(i)
         assert k is not None
         g = g[self.equations.rows(k)]
-        slopes, turning, speed = self.triggers.landing(i, k, g)
+        slopes, shares, turning, speed = self.triggers.landing(i, k, g)
         turned = np.linalg.norm(total(turning, S, self.equations.n_y), axis=1)
         noise = self.rtol * speed * turned / (np.linalg.norm(g, axis=0) + 1e-300)[:, None]
-        return np.asarray(total(slopes[:, None], S, self.equations.n_y)[:, 0]), noise
+        dts = np.asarray(total(slopes[:, None], S, self.equations.n_y)[:, 0])
+        return dts, noise + shares[:, None] * np.abs(dts)
 
     def lands(self, i: int, trigger: Trigger) -> bool:
         """Whether slip in two directions ends."""
@@ -200,9 +199,14 @@ class Transitions:
                 + (" (and no more of what follows)" if moves_on else " (what follows is not affected)")
             )
 
-    def _stopped(self, i: int, trigger: Trigger, S: Floats) -> Floats:
-        """Derivatives where a contact sticks with those that stick already."""
-        return held(self.equations, self.after.found, i, self._modes(i, trigger)[0], S)
+    def _stopped(self, i: int, trigger: Trigger, S: Floats, off: Floats) -> Floats:
+        """Derivatives where a contact sticks with those that stick already, and rates fall by ``off``.
+
+        Its direction has settled: what its slip would last longer is n . dg/kappa, and all that is left of it goes.
+        """
+        slopes, rates = self.triggers.slipping(i, trigger.contact)
+        lasts = -rates @ total(slopes, S, self.equations.n_y) / float(rates @ rates)
+        return held(self.equations, self.after.found, i, self._modes(i, trigger)[0], S + np.outer(off, lasts))
 
     def _time_derivatives(self, i: int, trigger: Trigger, S: Floats, landing: Floats | None) -> Floats:
         """Derivatives (n_p,) of the time at which an event function vanishes."""
@@ -242,11 +246,3 @@ class Transitions:
                 if one.kinds[j] == PASS:  # it rests for a moment
                     mode[k] = STICK
         return mode, sign
-
-
-def _put(field: Field, i: int, own: Field, j: int) -> None:
-    """Time number j of a field into another's time number i."""
-    field.a[i], field.a_slopes[i] = own.a[j], own.a_slopes[j]
-    field.rate[i], field.rate_slopes[i] = own.rate[j], own.rate_slopes[j]
-    for k, (F, slopes) in own.F.items():
-        field.F[k][0][i], field.F[k][1][i] = F[j], slopes[j]

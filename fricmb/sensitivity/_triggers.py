@@ -9,6 +9,7 @@ import numpy as np
 from fricmb.integrate.problem import STICK, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
+from fricmb.sensitivity._directions import across
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations, Field
 from fricmb.sensitivity._found import at
@@ -86,28 +87,39 @@ class Triggers:
                 changed.append(replace(trigger, sure=kind != "slip"))
         return changed
 
-    def landing(self, i: int, k: int, g: Floats) -> tuple[Floats, Floats, float]:
+    def landing(self, i: int, k: int, g: Floats) -> tuple[Floats, Floats, Floats, float]:
         """Slopes (n_t, columns) of the time that slip in two directions still takes, where it has g (d, n_t).
 
-        Also the slopes (n_t, d, columns) of what of it is across g, and the largest speed of what slips.
+        Also the shares (n_t,) that they may be off by, the slopes (n_t, d, columns) of what is across g, and the
+        largest speed of slip.
 
-        With constant a and c = mu_k N it lasts for T = (r + g^T D^-1 a/c)/(c n^T D n - a^T D^-1 a/c), whatever its
-        direction, where D is a multiple of the unit matrix, and else once its direction has settled: T' = -1 along
-        g' = a - c D n.
+        That time T is homogeneous in g, and T' = -1 along g' = A(n).  So its gradient w at the direction n* in which
+        slip ends, where A = -kappa n*, has w . n* = 1/kappa, and w . dA/de = 0 for every e across n*.  Beside n* it is
+        w + s (n - n*), with s for which that is exact where A = a - b n: s = 1/(kappa (2 - kappa/b)); as A is uneven it
+        is off by the square of n - n*.
         """
-        e, along = self.equations, self._along(i)
-        slopes = np.array([self._row(dual, i)[1] for dual in self.before.found.g[k]])
-        W = slopes[:, e.n : 2 * e.n]
-        n = -(slopes @ along) / np.linalg.norm(slopes @ along)
-        D = W @ e.free(self.before.found, self.phases.mode[:, self.happened[i].phase - 1], i) @ W.T
-        c = e.contacts[k].size_at_rest(self.before.found.N[k], i)
-        held_by = np.linalg.solve(D, slopes @ along + c * D @ n) / c
+        e, phase = self.equations, self.happened[i].phase - 1
+        slopes, rates = self.slipping(i, k)
+        kappa = float(np.linalg.norm(rates))
+        n, W = -rates / kappa, slopes[:, e.n : 2 * e.n]
+        mode, sign = self.phases.mode[:, [phase]], self.phases.sign[:, [phase]]
+        sides, falls = across(e, take(self.samples, [i]), mode, sign, k, n)
+        w = np.linalg.solve(np.vstack([n, falls]), np.append(1.0 / kappa, np.zeros(len(sides))))
+        b = float(np.mean(np.sum(falls * sides, axis=1)))
+        s = 1.0 / (kappa * (2.0 - kappa / b))
+        D = np.linalg.eigvalsh(W @ e.free(self.before.found, mode[:, 0], i) @ W.T)
+        uneven = 1.0 - float(D[0] / D[-1]) + float(np.linalg.norm(falls @ n)) / b
         length = np.linalg.norm(g, axis=0)
         turned = np.where(length > 0.0, g / np.where(length > 0.0, length, 1.0), n[:, None])
-        whole_rate = c * float(n @ D @ n) - c * float(held_by @ D @ held_by)
-        across = slopes - np.einsum("at,bt,bj->taj", turned, turned, slopes)
+        beside = slopes - np.einsum("at,bt,bj->taj", turned, turned, slopes)
         speed = float(np.abs(W).max(axis=0) @ self.phases.speed)
-        return (turned + held_by[:, None]).T @ slopes / whole_rate, across / whole_rate, speed
+        off = turned - n[:, None]
+        return (w[:, None] + s * off).T @ slopes, uneven * np.sum(off**2, axis=0), s * beside, speed
+
+    def slipping(self, i: int, k: int) -> tuple[Floats, Floats]:
+        """Slopes (d, columns) of the slip of a contact before happening i, and its rates (d,)."""
+        slopes = np.array([self._row(dual, i)[1] for dual in self.before.found.g[k]])
+        return slopes, slopes @ self._along(i)
 
     def _indeterminate(self, i: int) -> bool:
         """Whether forces in stick before a happening are not determined."""

@@ -17,9 +17,9 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.run_rooms import implicit_step, made
 from fricmb.integrate.methods.run_setup import Collector, set_accuracy
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Ints, Linear, Problem, Signals, Start, Templates
 from fricmb.integrate.run.workspace import Workspace
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish

@@ -17,14 +17,15 @@ from fricmb.integrate.collocation.layout import MONOMIAL, NODE, TABLEAU, VECTORS
 from fricmb.integrate.collocation.nonlinear_ports import exact_ports
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, STICK, Ints
+from fricmb.integrate.model.state import State
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Ints
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.exact_structure import INPUTS, LENGTH, OUTPUTS, UNKNOWN
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, widest
+from fricmb.integrate.step.stage_predictor import contacts_from_start
 
 
 @kernel
@@ -71,17 +72,9 @@ def guess_ports(packed: Packed, y: State, one: OneStep, h: float) -> None:
         st.t[i] = y.t[0] + ex.nd[VECTORS, NODE, i] * h
         for j in range(n_s):
             st.hA[i, j] = h * ex.nd[TABLEAU, i, j]
-        for a in range(y.z.shape[0]):
-            w.z[i, a] = y.z[a]
+        contacts_from_start(packed, y, w, i)
         for k in range(y.mode.shape[0]):
-            row0 = packed.ports.row[k]
-            w.N[i, k] = y.N[k]
             one.N[i, k] = y.N[k]
-            w.r[i, k] = magnitude(packed.ports.row, k, y.g)
-            for a in range(row0, packed.ports.row[k + 1]):
-                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
-                w.n[i, a] = y.n[a]
-                w.g[i, a] = y.g[a]
 
 
 @kernel

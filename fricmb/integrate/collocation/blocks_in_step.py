@@ -26,9 +26,9 @@ from fricmb.integrate.collocation.layout import (
 from fricmb.integrate.collocation.moment_weights import free_weights, port_weights
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, belt_velocity, gather, set_time
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import STICK, Floats, Ints
 from fricmb.integrate.step.exact_structure import INPUTS, IS_MODAL, OUTPUTS, RUNGS, STIFF_AT, UNKNOWN, Exact, rung_below
 from fricmb.integrate.step.radau_step import OneStep

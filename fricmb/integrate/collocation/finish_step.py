@@ -13,10 +13,11 @@ from fricmb.integrate.collocation.motion_in_step import is_stiff, stiff_nodes
 from fricmb.integrate.collocation.powers_in_step import node_powers, powers_on_motion
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, complete
+from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Ints
 from fricmb.integrate.step.event_functions import force_noise

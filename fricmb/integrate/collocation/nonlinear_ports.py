@@ -17,9 +17,9 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_rows
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, gather
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats3, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports

@@ -7,9 +7,9 @@ import numpy as np
 from fricmb.integrate.collocation.layout import MONOMIAL, NODE, VECTORS
 from fricmb.integrate.collocation.motion_in_step import gains_at_nodes, input_series
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_state, set_time
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats, Floats2
 from fricmb.integrate.step.exact_structure import LEDGER
 from fricmb.integrate.step.radau_step import OneStep

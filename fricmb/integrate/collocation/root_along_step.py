@@ -16,11 +16,11 @@ from fricmb.integrate.collocation.layout import MONOMIAL
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.contact.event_location import copy_state, slip_rate
-from fricmb.integrate.model.accelerations import State, complete
+from fricmb.integrate.model.accelerations import complete, slip_rate
 from fricmb.integrate.model.forces import Scratch, belt_velocity, set_time
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import evaluate, polynomial

@@ -8,9 +8,10 @@ from fricmb.integrate.collocation.blocks_in_step import load_at_start, start_blo
 from fricmb.integrate.collocation.layout import MONOMIAL, WITH_START
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.model.accelerations import State, complete
+from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.output.hermite_output import point_along_slip, relative_velocity, set_window_around, write_sample
 from fricmb.integrate.problem import Codes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.step.exact_structure import Exact

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
 from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import dips, near_singular, nears_singular, step_to_singular
 from fricmb.integrate.constrained.slip_growth import too_long
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.attempt_step import arrive, radau_step
 from fricmb.integrate.constrained.bdf_history import Formula, start_past
 from fricmb.integrate.constrained.bdf_step import multistep
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, crowded
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import ON, Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.problem import Codes

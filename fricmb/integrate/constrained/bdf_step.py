@@ -12,18 +12,19 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.attempt_step import grow
 from fricmb.integrate.constrained.bdf_history import Formula, put
 from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.load_kinks import find_kinks
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
 from fricmb.integrate.constrained.slip_growth import too_long
 from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import (

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import call_joint, is_open, move
 from fricmb.integrate.constrained.load_kinks import BEFORE, BEHIND, law_side
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import lack, slip_speed, spare
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate.step.crossing import first_below

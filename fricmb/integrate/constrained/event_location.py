@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import Instant, State
 from fricmb.integrate.constrained.event_functions import gaps, grain, triggers, violated
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, end_step, try_step
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.run.breakpoints import EPS

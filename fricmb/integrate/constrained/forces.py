@@ -5,7 +5,8 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.model.forces import element_forces, gather, set_time
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Floats, Ints

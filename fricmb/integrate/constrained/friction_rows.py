@@ -5,8 +5,9 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.jacobian_layers import Layers, add
+from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.plane_slip import add_along, add_found, plane_residual
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick
 from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats, Ints

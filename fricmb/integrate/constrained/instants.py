@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import call_joint, forces, move
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.jacobian_layers import place_slope
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import plane
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import SLIP, STICK, Codes2, Floats, Floats2, Ints
 
@@ -104,9 +107,8 @@ def constraints(
                     if not 0 <= e < n_y:
                         continue
                     for b in range(place.y_start[e], place.y_start[e + 1]):
-                        at = place.y_at[b]
                         Gi[count] = row
                         Gj[count] = place.y_dof[b]
-                        G[count] = slope * table.form_coefficient[i] * (1.0 if at < 0 else k.grad[at])
+                        G[count] = slope * table.form_coefficient[i] * place_slope(place, k, b)
                         count += 1
     return count

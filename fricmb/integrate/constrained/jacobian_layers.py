@@ -11,7 +11,8 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, slope_at
-from fricmb.integrate.constrained.problem_structs import Mech, Moving, Order
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech, Order, Place
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Ints
@@ -32,13 +33,20 @@ def add(order: Order, A: Floats, i: int, j: int, value: float) -> None:
     A[column * order.sizes[3] + 2 * order.sizes[1] + order.place[i] - column] += value
 
 
+@kernel
+def place_slope(place: Place, k: Moving, i: int) -> float:
+    """Derivative i of an extended coordinate by a degree of freedom: 1 where it is one itself."""
+    at = place.y_at[i]
+    return 1.0 if at < 0 else float(k.grad[at])
+
+
 @block
 def add_extended(mech: Mech, k: Moving, L: Layers, row: int, e: int, rate: bool, value: float, address: Ints) -> None:
     """Add ``value dy_e`` (or ``value dy'_e``) to a row."""
     place = mech.place
     for i in range(place.y_start[e], place.y_start[e + 1]):
         at, dof = place.y_at[i], place.y_dof[i]
-        grad = 1.0 if at < 0 else k.grad[at]
+        grad = place_slope(place, k, i)
         if not rate:
             add(mech.order, L.A2, row, dof, value * grad)
         else:
@@ -73,8 +81,7 @@ def add_column(
         e = table.form_index[j] - 1
         if 0 <= e < n_y:
             for i in range(place.y_start[e], place.y_start[e + 1]):
-                at = place.y_at[i]
-                grad = 1.0 if at < 0 else k.grad[at]
+                grad = place_slope(place, k, i)
                 add(mech.order, A, place.y_dof[i], column, value * table.form_coefficient[j] * grad)
 
 
@@ -91,8 +98,7 @@ def add_stiffness(
         e = left.form_index[j] - 1
         if 0 <= e < n_y:
             for i in range(place.y_start[e], place.y_start[e + 1]):
-                at = place.y_at[i]
-                grad = 1.0 if at < 0 else k.grad[at]
+                grad = place_slope(place, k, i)
                 add_form(mech, k, L, place.y_dof[i], right, b, value * left.form_coefficient[j] * grad, mech.address)
 
 
@@ -104,8 +110,7 @@ def add_pairs(mech: Mech, k: Moving, L: Layers, i: int, j: int, rate: bool, valu
     if i >= n_y or j >= n_y:
         return
     for a in range(place.y_start[i], place.y_start[i + 1]):
-        at = place.y_at[a]
-        grad = 1.0 if at < 0 else k.grad[at]
+        grad = place_slope(place, k, a)
         add_extended(mech, k, L, place.y_dof[a], j, rate, value * grad, mech.address)
 
 
@@ -148,8 +153,7 @@ def add_structure(mech: Mech, k: Moving, L: Layers, address: Ints) -> None:
             for i in range(spread.start[first], spread.start[first + 1]):
                 y = spread.dof[i]
                 for a in range(place.y_start[y], place.y_start[y + 1]):
-                    at = place.y_at[a]
-                    grad = spread.coefficient[i] * (1.0 if at < 0 else k.grad[at])
+                    grad = spread.coefficient[i] * place_slope(place, k, a)
                     for x in range(n_x):
                         slope = s.out[n_f + f * n_x + x]
                         add_form(mech, k, L, place.y_dof[a], elements, x0 + x, -grad * slope, mech.address)
@@ -209,8 +213,7 @@ def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, va
         e = table.form_index[j] - 1
         if 0 <= e < n_y:
             for i in range(place.y_start[e], place.y_start[e + 1]):
-                at = place.y_at[i]
-                grad = 1.0 if at < 0 else k.grad[at]
+                grad = place_slope(place, k, i)
                 add(mech.order, A, row, place.y_dof[i], value * table.form_coefficient[j] * grad)
 
 

@@ -12,12 +12,13 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import forces, move
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.slip_rows import lightness
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2, Ints
 from fricmb.integrate.step.law_defect import between, counted_force, counted_rate
 

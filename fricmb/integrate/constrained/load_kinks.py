@@ -8,10 +8,11 @@ order have their order on either side alone, so a step ends there.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats

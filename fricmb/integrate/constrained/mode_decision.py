@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import is_open
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, SLIGHT, aim, lack, lightness, plane, slip_speed, spare
-from fricmb.integrate.model.law_values import magnitude, stick_limit
+from fricmb.integrate.constrained.state import Instant, State
+from fricmb.integrate.model.friction_cone import stick_limit
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 
 #: Outcomes of a decision.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import State
+from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.plane_slip import largest_part
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SLIGHT, lightness, plane
 from fricmb.integrate.constrained.stages import Stages, newton_change
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import NEAR, Turns, across, by_turn, force_place
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import SLIP

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.jacobian_layers import Layers, add
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, slip_speed
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.problem import Codes, Floats, Ints

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.constrained.accelerations import NONE, STUCK, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.accelerations import NONE, STUCK, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import forces, move
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.problem import STICK, Ints
 from fricmb.integrate.run.breakpoints import EPS
 

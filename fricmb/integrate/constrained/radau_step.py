@@ -8,13 +8,15 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import Instant, State, powers, react
+from fricmb.integrate.constrained.accelerations import powers, react
 from fricmb.integrate.constrained.forces import forces, move
+from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import aim, keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.stage_predictor import lagrange
 

@@ -9,11 +9,11 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.problem_structs import Mech, mechanism_of
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.problem import Codes2, Floats2, Floats3, Ints, Problem
 
 

@@ -8,20 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.bdf_history import formula_of, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
 from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of
 from fricmb.integrate.constrained.recorder import record_of
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import Rooms, run_rooms
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import differences
-from fricmb.integrate.model.accelerations import set_out
+from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL

@@ -6,12 +6,14 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import move
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, end_step, try_step
 from fricmb.integrate.constrained.recorder import copy_state
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Ints
 

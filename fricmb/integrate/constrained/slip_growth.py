@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import State
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import lightness
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.step.slip_growth import LONGEST, drive

@@ -6,10 +6,12 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, slope_at
-from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row, place_slope
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.model.forces import gather
-from fricmb.integrate.model.law_values import cone_margin, magnitude
+from fricmb.integrate.model.friction_cone import cone_margin
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
@@ -131,7 +133,7 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
             if not 0 <= e < k.ddy.shape[0]:
                 continue
             for b in range(place.y_start[e], place.y_start[e + 1]):
-                slope = factor * table.form_coefficient[i] * (1.0 if place.y_at[b] < 0 else k.grad[place.y_at[b]])
+                slope = factor * table.form_coefficient[i] * place_slope(place, k, b)
                 value += slope * slope / mass[place.y_dof[b]]
     return float(value)
 

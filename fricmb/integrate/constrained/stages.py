@@ -17,11 +17,12 @@ import numpy as np
 from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import State
 from fricmb.integrate.constrained.forces import forces, move, pull_back
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
-from fricmb.integrate.constrained.problem_structs import Mech, Moving, mech_of, mechanism_of
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech, mech_of, mechanism_of
+from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
 from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Pivots, Problem
 from fricmb.integrate.run.stop import stopped

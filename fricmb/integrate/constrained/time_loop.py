@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.band import spread_of_pivots
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.constrained.accelerations import Instant, State, react
+from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
 from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
 from fricmb.integrate.constrained.mode_decision import FOUND, SEVERAL, SLIPS_ON, decide, mark_rest
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, crowded
 from fricmb.integrate.constrained.singular_position import TURNS, least_singular
 from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import let_go
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch

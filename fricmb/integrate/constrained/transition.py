@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, Instant, State, instant_matrix, react
+from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, react
 from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.mode_decision import ARRIVES, FOUND, LENT, RESTED, SEVERAL, SLIPS_ON, decide
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, copy_state
 from fricmb.integrate.constrained.singular_position import TURNS, least_singular
 from fricmb.integrate.constrained.slip_rows import lack, plane
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.contact.event_location import record_changes
+from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Ints
 from fricmb.integrate.run.breakpoints import set_window

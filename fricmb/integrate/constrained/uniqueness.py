@@ -7,9 +7,11 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor
-from fricmb.integrate.constrained.accelerations import ALL, Instant, State, instant_matrix, solve_instant
+from fricmb.integrate.constrained.accelerations import ALL, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
-from fricmb.integrate.constrained.problem_structs import Mech, Moving
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import MANY, Watch
 from fricmb.integrate.model.law_values import coefficient
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Ints

@@ -14,10 +14,11 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.friction_cone import load_factor
 from fricmb.integrate.model.friction_discs import largest, least_energy, relative_acceleration, units
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Ports
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats
 
 #: Relative accelerations that are none, beside the largest that there would be without friction.
@@ -54,9 +55,7 @@ def release(ports: Ports, y: State, part: Codes, mode: Codes, F: Floats) -> bool
                 if rate > excess:
                     worst, excess = k, rate
                 continue
-            size = magnitude(ports.row, k, F)
-            hold = ports.mu_s[k] * y.N[k]
-            ratio = size / hold if hold > 0.0 else (2.0 if size > 0.0 else 0.0)
+            ratio = load_factor(ports, k, F, ports.mu_s[k] * y.N[k])
             if ratio > excess:
                 worst, excess = k, ratio
         if worst < 0:

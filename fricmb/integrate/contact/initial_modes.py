@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.contact.event_location import Before, record_changes
 from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
+from fricmb.integrate.contact.transition import Before, record_changes
 from fricmb.integrate.csr import Csr
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, set_time
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.output.recorder import AFTER, Rows, record
 from fricmb.integrate.problem import SLIP, Floats, Floats2, Ints, Problem

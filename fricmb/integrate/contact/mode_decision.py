@@ -18,19 +18,13 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.contact.disc_projection import release
-from fricmb.integrate.model.accelerations import (
-    INFINITE,
-    State,
-    accelerate,
-    complete,
-    kinematics,
-    known_forces,
-    solve_response,
-)
+from fricmb.integrate.model.accelerations import accelerate, complete, kinematics, known_forces, solve_response
 from fricmb.integrate.model.forces import Scratch, normal_force
+from fricmb.integrate.model.friction_cone import break_away, load_factor
 from fricmb.integrate.model.friction_discs import share
-from fricmb.integrate.model.law_values import break_away, coefficient, magnitude
+from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
+from fricmb.integrate.model.state import INFINITE, State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
@@ -154,9 +148,7 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
     worst, back, excess = -1, -1, 1.0 + MARGIN
     for k in range(r.mode.shape[0]):
         if r.mode[k] == STICK:
-            size = magnitude(ports.row, k, w.F[0])
-            limit = ports.mu_s[k] * y.N[k]
-            ratio = size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0)
+            ratio = load_factor(ports, k, w.F[0], ports.mu_s[k] * y.N[k])
             first = worst < 0 or r.rested[k] < r.rested[worst]
             if ratio > 1.0 + MARGIN and (first or (r.rested[k] == r.rested[worst] and ratio > excess)):
                 excess, worst = ratio, k

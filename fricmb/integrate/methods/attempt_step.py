@@ -8,20 +8,14 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.contact.event_location import (
-    Before,
-    copy_state,
-    locate,
-    passes_by,
-    slip_rate,
-    swap_state,
-    transition,
-)
+from fricmb.integrate.contact.event_location import locate, passes_by
 from fricmb.integrate.contact.mode_decision import Rest
-from fricmb.integrate.model.accelerations import INFINITE, State
+from fricmb.integrate.contact.transition import Before, transition
+from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import INFINITE, State, copy_state, swap_state
 from fricmb.integrate.output.recorder import INSIDE, STEP, Rows, put, record
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate.run.breakpoints import EPS

@@ -9,13 +9,11 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.csr import Csr
-from fricmb.integrate.methods.bdf_stability import COLUMNS, MAX_ORDER, SPACING, growth_table
-from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.model.structure import Structure
-from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.model.state import State
+from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED
 from fricmb.integrate.step.radau_step import OneStep
 from fricmb.integrate.step.step_control import BDF_SAFETY, step_factor
@@ -80,25 +78,6 @@ def differences(n_y: int, span: float, cost: float) -> Differences:
 ADAMS = (1.0, -1 / 2, -1 / 12, -1 / 24, -19 / 720, -3 / 160, -863 / 60480)
 #: Largest growth of a step: differences of old values are extrapolated, their round-off with them.
 GROWTH = 3.0
-
-
-class Guard(NamedTuple):
-    """What keeps BDF from growing on lightly damped oscillations, and from overlooking a transition.
-
-    ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` spectrum of the scene.
-    ``over`` (n_c+1,) how fast stuck forces came nearer to their limits in the last step, and its length.
-    """
-
-    growth: Floats2
-    omega: Floats
-    decay: Floats
-    over: Floats
-
-
-def guard_of(problem: Problem, spectrum: tuple[Floats, Floats]) -> Guard:
-    """Of a scene with frequencies and decay rates of the structure, ``spectrum``."""
-    omega, decay = (np.ascontiguousarray(x, dtype=float) for x in spectrum)
-    return room(Guard(growth_table(), omega, decay, np.zeros(problem.n_c + 1)))
 
 
 @kernel
@@ -179,43 +158,6 @@ def may_begin(past: Differences, code: int) -> bool:
 
 #: BDF steps after which the two methods are compared.
 PATIENCE = 16
-#: Structures of more degrees of freedom are not diagonalised for this.
-WHOLE = 256
-
-
-def spectrum(problem: Problem, structure: Structure, K: Floats, C: Floats) -> tuple[Floats, Floats]:
-    """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction; K and C on the structure's pattern."""
-    n = problem.n
-    if n > WHOLE:
-        if len(problem.omega) == n:
-            return problem.omega, problem.omega * problem.zeta
-        # a bound: any frequency up to it may be there
-        top = np.sqrt(structure.mobility.max() * np.bincount(structure.column, np.abs(K), n).max())
-        return np.concatenate([[0.0], top * np.geomspace(1e-4, 1.0, 256)]), np.zeros(257)
-    inverse = Csr((n, n), structure.Minv_start, structure.Minv_index, structure.Minv).dense()
-    whole_K, whole_C = (Csr((n, n), structure.first, structure.column, part).dense() for part in (K, C))
-    values, shapes = np.linalg.eig(inverse @ whole_K)
-    try:
-        damping = np.real(np.diag(np.linalg.solve(shapes, inverse @ whole_C @ shapes)))
-    except np.linalg.LinAlgError:
-        damping = np.zeros(len(values))
-    return np.sqrt(np.maximum(values.real, 0.0)), 0.5 * np.maximum(damping, 0.0)
-
-
-@kernel
-def admissible(guard: Guard, k: int, h: float, left: float) -> bool:
-    """Whether round-off in every oscillation stays small under order k at step h for the rest of the run."""
-    if k < 3:
-        return True
-    for j in range(guard.omega.shape[0]):
-        x = guard.omega[j] * h / SPACING
-        i = int(min(x, COLUMNS - 1.0))
-        growth = guard.growth[k, i]
-        if i + 1 < COLUMNS:
-            growth += (x - i) * (guard.growth[k, i + 1] - growth)
-        if (growth / h - guard.decay[j]) * left > 2.0:
-            return False
-    return True
 
 
 @kernel

@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.event_location import Before, slip_rate
 from fricmb.integrate.contact.mode_decision import Rest
+from fricmb.integrate.contact.transition import Before
 from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
 from fricmb.integrate.methods.attempt_step import Clock, advance
 from fricmb.integrate.methods.backward_differences import (
@@ -19,23 +19,23 @@ from fricmb.integrate.methods.backward_differences import (
     SLOWER,
     WAIT,
     Differences,
-    Guard,
     differences,
-    guard_of,
     hand_over,
     is_slower,
     may_begin,
-    spectrum,
     start_history,
 )
-from fricmb.integrate.methods.bdf_step import bdf_step, note_loads
+from fricmb.integrate.methods.bdf_stability import Guard, guard_of, spectrum
+from fricmb.integrate.methods.bdf_step import bdf_step
+from fricmb.integrate.methods.bdf_transitions import note_loads
 from fricmb.integrate.methods.one_step import run_one_step
 from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.time_loop import arrive, crowded
-from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints, Problem, Start
 from fricmb.integrate.run.breakpoints import reached, set_window

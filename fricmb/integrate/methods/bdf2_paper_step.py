@@ -9,13 +9,15 @@ from typing import NamedTuple
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.event_location import copy_state, turned
+from fricmb.integrate.contact.transition import turned
 from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
-from fricmb.integrate.model.accelerations import State, complete
+from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
-from fricmb.integrate.model.law_values import magnitude, stick_limit
+from fricmb.integrate.model.friction_cone import cone_margin
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record, record_event
 from fricmb.integrate.problem import (
     EVENT_CLOSE,
@@ -34,6 +36,7 @@ from fricmb.integrate.problem import (
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances
+from fricmb.integrate.step.stage_predictor import contacts_from_start
 from fricmb.integrate.step.stages import solve_stages
 from fricmb.integrate.step.step_matrix import prepare
 
@@ -87,16 +90,7 @@ def solve_with(
     st.hA[0, 0] = beta_h
     for i in range(y.q.shape[0]):
         st.V[0, i] = y.v[i]
-    for i in range(y.z.shape[0]):
-        w.z[0, i] = y.z[i]
-    for k in range(mode.shape[0]):
-        row0 = packed.ports.row[k]
-        w.N[0, k] = y.N[k]
-        w.r[0, k] = magnitude(packed.ports.row, k, y.g)
-        for a in range(row0, packed.ports.row[k + 1]):
-            w.F[0, a] = y.F[a]
-            w.g[0, a] = y.g[a]
-            w.n[0, a] = y.n[a]
+    contacts_from_start(packed, y, w, 0)
     newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     return solve_stages(packed, one.tab, s, one.fac, st, w, mode, one.tol, one.scale, address) > 0
@@ -120,10 +114,10 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
                 continue
         if ports.law[k] == LAW_SMOOTH or mode[k] != STICK:
             continue
-        size = magnitude(ports.row, k, w.F[0])
-        if size > stick_limit(ports, packed.laws, k, s, w.N[0, k]):
+        if cone_margin(ports, packed.laws, k, s, w.F[0], w.N[0, k]) < 0.0:
             mode[k] = SLIP
             changed = True
+            size = magnitude(ports.row, k, w.F[0])
             for a in range(row0, row0 + d):
                 y.n[a] = -w.F[0, a] / size
     return changed

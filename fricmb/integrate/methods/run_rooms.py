@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.contact.event_location import Before
 from fricmb.integrate.contact.mode_decision import Rest, rest_of
+from fricmb.integrate.contact.transition import Before
 from fricmb.integrate.methods.attempt_step import Clock
-from fricmb.integrate.model.accelerations import State, state_of
 from fricmb.integrate.model.forces import Scratch, scratch_of
 from fricmb.integrate.model.instant_rooms import sizes_of
+from fricmb.integrate.model.state import State, state_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.workspace import Store, lent

@@ -10,8 +10,8 @@ from fricmb.integrate.contact.initial_modes import begin, natural_scales
 from fricmb.integrate.contact.mode_decision import fill_rest
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.run_rooms import RunRooms
-from fricmb.integrate.model.accelerations import set_out
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.state import set_out
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.output.recorder import rows, widths
 from fricmb.integrate.output.row_trajectory import RowTrajectory

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.event_location import Before, transition
 from fricmb.integrate.contact.mode_decision import Rest
+from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.methods.attempt_step import Clock, advance, settled
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import Ints
 from fricmb.integrate.run.breakpoints import reached, set_window

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
@@ -18,69 +16,16 @@ from fricmb.integrate.model.forces import (
     set_time,
     structure_force,
 )
+from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.friction_discs import share
-from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force, stick_limit
+from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.model.problem_structs import Packed, Ports
+from fricmb.integrate.model.state import INFINITE, NEGATIVE, State
 from fricmb.integrate.model.structure import Structure
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots
 
-#: What can be wrong with a state: see State.fault.
-NEGATIVE, INFINITE = 1.0, 2.0
 #: Softening of redundant contacts at rest, and rounds of refinement that take it out again (SOFT^rounds < round-off).
 SOFT, REFINEMENTS = 1e-4, 5
-
-
-class State(NamedTuple):
-    """The state of a run with all that follows from it; ``t`` (1,), ``n`` (m,) directions of slip.
-
-    ``a`` (n,) accelerations, ``zd`` (n_z,) rates, ``work`` and ``rate`` (n_c+2,) energies and powers (see ``powers``).
-    ``a0`` (m,) relative accelerations without the forces of stuck contacts, ``size`` (m,)
-    sums of magnitudes behind g (its round-off), ``wd`` (m,) rates of the prescribed part.
-    ``fault`` (1,): NEGATIVE where a slip coefficient has turned so, INFINITE where an acceleration has.
-    ``low`` (n,): what the last additions to q have lost to round-off.  ``way`` (m,): see ``share``.
-    """
-
-    t: Floats
-    q: Floats
-    v: Floats
-    z: Floats
-    zd: Floats
-    F: Floats
-    N: Floats
-    n: Floats
-    g: Floats
-    a: Floats
-    f: Floats
-    mode: Codes
-    work: Floats
-    rate: Floats
-    a0: Floats
-    size: Floats
-    wd: Floats
-    J: Floats
-    rhs: Floats
-    fault: Floats
-    low: Floats
-    way: Floats
-
-
-def state_of(problem: Problem) -> State:
-    """An empty state: at the origin, at rest, slipping."""
-    n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
-    return State(
-        np.zeros(1), np.zeros(n), np.zeros(n), np.zeros(nz), np.zeros(nz), np.zeros(m), np.zeros(nc), np.zeros(m),
-        np.zeros(m), np.zeros(n), np.zeros(n), np.full(nc, SLIP, np.int8), np.zeros(nc + 2), np.zeros(nc + 2),
-        np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n), np.zeros(m),
-    )  # fmt: skip
-
-
-def set_out(y: Any, start: Start) -> None:
-    """Bring an empty state, with joints or without, to a start; forces and modes are still to be found."""
-    y.t[0], y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
-    if start.mode is not None:
-        y.mode[:] = start.mode
-    if start.direction is not None:
-        y.n[:] = start.direction
 
 
 @kernel
@@ -276,3 +221,15 @@ def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots
         share_load(packed, s, y.mode, y.N, y.F, y.way, 1.0)
     powers(packed, s, y.F, y.N, y.g, y.rate)
     return True
+
+
+@kernel
+def slip_rate(packed: Packed, y: State, k: int) -> float:
+    """Rate of the slip speed of contact k in its direction, n . (W^T a - w')."""
+    value = 0.0
+    for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+        rate = -y.wd[a]
+        for i in range(y.q.shape[0]):
+            rate += packed.ports.W[i, a] * y.a[i]
+        value += y.n[a] * rate
+    return value

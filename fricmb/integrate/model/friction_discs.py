@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.friction_cone import friction_size
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Ports
 from fricmb.integrate.problem import STICK, Codes, Floats
 from fricmb.integrate.run.stop import stopped
@@ -18,15 +20,6 @@ from fricmb.integrate.run.stop import stopped
 MOST, FINE, COARSE = 20000, 1e-13, 1e-7
 #: Bounds of the common load found at most, and the part by which a new one has to be higher.
 CUTS, RISE = 30, 1e-14
-
-
-@kernel
-def length(x: Floats, row0: int, row1: int) -> float:
-    """Length of a vector over rows row0 to row1."""
-    if row1 - row0 == 1:
-        return float(abs(x[row0]))
-    size = np.hypot(x[row0], x[row0 + 1])
-    return float(size if row1 - row0 == 2 else np.hypot(size, x[row0 + 2]))
 
 
 @kernel
@@ -79,7 +72,7 @@ def least_energy(ports: Ports, a0: Floats, part: Codes, limit: Floats, scale: Fl
         for a in range(m):
             F[a] = ahead[a] - step[a]
         for k in range(limit.shape[0]):
-            size = length(F, ports.row[k], ports.row[k + 1])
+            size = friction_size(ports.row, k, F)
             if part[k] != 0 and size > limit[k]:
                 for a in range(ports.row[k], ports.row[k + 1]):
                     F[a] *= limit[k] / size
@@ -115,7 +108,7 @@ def share(ports: Ports, mode: Codes, limit: Floats, F: Floats, g: Floats) -> flo
     for k in range(nc):
         if mode[k] == STICK:
             part[k] = 1
-            beyond = beyond or length(F, ports.row[k], ports.row[k + 1]) > limit[k]
+            beyond = beyond or friction_size(ports.row, k, F) > limit[k]
     if not beyond:
         return 0.0
     push, X, scale, radius = np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(nc)
@@ -132,12 +125,11 @@ def share(ports: Ports, mode: Codes, limit: Floats, F: Floats, g: Floats) -> flo
         least_energy(ports, push, part, radius, scale, steep, X)
         power, brake, most = 0.0, 0.0, 0.0
         for k in range(nc):
-            row0, row1 = ports.row[k], ports.row[k + 1]
-            for a in range(row0, row1):
+            for a in range(ports.row[k], ports.row[k + 1]):
                 trial[a] = relative_acceleration(ports, push, X, a) if part[k] != 0 else 0.0
                 power -= F[a] * trial[a]
-            most = max(most, length(trial, row0, row1))
-            brake += limit[k] * length(trial, row0, row1)
+            most = max(most, magnitude(ports.row, k, trial))
+            brake += limit[k] * magnitude(ports.row, k, trial)
         if brake == 0.0 or most <= 1e-13 * largest(push):
             break
         if power / brake <= load * (1.0 + RISE):

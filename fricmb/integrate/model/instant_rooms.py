@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.model.accelerations import State, state_of
 from fricmb.integrate.model.forces import Scratch, longest_call, scratch_of
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.state import State, state_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.workspace import lent

@@ -27,14 +27,6 @@ def coefficient(ports: Laws, laws: Table, k: int, s: Scratch, r: float, N: float
 
 
 @kernel
-def break_away(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
-    """Coefficient up to which a contact sticks: declared, or (``mu_s`` < 0) the limit of the coefficient under N."""
-    if ports.mu_s[k] >= 0.0:
-        return float(ports.mu_s[k])
-    return float(coefficient(ports, laws, k, s, 0.0, N)[0])
-
-
-@kernel
 def magnitude(row: Ints, k: int, x: Floats) -> float:
     """Length of x (m,) over the directions of contact k, its rows ``row[k]:row[k+1]``; without over- or underflow."""
     first = row[k]
@@ -42,18 +34,6 @@ def magnitude(row: Ints, k: int, x: Floats) -> float:
         return float(abs(x[first]))
     size = np.hypot(x[first], x[first + 1])
     return float(size if row[k + 1] - first == 2 else np.hypot(size, x[first + 2]))
-
-
-@kernel
-def stick_limit(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
-    """Force mu_s N up to which contact k sticks."""
-    return float(break_away(ports, laws, k, s, N) * N)
-
-
-@kernel
-def cone_margin(ports: Laws, laws: Table, k: int, s: Scratch, F: Floats, N: float) -> float:
-    """How far the force of a contact is from its friction cone, mu_s N - |F|; below 0 it cannot stick."""
-    return float(stick_limit(ports, laws, k, s, N) - magnitude(ports.row, k, F))
 
 
 @kernel

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.model.accelerations import State, complete, kinematics
+from fricmb.integrate.model.accelerations import complete, kinematics
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import INSIDE
 from fricmb.integrate.problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
 

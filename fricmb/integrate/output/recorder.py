@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.model.accelerations import State
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, Codes, Codes2, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.room_protocols import Events
 

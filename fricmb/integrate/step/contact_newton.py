@@ -16,12 +16,11 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4, Ints
 from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.contact_convergence import creep, force_change, smooth_miss, speed_change
 from fricmb.integrate.step.contact_unknowns import PortState, evaluate_ports
 
 #: Angle to which directions of slip are found: close to landing they decide, and no velocity shows their error.
 DIRECTION = 1e-9
-#: Part of the tolerance of velocities that the force of a law's state may move a contact by without being looked at.
-UNFELT = 1e-6
 
 
 @kernel
@@ -171,124 +170,6 @@ def update_ports(ports: Ports, w: PortState, mode: Codes) -> float:
             if ports.var[k] >= 0 and mode[k] != OPEN:
                 w.N[i, k] += w.rhs[i * u1 + m + nz + ports.var[k]]
     return turn
-
-
-@kernel
-def round_off(w: PortState, i: int, mi: int, a: int, g: float) -> float:
-    """Round-off of a relative velocity g on row a at stage i: no tolerance below it can be met.
-
-    Forces at s nodes are known to the condition of the Radau IIA matrix, |A| |A^-1| = 1.8 s^2 in the largest row; from
-    eight nodes on that is more than the rest.
-    """
-    s = w.F.shape[0]
-    return float((2e-15 if s < 8 else 4e-16 * s * s) * (abs(g) + abs(w.Fin[i, a] * w.G[i * mi + a, i * mi + a])))
-
-
-@kernel
-def speed_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
-    """Largest correction of a slip speed in rhs, in units of its tolerance."""
-    mi = w.Fin.shape[1]
-    u1 = mi + w.z.shape[1]
-    change = 0.0
-    for i in range(w.F.shape[0]):
-        for k in range(mode.shape[0]):
-            if mode[k] == SLIP and ports.law[k] != LAW_SMOOTH:
-                at = ports.row[k + 1] - 1
-                change = max(change, abs(w.rhs[i * u1 + at]) / max(tol[k], round_off(w, i, mi, at, w.r[i, k])))
-    return change
-
-
-@kernel
-def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
-    """How far the port inputs have moved from ``gbuf``, as velocities in units of tol; inf where not finite.
-
-    Of redundant contacts that stick only sums are determined: see :func:`creep`.
-    """
-    G, Fin, last = w.G, w.Fin, w.gbuf
-    mi = Fin.shape[1]
-    change = 0.0
-    for i in range(w.F.shape[0]):
-        for k in range(mode.shape[0]):
-            shared = ports.soft[0] > 0.0 and mode[k] == STICK
-            for a in range(ports.row[k], ports.row[k + 1]):
-                moved = abs((Fin[i, a] - last[i, a]) * G[i * mi + a, i * mi + a])
-                if shared and moved < np.inf:
-                    continue
-                if not moved < np.inf:
-                    return np.inf
-                change = max(change, moved / max(tol[k], round_off(w, i, mi, a, w.g[i, a])))
-            if ports.var[k] >= 0:
-                a = ports.row[-1] + ports.var[k]
-                push = abs(G[i * mi + ports.row[k], i * mi + ports.row[k]])
-                change = max(change, abs(Fin[i, a] - last[i, a]) * push / tol[k])
-    return change
-
-
-@kernel
-def creep(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
-    """Largest slip velocity left, in units of its tolerance, where redundant contacts stick; rhs holds residuals.
-
-    The shares of a load that they hold together are known to round-off over the softening alone, and move from one
-    iteration to the next without an end; what they must not do is creep.
-    """
-    mi = w.Fin.shape[1]
-    u1 = mi + w.z.shape[1]
-    worst = 0.0
-    for i in range(w.F.shape[0]):
-        for k in range(mode.shape[0]):
-            if mode[k] != STICK:
-                continue
-            for a in range(ports.row[k], ports.row[k + 1]):
-                behind = abs(w.gb[i, a])
-                for b in range(mi):
-                    behind += abs(w.G[i * mi + a, i * mi + b] * w.Fin[i, b])
-                worst = max(worst, abs(w.rhs[i * u1 + a]) / max(tol[k], 4e-15 * behind))
-    return worst
-
-
-@kernel
-def state_miss(ports: Ports, w: PortState, hA: Floats2, tol: Floats, i: int, k: int, a: int, size: float) -> float:
-    """Residual ``size`` of state a of contact k at stage i, in units of what is allowed.
-
-    Allowed are the state's tolerance, a force that no velocity shows, and round-off of its rate: a stiff rate
-    (h dz'/dz large) divides a residual before it reaches the state.
-    """
-    row0, z0 = ports.row[k], ports.z_start[k]
-    d, nz = ports.row[k + 1] - row0, ports.z_start[k + 1] - z0
-    L, x, mi = w.L[i, k], a - z0, w.Fin.shape[1]
-    felt, rate = 1e-290, 0.0
-    for b in range(d):
-        felt = max(felt, abs(w.G[i * mi + row0 + b, i * mi + row0 + b] * L[b, d + 1 + x]))
-        rate += abs(L[d + x, b] * w.g[i, row0 + b])
-    for b in range(nz):
-        rate += abs(L[d + x, d + 1 + b] * w.z[i, z0 + b])
-    n_c = ports.row.shape[0] - 1
-    stiff = 1.0 + abs(hA[i, i] * L[d + x, d + 1 + x])
-    allowed = stiff * max(tol[n_c + a], UNFELT * tol[k] / felt)
-    return float(size / (allowed + 2e-15 * (abs(w.z[i, a]) + abs(hA[i, i]) * rate) + 1e-290))
-
-
-@kernel
-def smooth_miss(ports: Ports, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> float:
-    """Largest residual in ``rhs`` of the equations of smooth laws, in units of what is allowed.
-
-    Corrections alone do not tell: where a bristle is bent to its limit, none of its states follows the first
-    correction of the velocity, though this may have turned round.
-    """
-    m, nz, mi = w.F.shape[1], w.z.shape[1], w.Fin.shape[1]
-    u1 = nz + mi
-    miss = 0.0
-    for i in range(w.F.shape[0]):
-        for k in range(mode.shape[0]):
-            if ports.law[k] != LAW_SMOOTH:
-                continue
-            for a in range(ports.row[k], ports.row[k + 1]):
-                off = abs(w.rhs[i * u1 + a]) / max(tol[k], round_off(w, i, mi, a, w.g[i, a]))
-                miss = max(miss, off) if off < np.inf else np.inf
-            for a in range(ports.z_start[k], ports.z_start[k + 1]):
-                off = state_miss(ports, w, hA, tol, i, k, a, abs(w.rhs[i * u1 + m + a]))
-                miss = max(miss, off) if off < np.inf else np.inf
-    return float(miss)
 
 
 @block

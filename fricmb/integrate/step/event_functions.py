@@ -1,8 +1,7 @@
 """Looking for transitions inside a step that has been solved, and how far from one its end is.
 
 Whether a contact that sticks has left its friction cone, |F| > mu_s N, is seen here: within a step by
-``cone_crossing``, from squares, which are polynomials; at its end by ``margin``, with ``cone_margin`` of
-``model/law_values``.
+``cone_crossing``, from squares, which are polynomials; at its end by ``margin``.  Both ask ``model/friction_cone``.
 """
 
 from __future__ import annotations
@@ -11,10 +10,12 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, share_load
+from fricmb.integrate.model.accelerations import share_load
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
-from fricmb.integrate.model.law_values import cone_margin, magnitude, stick_limit
+from fricmb.integrate.model.friction_cone import cone_margin, squared_margin, stick_limit
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
 from fricmb.integrate.step.radau_step import OneStep
@@ -82,17 +83,17 @@ def force_noise(packed: Packed, y: State, k: int, h: float) -> float:
 def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: int) -> float:
     """Where |F| of a stuck contact first leaves the cone, by squares; 2 where it does not."""
     limit = stick_limit(packed.ports, packed.laws, k, s, y.N[k])
-    first = max(0.0, limit * limit - magnitude(packed.ports.row, k, y.F) ** 2)
+    first = max(0.0, squared_margin(packed.ports, k, y.F, limit))
     n_s = one.tab.c.shape[0]
     # stage multipliers are of lower order: a hair beyond the cone inside the step is left to its end
     hair = 1e-6 * limit * limit
     limit = stick_limit(packed.ports, packed.laws, k, s, end.N[k])
-    last = limit * limit - magnitude(packed.ports.row, k, end.F) ** 2
+    last = squared_margin(packed.ports, k, end.F, limit)
     # and in a very short step they are the round-off of velocities over the step
     unknown = force_noise(packed, y, k, end.t[0] - y.t[0]) > 1e-8 * limit
     for j in range(n_s - 1):
         limit = stick_limit(packed.ports, packed.laws, k, s, one.w.N[j, k])
-        one.margin[j] = limit * limit - magnitude(packed.ports.row, k, one.w.F[j]) ** 2 + hair
+        one.margin[j] = squared_margin(packed.ports, k, one.w.F[j], limit) + hair
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair

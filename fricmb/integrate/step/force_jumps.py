@@ -10,9 +10,9 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch, gather, set_state, set_time
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.step.radau_step import Accuracy
 

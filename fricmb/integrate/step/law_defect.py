@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, widest
 

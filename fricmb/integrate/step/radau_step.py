@@ -8,10 +8,11 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State, complete
+from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_state, set_time
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed, Ports
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.contact_unknowns import PortState, port_state
 from fricmb.integrate.step.exact_structure import Exact

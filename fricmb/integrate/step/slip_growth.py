@@ -8,10 +8,10 @@ it has begun; no polynomial through its stages shows that.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
 from fricmb.integrate.model.problem_structs import Packed, Table
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate.step.radau_step import OneStep
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Floats2
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.stages import Stages
@@ -18,21 +18,27 @@ REACH = 2.6
 
 
 @kernel
+def contacts_from_start(packed: Packed, y: State, w: PortState, i: int) -> None:
+    """Law states, and all that belongs to contacts, at stage i from the beginning of the step."""
+    for a in range(y.z.shape[0]):
+        w.z[i, a] = y.z[a]
+    for k in range(y.mode.shape[0]):
+        row0 = packed.ports.row[k]
+        w.N[i, k] = y.N[k]
+        w.r[i, k] = magnitude(packed.ports.row, k, y.g)
+        for a in range(row0, packed.ports.row[k + 1]):
+            w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
+            w.n[i, a] = y.n[a]
+            w.g[i, a] = y.g[a]
+
+
+@kernel
 def start_at_rest(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortState, h: float) -> None:
     """Stages from the values at the beginning of the step."""
     for i in range(tab.c.shape[0]):
         for a in range(y.q.shape[0]):
             st.V[i, a] = y.v[a] + tab.c[i] * h * y.a[a]
-        for a in range(y.z.shape[0]):
-            w.z[i, a] = y.z[a]
-        for k in range(y.mode.shape[0]):
-            row0 = packed.ports.row[k]
-            w.N[i, k] = y.N[k]
-            w.r[i, k] = magnitude(packed.ports.row, k, y.g)
-            for a in range(row0, packed.ports.row[k + 1]):
-                w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
-                w.n[i, a] = y.n[a]
-                w.g[i, a] = y.g[a]
+        contacts_from_start(packed, y, w, i)
 
 
 @kernel

@@ -6,9 +6,9 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.accelerations import State
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import LAW_SMOOTH, STICK, Ints
 from fricmb.integrate.step.contact_unknowns import PortState

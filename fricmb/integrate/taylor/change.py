@@ -12,11 +12,11 @@ from fricmb.integrate.taylor.correction import add_correction, correct, plain_fo
 from fricmb.integrate.taylor.event_heap import push_due
 from fricmb.integrate.taylor.event_search import taylor_search
 from fricmb.integrate.taylor.group_correction import relative_change
-from fricmb.integrate.taylor.layout import BEFORE, INPUT, N_TOUCHED, STEP, TIME, UNTIL, WATCH
+from fricmb.integrate.taylor.layout import AT_END, BEFORE, INPUT, N_TOUCHED, STEP, TIME, UNTIL, WATCH
 from fricmb.integrate.taylor.ledger import count_local, shorten_account
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import polynomial
-from fricmb.integrate.taylor.slip_range import good_until, widen
+from fricmb.integrate.taylor.slip_range import correction_noise, good_until, widen
 from fricmb.integrate.taylor.touched import forget
 from fricmb.integrate.taylor.turning import ask_again, keep_event, keep_group_event, turn
 
@@ -138,13 +138,18 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     until = good_until(net, count, tau, h)
     # a correction that is good for next to nothing is the round-off of its coefficients: the step ends here
     brief = until - tau < BRIEF * (1.0 - tau) and tau > BRIEF
+    if net.i[N_TOUCHED] > 0 and correction_noise(net, count, tau, until, h) > 1.0:
+        brief = True
+    if brief:
+        until = tau
     if until < net.x[UNTIL]:
         now, direction = net.mode[c], net.sigma[c]
         net.mode[c], net.sigma[c] = was, before
-        shorten_account(net, tau if brief else until)
+        shorten_account(net, until)
         net.mode[c], net.sigma[c] = now, direction
     if brief:
         net.due[c] = math.inf
+        net.since[c] = AT_END if kind == EVENT_SLIP else -1.0
         forget(net, count)
         return 0
     apply_correction(net, count, c, tau, h)

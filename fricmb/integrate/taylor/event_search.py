@@ -167,7 +167,8 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
     shift_one(z, last, since)
     # without a jump of the force the acceleration begins at 0, up to round-off of the forces
     rounding = max(1e-11 * size, 1e-12 * net.compliance[c] * net.stick[c] * h)
-    start = 2 if abs(z[1]) <= rounding and last > 1 else 1
+    # one that broke away where the last step ended did so at a force that was known to the tolerance
+    start = 2 if (abs(z[1]) <= rounding or (since == 0.0 and z[1] < 0.0)) and last > 1 else 1
     if low - since > NEAR[start - 1]:
         # corrections since then have changed the polynomial where it began: what is left there is no root
         return first_root(y[: last + 1], -1.0, low, 1.0)

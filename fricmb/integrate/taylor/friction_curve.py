@@ -16,6 +16,8 @@ from fricmb.integrate.taylor.network import Net
 
 #: Parts of the tolerance that may be missing in a coefficient of friction.
 SHARE = 0.1
+#: Less than that is round-off of an interpolant, relative to the coefficient.
+SEEN = 2e-14
 
 
 @kernel
@@ -62,24 +64,39 @@ def fit_curve(net: Net, c: int, low: float, high: float) -> None:
 
 
 @kernel
+def curve_value(curve: Floats, terms: int, x: float) -> float:
+    """``sum_j curve[j] T_j(x)``."""
+    one, two = 0.0, 0.0
+    for j in range(terms - 1, 0, -1):
+        one, two = curve[j] + 2.0 * x * one - two, one
+    return float(curve[0] + x * one - two)
+
+
+@kernel
 def fit_around(net: Net, c: int, r: float, below: float, above: float) -> None:
     """The same around slip speed r, on as much of the range ``below`` and ``above`` it as the interpolant is good on.
 
-    Exact at r: where slip begins without a jump of the force, a trace of one would end it at once.
+    A law that falls between two nodes leaves no trace in the coefficients: it is asked again at r and at the lowest
+    speed.  Exact at r: where slip begins without a jump of the force, a trace of one would end it at once.
     """
-    at = net.groups.lawful[c]
+    groups, at = net.groups, net.groups.lawful[c]
+    row = groups.curve[at]
+    mu, off = coefficient_at(net, c, r), 0.0
     for _ in range(30):
         fit_curve(net, c, r - below, r + above)
-        if net.groups.rough[at] <= 1.0:
+        x = (max(r, 0.0) - groups.middle[at]) / groups.half[at]
+        off = mu - curve_value(row, groups.terms[at], x)
+        missed = abs(off)
+        if x > -1.0:
+            least = coefficient_at(net, c, groups.middle[at] - groups.half[at])
+            missed = max(missed, abs(least - curve_value(row, groups.terms[at], -1.0)))
+        allowed = max(net.x[TOL], SEEN) * abs(mu) + 1e-300
+        groups.rough[at] = max(groups.rough[at], missed / allowed)
+        if groups.rough[at] <= 1.0:
             break
         below *= 0.5
         above *= 0.5
-    row = net.groups.curve[at]
-    x = (max(r, 0.0) - net.groups.middle[at]) / net.groups.half[at]
-    one, two = 0.0, 0.0
-    for j in range(net.groups.terms[at] - 1, 0, -1):
-        one, two = row[j] + 2.0 * x * one - two, one
-    row[0] += coefficient_at(net, c, r) - (row[0] + x * one - two)
+    row[0] += off
 
 
 @kernel
@@ -100,42 +117,3 @@ def compose(curve: Floats, terms: int, x: Floats, b: Floats2, k: int) -> float:
         value -= b[j + 2, k]
         b[j, k] = value + curve[j] if k == 0 else value
     return float(b[0, k])
-
-
-@kernel
-def holds_at(x: Floats, last: int, s: float, closed: bool) -> bool:
-    """Whether the argument x(s) lies where the curve holds; one that begins at speed 0 holds below it, too."""
-    value = 0.0
-    for k in range(last, -1, -1):
-        value = value * s + x[k]
-    return bool(value <= 1.02 and (value >= -1.02 or not closed))
-
-
-@kernel
-def within(net: Net, at: int, x: Floats, last: int, length: float) -> float:
-    """Part of ``length`` in which the argument x(s) stays where the curve holds, 1.0 if in all of it."""
-    closed = net.groups.middle[at] > 1.001 * net.groups.half[at]
-    for i in range(1, 13):
-        if not holds_at(x, last, length * i / 12.0, closed):
-            if i > 1:
-                return (i - 1) / 12.0
-            part = 1.0 / 24.0
-            for _ in range(60):
-                if holds_at(x, last, length * part, closed):
-                    break
-                part *= 0.5
-            return part
-    return 1.0
-
-
-@kernel
-def range_of(x: Floats, last: int, length: float, high: bool) -> float:
-    """The largest (smallest) value of x(s) found."""
-    found = x[0]
-    for i in range(1, 13):
-        s = length * i / 12.0
-        value = 0.0
-        for k in range(last, -1, -1):
-            value = value * s + x[k]
-        found = max(found, value) if high else min(found, value)
-    return float(found)

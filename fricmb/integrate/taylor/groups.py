@@ -31,7 +31,7 @@ class Groups(NamedTuple):
     Start: ``rests``, ``before`` (m,): whether a contact has no slip speed, its direction of slip before (0 in stick).
     Corrections: ``slot`` (m,) of a contact or -1; ``here``: contact of a slot; ``reached``: groups touched; ``touched``
     (.): whether one is; ``was``: forces before; ``dF``; ``local_b``: as b; ``first``: order from which its argument
-    changes.
+    changes; ``along`` (2, .): points of a step, and an argument there.
     """
 
     F: Floats2
@@ -73,3 +73,4 @@ class Groups(NamedTuple):
     dF: Floats2
     local_b: Floats3
     first: Ints
+    along: Floats2

@@ -16,6 +16,7 @@ from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.taylor.layout import (
     END,
+    FASTEST,
     LIMIT,
     LONGEST,
     N_EVENTS,
@@ -41,6 +42,7 @@ from fricmb.integrate.taylor.step_loop import (
     PAUSE,
     SETTLE,
     TOO_SHORT,
+    TOO_STEEP,
     WIDE,
     drive_taylor,
 )  # fmt: skip
@@ -52,7 +54,11 @@ FAILURES = {
     WIDE: "a transition is felt by too many degrees of freedom within one step (timestepping or bdf take this)",
     NOT_FINITE: "the state grew beyond what numbers hold",
     TOO_SHORT: "the step size fell below round-off: a function of time cannot be followed",
+    TOO_STEEP: "the coefficient of friction of contact {contact!r} is followed over slip speeds of {range:.1e} alone: "
+    "it falls without bound there (give its law a finite slope at rest, or take radau or bdf)",
 }
+#: A friction curve over less than this part of the largest speed is that of a law without a slope.
+NARROW = 1e-10
 
 
 def degree_for(rtol: float) -> int:
@@ -174,6 +180,16 @@ def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], 
             return code, net
 
 
+def failure_text(problem: Problem, net: Net, code: int) -> str:
+    """Why a run stopped; steps that shrink, and stick and slip without end, may be a law's."""
+    narrow = np.where(net.groups.half > 0.0, net.groups.half, math.inf)
+    if code in (CROWDED, TOO_SHORT) and narrow.min(initial=math.inf) < NARROW * net.x[FASTEST]:
+        at = int(narrow.argmin())
+        contact = problem.contact_names[int(np.flatnonzero(net.groups.lawful == at)[0])]
+        return FAILURES[TOO_STEEP].format(contact=contact, range=2.0 * narrow[at])
+    return FAILURES[code].format(limit=int(net.i[LIMIT]))
+
+
 def _longer(table: Floats, wanted: int) -> Floats:
     if wanted < len(table):
         return table
@@ -194,7 +210,7 @@ def _trajectory(
         t=float(net.x[TIME]), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0), mode=net.mode.copy(),
         direction=net.sigma.copy(),
     )  # fmt: skip
-    failure = None if code == DONE else ended() or FAILURES[code].format(limit=int(net.i[LIMIT]))
+    failure = None if code == DONE else ended() or failure_text(problem, net, code)
     taken = int(net.i[N_SAMPLES])
     held = None if t_eval is None else net
     return TaylorRun(problem, degree, net.steps[:steps].copy(), events, counters, end, failure, marks, held, taken)

@@ -2,7 +2,7 @@
 
 # x: time; size of the present step; longest step; tolerance; totals of input and damping; end of the run; speeds
 # below NOISE are round-off; next step; the part of the step (s) that
-# counts, and that in which friction curves hold; largest speed
+# counts, and that in which friction curves hold; largest speed, or that to which the step begins to lead
 TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST = range(12)
 # i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
 # phase of the step, next stop; contacts and groups that a correction touches; steps in a row that did not move the time
@@ -12,3 +12,5 @@ N_TOUCHED, N_GROUPS, STALLED = range(10, 13)
 WORK, WORK2, WORK3 = range(3)
 # old[.]: polynomials of one contact: watched; shifted to where y = 0, or change of force; force or acceleration before
 WATCH, SHIFTED, BEFORE = range(3)
+# since[.]: the contact broke away where the step ended
+AT_END = 2.0

@@ -22,6 +22,7 @@ from fricmb.integrate.taylor.prepare_groups import (
     plain_contacts,
     solid,
 )
+from fricmb.integrate.taylor.signals import POINTS
 
 #: A structure of at most so many diagonals is kept by diagonals.
 DIAGONALS = 9
@@ -161,15 +162,9 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
 
 
 def _fit() -> Floats:
-    """Powers of s (9, 9) of a polynomial by value, slope and second derivative at 0, 1/2 and 1; row 9 is room."""
-    powers = np.arange(9)
-    lines = []
-    for s in (0.0, 0.5, 1.0):
-        lines.append(s**powers)
-        lines.append(powers * s ** np.maximum(powers - 1, 0))
-        lines.append(powers * (powers - 1) * s ** np.maximum(powers - 2, 0))
-    # quarters of whole numbers: without round-off a constant is one, however short the step
-    return np.vstack([np.round(4.0 * np.linalg.inv(np.array(lines))) / 4.0, np.zeros((1, 9))])
+    """Powers of s of a polynomial from its values at points of a step; the last row is room."""
+    powers = np.arange(POINTS)
+    return np.vstack([np.linalg.inv((powers[:, None] / (POINTS - 1)) ** powers), np.zeros((1, POINTS))])
 
 
 def net_of(problem: Problem, degree: int) -> Net:

@@ -159,7 +159,7 @@ def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
         "paid": z(m), "rule": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "rests": z(m, np.int8),
         "before": z(m, np.int8), "slot": np.full(m, -1, i), "here": z(most, i), "reached": z(count, i),
         "touched": z(count, np.int8), "was": z((most, P + 1)), "dF": z((P + 1, most)),
-        "local_b": z((most if lawful else 0, *sums)), "first": z(most, i),
+        "local_b": z((most if lawful else 0, *sums)), "first": z(most, i), "along": z((2, 12)),
     }  # fmt: skip
     return Groups(**{name: solid(array) for name, array in arrays.items()})
 

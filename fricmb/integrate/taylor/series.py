@@ -5,7 +5,8 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Ints
-from fricmb.integrate.taylor.friction_curve import coefficient_at, compose, fit_around, within
+from fricmb.integrate.taylor.curve_check import curve_part
+from fricmb.integrate.taylor.friction_curve import coefficient_at, compose, fit_around
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
 from fricmb.integrate.taylor.layout import ALLOWED, FASTEST
 from fricmb.integrate.taylor.network import Net
@@ -168,28 +169,30 @@ def begin_groups(net: Net) -> None:
     for gi in range(net.groups.n_stuck.shape[0]):
         factor_group(net, gi)
     hold_velocities(net)
-    fastest = 1e-300
-    for j in range(net.top.shape[0]):
-        fastest = max(fastest, net.top[j])
-    net.x[FASTEST] = fastest
     for i in range(net.grouped.shape[0]):
         net.groups.paid[net.grouped[i]] = 0.0
+
+
+@kernel
+def fastest_speed(net: Net, h: float) -> float:
+    """The largest speed so far, or that to which the accelerations at the beginning of a step h lead in it."""
+    fastest = 1e-300
+    rise = net.Q[2]
+    for j in range(net.top.shape[0]):
+        fastest = max(fastest, net.top[j], abs(rise[j]) / h)
+    return float(fastest)
 
 
 @kernel
 def curves_hold(net: Net) -> float:
     """The part of the step in which all slip speeds stay where their curves hold, and these are good enough."""
     allowed = 1.0
-    last = net.groups.F.shape[0] - 1
     for i in range(net.grouped.shape[0]):
         c = net.grouped[i]
         at = net.groups.lawful[c]
         if at < 0 or net.mode[c] != SLIP:
             continue
-        b = net.groups.b[at]
-        allowed = min(allowed, within(net, at, b[b.shape[0] - 1], last, 1.0))
-        if net.groups.rough[at] > 1.0:
-            allowed = min(allowed, 0.7 * net.groups.rough[at] ** (-1.0 / (net.groups.nodes.shape[0] - 1.0)))
+        allowed = min(allowed, curve_part(net, c, net.groups.b[at], 1.0))
     return float(allowed)
 
 
@@ -211,6 +214,8 @@ def taylor_series(net: Net, h: float, places: Ints) -> bool:
             target[j] = factor * row[j] * free[j]
         push_slipping(net, k, h, factor)
         hold_groups(net, k, h, factor)
+        if k == 0:
+            net.x[FASTEST] = fastest_speed(net, h)
         if not busy:
             for j in range(n):
                 if target[j] != 0.0:

@@ -12,51 +12,72 @@ from fricmb.integrate.taylor.network import Net
 
 #: What round-off leaves between a prescribed function and its powers of s.
 ROUNDING = 1e-11
+#: Points of a step at which accelerations are asked for, and the part of it after which errors are.
+POINTS, PART = 7, 0.25
+
+
+@kernel
+def call_signal(net: Net, j: int, t: float) -> bool:
+    """Value, rate and acceleration of function j at t into window[3:6]; whether it has them."""
+    x = net.window
+    x[2] = min(max(t, x[0]), x[1])
+    call(net.signals.address[j], x, 2, net.signals.p, net.signals.p_start[j], x, 3)
+    return bool(abs(x[3]) + abs(x[4]) + abs(x[5]) < math.inf)
+
+
+@kernel
+def integrate_series(net: Net, j: int, h: float, value: float, rate: float, start: float) -> None:
+    """Powers of s of u and u' from the acceleration at the start and what it differs by at the other points.
+
+    In short steps values and rates are lost in round-off that accelerations are free of: these are integrated.
+    """
+    series, rates, data = net.series[j], net.rates[j], net.fit[POINTS]
+    rates[0], rates[1] = rate, start * h
+    for k in range(1, series.shape[0] - 1):
+        power = 0.0
+        if k < POINTS:
+            for a in range(1, POINTS):
+                power += net.fit[k, a] * data[a]
+        rates[k + 1] = power * h / (k + 1)
+    series[0] = value
+    for k in range(series.shape[0] - 1):
+        series[k + 1] = rates[k] * h / (k + 1)
+
+
+@kernel
+def polynomial_error(net: Net, j: int, s: float, h: float) -> float:
+    """How far the powers of s are off what function j was last called for, at s, relative to its largest values."""
+    x = net.window
+    value = 0.0
+    rate = 0.0
+    for k in range(net.series.shape[1] - 1, -1, -1):
+        value = value * s + net.series[j, k]
+        rate = rate * s + net.rates[j, k]
+    size = net.large[0, j]
+    off = abs(rate - x[4]) / (net.large[1, j] + 0.01 * size / h + 1e-300)
+    return float(max(off, abs(value - x[3]) / (size + 1e-300)))
 
 
 @kernel
 def signal_series(net: Net, t: float, h: float) -> float:
-    """Powers of s of u and u', from values, rates and accelerations at the start, the middle and the end.
-
-    Returns how far off they are in between, relative to the largest value.
-    """
-    n_u = net.series.shape[0]
-    P = net.series.shape[1]
+    """Powers of s of u and u' over a step h; returns how far off they are, relative to the largest values."""
     worst = 0.0
     x = net.window  # window[2], [3:6]: argument and results of a call
-    for j in range(n_u):
-        for a in range(9):
-            net.fit[9, a] = 0.0
-        for a in range(3):
-            x[2] = min(max(t + 0.5 * a * h, x[0]), x[1])
-            call(net.signals.address[j], x, 2, net.signals.p, net.signals.p_start[j], x, 3)
-            net.fit[9, 3 * a] = x[3]
-            net.fit[9, 3 * a + 1] = x[4] * h
-            net.fit[9, 3 * a + 2] = x[5] * h * h
-            if not abs(x[3]) + abs(x[4]) + abs(x[5]) < math.inf:
-                return math.inf  # it has no value here
-        for k in range(P):
-            value = 0.0
-            if k < 9:
-                for a in range(9):
-                    value += net.fit[k, a] * net.fit[9, a]
-            net.series[j, k] = value
-        for k in range(P - 1):
-            net.rates[j, k] = (k + 1) * net.series[j, k + 1] / h
-        net.rates[j, P - 1] = 0.0
-        x[2] = min(max(t + 0.25 * h, x[0]), x[1])
-        call(net.signals.address[j], x, 2, net.signals.p, net.signals.p_start[j], x, 3)
-        value = 0.0
-        rate = 0.0
-        for k in range(P - 1, -1, -1):
-            value = value * 0.25 + net.series[j, k]
-            rate = rate * 0.25 + net.rates[j, k]
-        if not abs(x[3]) + abs(x[4]) < math.inf:
+    for j in range(net.series.shape[0]):
+        if not call_signal(net, j, t):
             return math.inf
-        net.large[0, j] = max(net.large[0, j], abs(x[3]))
-        net.large[1, j] = max(net.large[1, j], abs(x[4]))
-        worst = max(worst, abs(value - x[3]) / (net.large[0, j] + 1e-300))
-        worst = max(worst, abs(rate - x[4]) / (net.large[1, j] + 0.01 * net.large[0, j] / h + 1e-300))
+        value, rate, start = x[3], x[4], x[5]
+        for a in range(1, POINTS):
+            if not call_signal(net, j, t + a * h / (POINTS - 1)):
+                return math.inf
+            net.fit[POINTS, a] = x[5] - start
+            net.large[0, j] = max(net.large[0, j], abs(x[3]))
+            net.large[1, j] = max(net.large[1, j], abs(x[4]))
+        integrate_series(net, j, h, value, rate, start)
+        worst = max(worst, polynomial_error(net, j, 1.0, h))
+        # what cancels over the whole step does not in a part of it
+        call_signal(net, j, t + PART * h)
+        worst = max(worst, polynomial_error(net, j, PART, h))
     return worst
 
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
-from fricmb.integrate.taylor.friction_curve import coefficient_at, fit_around, range_of, within
-from fricmb.integrate.taylor.layout import FASTEST, N_TOUCHED, TOL, UNTIL
+from fricmb.integrate.taylor.curve_check import curve_part, within
+from fricmb.integrate.taylor.friction_curve import coefficient_at, fit_around
+from fricmb.integrate.taylor.layout import FASTEST, N_TOUCHED, TOL, UNTIL, WORK
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import relative_row
+
+EPS = 2.3e-16
 
 
 @kernel
@@ -40,8 +43,10 @@ def widen(net: Net, tau: float) -> bool:
         x = b[b.shape[0] - 1]
         if within(net, at, x, last, 1.0 - tau) < 1.0:
             middle, half = groups.middle[at], groups.half[at]
-            above = min(8.0, 1.2 * range_of(x, last, 1.0 - tau, True) - x[0])
-            below = min(8.0, x[0] - 1.2 * range_of(x, last, 1.0 - tau, False))
+            high, low = x[0], x[0]
+            for i in range(groups.along.shape[1]):
+                high, low = max(high, groups.along[1, i]), min(low, groups.along[1, i])
+            above, below = min(8.0, 1.2 * high - x[0]), min(8.0, x[0] - 1.2 * low)
             fit_around(net, c, middle + x[0] * half, max(0.1, below) * half, max(0.1, above) * half)
             again = again or groups.half[at] > 1.05 * half
     return again
@@ -64,8 +69,25 @@ def good_until(net: Net, count: int, tau: float, h: float) -> float:
         at = groups.lawful[c]
         if at < 0 or net.mode[c] != SLIP:
             continue
-        b = groups.local_b[slot]
-        part = min(part, within(net, at, b[b.shape[0] - 1], groups.F.shape[0] - 1, 1.0 - tau))
-        if groups.rough[at] > 1.0:
-            part = min(part, 0.7 * groups.rough[at] ** (-1.0 / (groups.nodes.shape[0] - 1.0)))
+        part = min(part, curve_part(net, c, groups.local_b[slot], 1.0 - tau))
     return float(min(net.x[UNTIL], tau + (1.0 - tau) * part))
+
+
+@kernel
+def correction_noise(net: Net, count: int, tau: float, until: float, h: float) -> float:
+    """Round-off of the velocities at ``until`` once the correction is in powers of s, in units of the tolerance.
+
+    A steep law's correction has coefficients that grow from order to order.  In powers of s - tau the terms are small
+    up to ``until``; in powers of s they cancel from magnitudes of ``|d_k| (until + tau)^k``.
+    """
+    total = net.flat[WORK]
+    for a in range(count):
+        total[a] = 0.0
+    for k in range(net.Q.shape[0] - 1, 0, -1):
+        row = net.dQ[k]
+        for a in range(count):
+            total[a] = total[a] * (until + tau) + k * abs(row[a])
+    worst = 0.0
+    for a in range(count):
+        worst = max(worst, total[a] / (net.top[net.local[a]] + 0.01 * net.x[FASTEST]))
+    return float(EPS * worst / (h * net.x[TOL]))

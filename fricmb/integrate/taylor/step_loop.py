@@ -13,7 +13,9 @@ from fricmb.integrate.taylor.event_heap import pop_due, push_due
 from fricmb.integrate.taylor.event_search import bounds, taylor_search
 from fricmb.integrate.taylor.layout import (
     ALLOWED,
+    AT_END,
     END,
+    FASTEST,
     INPUT,
     LIMIT,
     LONGEST,
@@ -42,7 +44,7 @@ from fricmb.integrate.taylor.signals import ROUNDING, belt_value, signal_series
 from fricmb.integrate.taylor.starting_modes import EPS, set_window, settle
 
 #: Why a run came back.
-DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT = range(8)
+DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP = range(9)
 #: Steps in a row that do not move the time.
 PATIENCE = 100
 #: Phases of a step.
@@ -63,14 +65,9 @@ def tail_error(net: Net, h: float) -> float:
     last = net.Q[P]
     before = net.Q[P - 1]
     work = net.flat[WORK]
-    largest = 0.0
-    rise = net.Q[2]
+    floor = 0.01 * net.x[FASTEST]
     for j in range(n):
-        largest = max(largest, net.top[j], abs(rise[j]) / h)
-    if largest == 0.0:
-        return 0.0
-    for j in range(n):
-        work[j] = (P * abs(last[j]) + (P - 1) * abs(before[j])) / (net.top[j] + 0.01 * largest)
+        work[j] = (P * abs(last[j]) + (P - 1) * abs(before[j])) / (net.top[j] + floor)
     worst, sound = 0.0, 0.0
     for j in range(n):
         worst = max(worst, work[j])
@@ -157,7 +154,7 @@ def find_ends(net: Net) -> None:
     net.i[N_HEAP] = 0
     net.i[N_HERE] = 0
     for c in range(net.mode.shape[0]):
-        net.since[c] = -1.0
+        net.since[c] = 0.0 if net.since[c] == AT_END else -1.0
         net.due[c] = math.inf
         if net.slack[c] <= 0.0:
             push_due(net, c, taylor_search(net, c, 0.0, net.places))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.law_values import coefficient
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, HELD, RESIDUAL
+from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, DRIVES, FAULT, HELD, NO_NUMBER, RESIDUAL, SOUND
 from fricmb.integrate.timestepping._run import Run
 
 #: R of the proximal steps times the local compliance.
@@ -140,3 +141,14 @@ def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
         if held and run.rho[c] > 0.0:
             for a in range(row0, row0 + d):
                 g[a] = 0.0
+
+
+@kernel
+def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
+    """mu(r, N) N; 0 where that is negative, through which iterates may pass."""
+    mu = coefficient(run, run.laws, c, run.s, speed, N)[0]
+    if not abs(mu) < math.inf:
+        run.x[FAULT] = NO_NUMBER
+    elif mu < 0.0 and run.x[FAULT] == SOUND:
+        run.x[FAULT] = DRIVES
+    return float(max(0.0, mu) * N)

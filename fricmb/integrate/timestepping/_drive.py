@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._error import doubtful, step_error
-from fricmb.integrate.timestepping._free import length, set_signals, set_window
+from fricmb.integrate.timestepping._free import set_window
 from fricmb.integrate.timestepping._layout import (
     DRIVES,
     END,
@@ -25,7 +24,6 @@ from fricmb.integrate.timestepping._layout import (
     N_STOP,
     N_UNSETTLED,
     NO_NUMBER,
-    NOISE,
     SAME,
     SHORTEST,
     SOUND,
@@ -34,14 +32,11 @@ from fricmb.integrate.timestepping._layout import (
     TIME,
     WHOLE,
 )  # fmt: skip
-from fricmb.integrate.timestepping._review import slide_radius
+from fricmb.integrate.timestepping._recorder import copy_state, keep_event, keep_row
 from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping._start import jump
 from fricmb.integrate.timestepping._step import forces_at_start, take_step
 
-#: Parts of velocities that are nothing: round-off, and what contacts at rest are solved to.
-ROUND_OFF, CREEP = 1e-12, 1e-9
-#: Part of a usual step that is none: to ask what holds the contacts at an instant.
-PROBE = 1e-3
 #: Shortest steps to which steps are shortened until it is clear which transitions they hold.
 COARSE = 1e4
 #: Why a run came back.
@@ -55,53 +50,6 @@ def is_finite(run: Run) -> bool:
     for i in range(run.load.shape[0]):
         total += 0.0 * (run.q[THERE, i] + run.v[THERE, i])
     return bool(total == 0.0)
-
-
-@kernel
-def copy_state(run: Run, source: int, target: int) -> None:
-    """One slot of the state into another."""
-    run.q[target] = run.q[source]
-    run.v[target] = run.v[source]
-    run.u[target] = run.u[source]
-    run.du[target] = run.du[source]
-    run.g[target] = run.g[source]
-    run.w[target] = run.w[source]
-    run.F[target] = run.F[source]
-    run.ends[target] = run.ends[source]
-    run.hold[target] = run.hold[source]
-    run.grip[target] = run.grip[source]
-    run.when[target] = run.when[source]
-    run.known[target] = run.known[source]
-    run.jolted[target] = run.jolted[source]
-    run.mode[target] = run.mode[source]
-    run.push[target] = run.push[source]
-
-
-@kernel
-def keep_row(run: Run, slot: int, normal: int, t: float) -> None:
-    """A row of the state, with the normal forces of slot ``normal``."""
-    k = run.i[N_ROWS]
-    run.row_t[k] = t
-    run.row_q[k] = run.q[slot]
-    run.row_v[k] = run.v[slot]
-    run.row_F[k] = run.ends[slot]
-    run.row_g[k] = run.g[slot]
-    run.row_N[k] = run.push[normal]
-    run.row_mode[k] = run.mode[slot]
-    run.row_loss[k] = run.total
-    run.row_x[k, 0] = run.spent[HERE, 0]
-    run.row_x[k, 1] = run.spent[HERE, 1]
-    run.i[N_ROWS] = k + 1
-
-
-@kernel
-def keep_event(run: Run, t: float, c: int, kind: int) -> None:
-    """Add a transition."""
-    e = run.i[N_EVENTS]
-    run.event[e, 0] = t
-    run.event[e, 1] = c
-    run.event[e, 2] = kind
-    run.i[N_EVENTS] = e + 1
 
 
 @kernel
@@ -171,113 +119,6 @@ def arrive(run: Run, t: float) -> None:
             set_window(run, run.i[N_STOP])
             jump(run, t)
     run.x[TIME] = t
-
-
-@kernel
-def jump(run: Run, t: float) -> None:
-    """Signals behind a breakpoint; a belt whose velocity jumps ends what sticks, forces that hold may jump."""
-    run.w[MIDDLE] = run.w[HERE]
-    set_signals(run, HERE, t)
-    for i in range(run.load.shape[0]):
-        run.top_v[i] = max(run.top_v[i], abs(run.v[HERE, i]))
-    run.g[MIDDLE] = run.g[HERE]
-    relative_velocities(run, CREEP)
-    for c in range(run.mode.shape[1]):
-        run.known[HERE, c] = 0
-        row0 = run.row[c]
-        if run.mode[HERE, c] == SLIP and run.row[c + 1] - row0 == 1 and run.g[MIDDLE, row0] * run.g[HERE, row0] < 0.0:
-            keep_event(run, t, c, EVENT_REVERSAL)
-        if run.mode[HERE, c] == STICK:
-            for a in range(run.row[c], run.row[c + 1]):
-                if run.g[HERE, a] != 0.0 and run.mode[HERE, c] == STICK:
-                    run.mode[HERE, c] = SLIP
-                    keep_event(run, t, c, EVENT_SLIP)
-    probe(run, t)
-    keep_behind(run, t)
-
-
-@kernel
-def keep_behind(run: Run, t: float) -> None:
-    """A second row where the velocity of a belt jumps: as things are behind it."""
-    jumps = False
-    for c in range(run.mode.shape[1]):
-        row0 = run.row[c]
-        d = run.row[c + 1] - row0
-        for a in range(row0, row0 + d):
-            size = max(abs(run.w[HERE, a]), abs(run.w[MIDDLE, a]))
-            jumps = jumps or abs(run.w[HERE, a] - run.w[MIDDLE, a]) > ROUND_OFF * size
-        speed = length(run.g[HERE], row0, d)
-        if run.mode[HERE, c] == SLIP and speed > 0.0:
-            radius = slide_radius(run, c, speed, run.push[HERE, c])
-            for a in range(row0, row0 + d):
-                run.ends[HERE, a] = -radius * run.g[HERE, a] / speed
-    if jumps:
-        keep_row(run, HERE, HERE, t)
-
-
-@kernel
-def probe(run: Run, t: float) -> None:
-    """What holds the contacts at rest from t on: by a step that is nothing beside those of the run."""
-    some = False
-    for c in range(run.mode.shape[1]):
-        some = some or run.mode[HERE, c] == STICK
-    if not some:
-        return
-    h = min(PROBE * run.x[STEP], 0.5 * (run.window[1] - t))
-    if not h > 0.0:
-        return
-    take_step(run, HERE, WHOLE, t, h, run.places)
-    for c in range(run.mode.shape[1]):
-        if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == STICK and run.known[WHOLE, c] == 1:
-            run.known[HERE, c] = 1
-            run.when[HERE, c] = run.when[WHOLE, c]
-            run.grip[HERE, c] = run.grip[WHOLE, c]
-            for a in range(run.row[c], run.row[c + 1]):
-                run.hold[HERE, a] = run.hold[WHOLE, a]
-
-
-@kernel
-def relative_velocities(run: Run, fine: float) -> None:
-    """G of the present state, 0 where it is below ``fine`` of what moves, has moved or will; that of slip as it is."""
-    set_signals(run, WHOLE, run.x[TIME] + run.x[STEP])
-    for c in range(run.mode.shape[1]):
-        row0 = run.row[c]
-        d = run.row[c + 1] - row0
-        size = run.x[NOISE]
-        part_of = fine if run.mode[HERE, c] == STICK else ROUND_OFF
-        for a in range(row0, row0 + d):
-            value = -run.w[HERE, a]
-            size = max(size, part_of * abs(value), part_of * abs(run.w[WHOLE, a]))
-            for e in range(run.w_start[a], run.w_start[a + 1]):
-                part = run.w_coef[e] * run.v[HERE, run.w_dof[e]]
-                value += part
-                j = run.w_dof[e]
-                size = max(size, part_of * abs(part), part_of * abs(run.w_coef[e]) * (run.top_v[j] + run.floor_v[j]))
-            run.g[HERE, a] = value
-        if length(run.g[HERE], row0, d) <= size or (run.mode[HERE, c] == STICK and size == 0.0):
-            for a in range(row0, row0 + d):
-                run.g[HERE, a] = 0.0
-
-
-@entry
-def begin(run: Run, given: bool) -> None:
-    """Signals, relative velocities and modes at the start."""
-    set_window(run, 0)
-    set_signals(run, HERE, run.x[TIME])
-    relative_velocities(run, ROUND_OFF)
-    for c in range(run.mode.shape[1]):
-        row0 = run.row[c]
-        still = length(run.g[HERE], row0, run.row[c + 1] - row0) == 0.0
-        if not given or not still:
-            run.mode[HERE, c] = STICK if still else SLIP
-    if not given and run.mode.shape[1] > 0:
-        # what nothing can hold slips from the start
-        take_step(run, HERE, WHOLE, run.x[TIME], PROBE * run.x[STEP], run.places)
-        for c in range(run.mode.shape[1]):
-            if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == SLIP:
-                run.mode[HERE, c] = SLIP
-    if run.x[SAME] == 0.0:
-        probe(run, run.x[TIME])
 
 
 @entry

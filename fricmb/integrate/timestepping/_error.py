@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.friction_cone import stick_limit_slope
 from fricmb.integrate.problem import EVENT_STICK, STICK
 from fricmb.integrate.timestepping._layout import HERE, LEEWAY, MIDDLE, THERE, TOL, WHOLE
 from fricmb.integrate.timestepping._run import Run
@@ -37,7 +38,8 @@ def holding_error(run: Run) -> float:
                 worst = max(worst, abs(run.ends[WHOLE, a] - run.ends[THERE, a]))
             if run.var[c] == 1:
                 halves = 0.5 * (run.push[MIDDLE, c] + run.push[THERE, c])
-                worst = max(worst, run.mu_s[c] * abs(run.push[WHOLE, c] - halves))
+                slope = stick_limit_slope(run, run.laws, c, run.s, halves)
+                worst = max(worst, slope * abs(run.push[WHOLE, c] - halves))
     return worst / largest if largest > 0.0 else 0.0
 
 

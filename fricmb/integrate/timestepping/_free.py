@@ -15,12 +15,12 @@ from fricmb.integrate.timestepping._run import Run
 @kernel
 def set_signals(run: Run, slot: int, t: float) -> None:
     """Signals, their rates and the belts' velocities of a state; on the inner side of breakpoints."""
-    t = min(max(t, run.window[0]), run.window[1])
+    t = min(max(t, run.s.window[0]), run.s.window[1])
     for j in range(run.u.shape[1]):
-        run.args[0] = t
-        call(run.signals.address[j], run.args, 0, run.signals.p, run.signals.p_start[j], run.out, 0)
-        run.u[slot, j] = run.out[0]
-        run.du[slot, j] = run.out[1]
+        run.s.x[0] = t
+        call(run.signals.address[j], run.s.x, 0, run.signals.p, run.signals.p_start[j], run.s.out, 0)
+        run.u[slot, j] = run.s.out[0]
+        run.du[slot, j] = run.s.out[1]
     for a in range(run.belt.shape[0]):
         value = run.belt[a]
         for e in range(run.wu_start[a], run.wu_start[a + 1]):
@@ -60,16 +60,16 @@ def find_normals(run: Run, one: int, two: int, t: float, h: float) -> float:
     """Normal forces at the middle of the step, from v one + dv; returns the largest relative change."""
     n = run.load.shape[0]
     n_u = run.u.shape[1]
-    X = run.X
-    X[0] = min(max(t + 0.5 * h, run.window[0]), run.window[1])
+    X = run.s.X
+    X[0] = min(max(t + 0.5 * h, run.s.window[0]), run.s.window[1])
     for i in range(n):
         X[1 + i] = run.q[one, i] + h * (0.5 * run.v[one, i] + 0.25 * run.dv[i])
         X[1 + n + i] = run.v[one, i] + 0.5 * run.dv[i]
     for j in range(n_u):
-        run.args[0] = X[0]
-        call(run.signals.address[j], run.args, 0, run.signals.p, run.signals.p_start[j], run.out, 0)
-        X[1 + 2 * n + j] = run.out[0]
-        X[1 + 2 * n + n_u + j] = run.out[1]
+        run.s.x[0] = X[0]
+        call(run.signals.address[j], run.s.x, 0, run.signals.p, run.signals.p_start[j], run.s.out, 0)
+        X[1 + 2 * n + j] = run.s.out[0]
+        X[1 + 2 * n + n_u + j] = run.s.out[1]
     worst = 0.0
     for c in range(run.var.shape[0]):
         if run.var[c] == 0:
@@ -80,16 +80,16 @@ def find_normals(run: Run, one: int, two: int, t: float, h: float) -> float:
             value = table.form_constant[a]
             for e in range(table.form_start[a], table.form_start[a + 1]):
                 value += table.form_coefficient[e] * X[table.form_index[e]]
-            run.args[a - first] = value
-        call(table.address[c], run.args, 0, table.p, table.p_start[c], run.out, 0)
-        if not abs(run.out[0]) < math.inf:
+            run.s.x[a - first] = value
+        call(table.address[c], run.s.x, 0, table.p, table.p_start[c], run.s.out, 0)
+        if not abs(run.s.out[0]) < math.inf:
             run.x[FAULT] = NO_NUMBER
-        force = max(0.0, run.out[0])
+        force = max(0.0, run.s.out[0])
         worst = max(worst, abs(force - run.push[two, c]) / (abs(force) + abs(run.push[two, c]) + 1e-300))
         run.push[two, c] = force
         # rate of the distance, and damping and input beside what is stored
-        run.instant[c, 0] = run.args[1]
-        run.instant[c, 1] = run.out[2 + table.x_start[c + 1] - first] if run.acts[c] == 1 else 0.0
+        run.instant[c, 0] = run.s.x[1]
+        run.instant[c, 1] = run.s.out[2 + table.x_start[c + 1] - first] if run.acts[c] == 1 else 0.0
     return worst
 
 
@@ -180,11 +180,5 @@ def set_window(run: Run, stop: int) -> None:
     """Functions of time are evaluated between the stops around the present time."""
     low = run.stops[stop - 1] if stop > 0 else run.x[TIME]
     high = run.stops[stop]
-    run.window[0] = low + 4e-16 * abs(low) + 1e-300
-    run.window[1] = high - 4e-16 * abs(high) - 1e-300
-
-
-@kernel
-def length(x: Floats, first: int, d: int) -> float:
-    """Length of the d entries from ``first`` on."""
-    return float(abs(x[first]) if d == 1 else math.hypot(x[first], x[first + 1]))
+    run.s.window[0] = low + 4e-16 * abs(low) + 1e-300
+    run.s.window[1] = high - 4e-16 * abs(high) - 1e-300

@@ -10,6 +10,7 @@ from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import on_one_pattern
 from fricmb.integrate.model.band_ordering import narrow_order
+from fricmb.integrate.model.forces import scratch_of
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
@@ -106,7 +107,7 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
     return {
         "row": contacts.row, "w_start": W.start, "w_dof": W.index, "w_coef": W.value, "belt": contacts.w,
         "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "law": contacts.law,
-        "mu_s": np.abs(contacts.mu_s), "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N),
+        "mu_s": contacts.mu_s, "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N),
         "var": varies.astype(np.int8),
         "acts": (contacts.normal == NORMAL_LAW).astype(np.int8), "n_start": Wn.start, "n_dof": Wn.index,
         "n_coef": Wn.value, "N0": contacts.N0, "signals": _table(problem.signals.table),
@@ -124,7 +125,6 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, 
         raise MemoryError(f"timestepping: a band of half width {band} for {n} degrees of freedom is too wide")
     k = m if condensed else 0
     z, i = np.zeros, np.int64
-    n_x = 8 + int(np.diff(problem.contacts.normal_table.x_start).max(initial=0))
     arrays = {
         **statics, **_states(n, m, nc, n_u),
         **{name: z(n) for name in ("free", "dv", "turn", "trial", "top_q", "top_v", "floor_q", "floor_v")},
@@ -134,8 +134,8 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, 
         "base": z(max(n, m)), "jolt": z(n), "last": z(nc), "instant": z((nc, 2)),
         "lu": z((slots, n * (2 * band + 1))), "of": z((slots, 3 * nc + 1)), "used": z(slots, i),
         "Y": z((slots if k else 0, k, n)), "D": z((slots if k else 0, k, k)), "J": z(k * k),
-        "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "window": z(2), "args": z(n_x),
-        "out": z(n_x + 8), "X": z(1 + 2 * n + 2 * n_u), "x": z(16), "i": z(16, i),
+        "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "s": scratch_of(problem),
+        "x": z(16), "i": z(16, i),
         **no_rows(n, m, nc, capacity), "places": addresses("newton_condensed" if condensed else "newton_band", *BLOCKS),
     }  # fmt: skip
     return room(Run(**{name: _solid(arrays[name]) for name in Run._fields})), condensed, band

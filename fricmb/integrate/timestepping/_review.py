@@ -12,40 +12,16 @@ import math
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.template import call
-from fricmb.integrate.problem import LAW_COEFFICIENT, STICK, Ints
-from fricmb.integrate.timestepping._free import length
-from fricmb.integrate.timestepping._layout import (
-    BROKEN,
-    CAUGHT,
-    DRIVES,
-    FAULT,
-    FREE,
-    HELD,
-    NO_NUMBER,
-    PASSED,
-    RESIDUAL,
-    SOUND,
-)
+from fricmb.integrate.model.friction_cone import friction_size, stick_limit
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.problem import STICK, Ints
+from fricmb.integrate.timestepping._balls import slide_radius
+from fricmb.integrate.timestepping._break_away import break_away, pressed_in_slip, will_break
+from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FREE, HELD, PASSED
 from fricmb.integrate.timestepping._run import Run
 
 #: Rounds in which a contact may still change between resting, passing and going on.
 DECIDING = 6
-
-
-@kernel
-def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
-    """mu(r, N) N; 0 where that is negative, through which iterates may pass."""
-    if run.law[c] != LAW_COEFFICIENT:
-        return float(run.mu_0[c] * N)
-    run.args[0] = speed
-    run.args[1] = N
-    call(run.laws.address[c], run.args, 0, run.laws.p, run.laws.p_start[c], run.out, 0)
-    if not abs(run.out[0]) < math.inf:
-        run.x[FAULT] = NO_NUMBER
-    elif run.out[0] < 0.0 and run.x[FAULT] == SOUND:
-        run.x[FAULT] = DRIVES
-    return float(max(0.0, run.out[0]) * N)
 
 
 @kernel
@@ -55,8 +31,8 @@ def first_balls(run: Run, one: int, two: int) -> None:
         row0 = run.row[c]
         d = run.row[c + 1] - row0
         N = run.push[two, c]
-        speed = length(run.g[one], row0, d)
-        run.brake[c] = run.mu_s[c] * N
+        speed = magnitude(run.row, c, run.g[one])
+        run.brake[c] = stick_limit(run, run.laws, c, run.s, N)
         run.slide[c] = slide_radius(run, c, speed, N)
         run.share[c] = 0.0
         if run.mode[one, c] == STICK:
@@ -73,105 +49,6 @@ def first_balls(run: Run, one: int, two: int) -> None:
 
 
 @kernel
-def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool:
-    """Whether the line through the last holding force and that of this step passes that of the limit in the step."""
-    gap = t + 0.5 * h - run.when[one, c]
-    if run.known[one, c] == 0 or gap <= 0.0 or run.last[c] >= 0.0 or run.tried[c] == 1:
-        return False
-    size = 0.0
-    for a in range(run.row[c], run.row[c + 1]):
-        size = math.hypot(size, run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a]))
-    limit = run.brake[c] + 0.5 * h / gap * (run.brake[c] - run.grip[one, c])
-    # what is held at its limit stays there: what the contacts are solved to is no reason to slip
-    return bool(size > limit + 2.0 * run.x[RESIDUAL] * run.brake[c])
-
-
-@kernel
-def first_crossing(aa: float, ab: float, bb: float) -> float:
-    """The first positive root of aa x^2 + 2 ab x + bb, which is negative at 0; 0 where there is none."""
-    if not bb < 0.0:
-        return 0.0
-    root = math.sqrt(max(0.0, ab * ab - aa * bb))
-    # the same root in both forms, each where nothing cancels
-    if ab > 0.0:
-        return float(-bb / (ab + root))
-    return float((root - ab) / aa) if aa > 0.0 else 0.0
-
-
-@kernel
-def pressed_in_slip(run: Run, one: int, c: int, t: float, h: float, N: float) -> float:
-    """Normal force in the middle of the slip that begins in the step, on the line of the limit; N: of the step."""
-    gap = t + 0.5 * h - run.when[one, c]
-    if run.var[c] == 0 or run.known[one, c] == 0 or gap <= 0.0:
-        return N
-    later = 0.5 * h * max(run.share[c], 0.0) / gap
-    return float(max(0.0, N + later * (run.brake[c] - run.grip[one, c]) / max(run.mu_s[c], 1e-300)))
-
-
-@kernel
-def break_by_jolt(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
-    """A contact that another one's transition tears off: held until then by what held it before, if that is known."""
-    row0 = run.row[c]
-    d = run.row[c + 1] - row0
-    s = run.last[c] if run.known[one, c] == 1 else 0.0
-    size = length(run.away, row0, d)
-    run.share[c] = s
-    slide = slide_radius(run, c, 0.0, pressed_in_slip(run, one, c, t, h, run.push[two, c]))
-    for a in range(row0, row0 + d):
-        slip = run.away[a] / size * slide if size > 0.0 else 0.0
-        run.away[a] = s * (run.hold[one, a] - slip)
-
-
-@kernel
-def break_away(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
-    """When the holding force reached its limit: on the lines of both, through the last step and this one.
-
-    ``away`` becomes the mean force less that of slip all along: (mean hold - slip) s, s the fraction held.
-    """
-    row0 = run.row[c]
-    d = run.row[c + 1] - row0
-    middle = t + 0.5 * h
-    rise_of_limit = run.brake[c] - run.grip[one, c]
-    run.status[c] = BROKEN
-    for a in range(row0, row0 + d):
-        run.away[a] = run.F[two, a] - run.g[two, a] / run.soft[c]  # what would have held it
-    s = 0.0
-    gap = middle - run.when[one, c]
-    if run.last[c] >= 0.0:
-        break_by_jolt(run, one, two, c, t, h)
-        return
-    if run.known[one, c] == 1 and gap > 0.0:
-        limit = run.grip[one, c]
-        aa, ab, bb = -(rise_of_limit**2), -limit * rise_of_limit, -(limit**2)
-        for a in range(row0, row0 + d):
-            rise = run.away[a] - run.hold[one, a]
-            aa += rise * rise
-            ab += rise * run.hold[one, a]
-            bb += run.hold[one, a] ** 2
-        x = first_crossing(aa, ab, bb)
-        if x > 0.0:
-            s = min(max((run.when[one, c] + x * gap - t) / h, -1.0), 1.0)
-            # half of what is held lies before the middle of the time held
-            y = x - 0.5 * max(s, 0.0) * h / gap
-            size = 0.0
-            for a in range(row0, row0 + d):
-                rise = run.away[a] - run.hold[one, a]
-                run.gf[a] = run.hold[one, a] + y * rise
-                run.away[a] = run.hold[one, a] + x * rise
-                size = math.hypot(size, run.away[a])
-            run.share[c] = s
-            # slip begins at speed 0
-            slide = slide_radius(run, c, 0.0, pressed_in_slip(run, one, c, t, h, run.push[two, c]))
-            for a in range(row0, row0 + d):
-                slip = run.away[a] / size * slide if size > 0.0 else 0.0
-                run.away[a] = s * (run.gf[a] - slip)
-            return
-    for a in range(row0, row0 + d):
-        run.away[a] = 0.0
-    run.share[c] = s
-
-
-@kernel
 def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
     """A contact whose slip turns round or ends: whether it is held (CAUGHT) or goes on the other way (PASSED).
 
@@ -181,7 +58,7 @@ def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     soft = run.soft[c]
-    g0 = length(run.g[one], row0, d)
+    g0 = magnitude(run.row, c, run.g[one])
     ge, ee = 0.0, 0.0
     for a in range(row0, row0 + d):
         before = -run.slide[c] * run.g[one, a] / g0
@@ -195,7 +72,7 @@ def come_to_rest(run: Run, one: int, two: int, c: int) -> None:
         holding = run.F[two, a] - run.g[two, a] / soft
         run.away[a] = before + (holding - before) / (1.0 - s)
     run.share[c] = s
-    run.status[c] = CAUGHT if length(run.away, row0, d) <= run.brake[c] else PASSED
+    run.status[c] = CAUGHT if friction_size(run.row, c, run.away) <= run.brake[c] else PASSED
 
 
 @kernel
@@ -204,9 +81,9 @@ def slip_on(run: Run, one: int, two: int, c: int, turn: int) -> bool:
     row0 = run.row[c]
     d = run.row[c + 1] - row0
     before = run.status[c]
-    if before in (HELD, BROKEN) or length(run.g[one], row0, d) == 0.0:
+    if before in (HELD, BROKEN) or magnitude(run.row, c, run.g[one]) == 0.0:
         return False
-    if turn >= DECIDING and not (before == CAUGHT and length(run.g[two], row0, d) > 0.0):
+    if turn >= DECIDING and not (before == CAUGHT and magnitude(run.row, c, run.g[two]) > 0.0):
         return False
     along = 0.0
     for a in range(row0, row0 + d):
@@ -259,9 +136,7 @@ def spread(run: Run, c: int, share: float) -> None:
 @kernel
 def hold_on(run: Run, one: int, two: int, c: int, t: float, h: float) -> None:
     """Whether a contact that sticks at the beginning of the step breaks away in it; one that did so in vain is held."""
-    row0 = run.row[c]
-    d = run.row[c + 1] - row0
-    end = length(run.g[two], row0, d)
+    end = magnitude(run.row, c, run.g[two])
     if run.status[c] == HELD:
         if end > 0.0 or will_break(run, one, two, c, t, h):
             break_away(run, one, two, c, t, h)
@@ -292,7 +167,7 @@ def turned(run: Run, one: int, two: int, c: int) -> bool:
     e0, e1 = run.g[two, row0], run.g[two, row0 + 1]
     m0, m1 = 0.5 * (e0 + run.g[one, row0]), 0.5 * (e1 + run.g[one, row0 + 1])
     end, middle = math.hypot(e0, e1), math.hypot(m0, m1)
-    if min(end, min(middle, length(run.g[one], row0, 2))) <= 2.0 * run.soft[c] * run.rho[c]:
+    if min(end, min(middle, magnitude(run.row, c, run.g[one]))) <= 2.0 * run.soft[c] * run.rho[c]:
         return False
     run.delta[row0] = run.rho[c] * (e0 / end - m0 / middle)
     run.delta[row0 + 1] = run.rho[c] * (e1 / end - m1 / middle)
@@ -304,7 +179,7 @@ def mean_speed(run: Run, one: int, two: int, c: int) -> float:
     """Slip speed at which the coefficient of the step is taken."""
     row0 = run.row[c]
     d = run.row[c + 1] - row0
-    start, end = length(run.g[one], row0, d), length(run.g[two], row0, d)
+    start, end = magnitude(run.row, c, run.g[one]), magnitude(run.row, c, run.g[two])
     if run.status[c] != FREE or start == 0.0:
         s = run.share[c] if run.status[c] != BROKEN else 0.0
         return float(0.5 * (s * start + (1.0 - s) * end))
@@ -320,7 +195,7 @@ def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, pl
     worst = 0.0
     largest = 1e-300
     for c in range(run.status.shape[0]):
-        run.brake[c] = run.mu_s[c] * run.push[two, c]
+        run.brake[c] = stick_limit(run, run.laws, c, run.s, run.push[two, c])
         largest = max(largest, run.brake[c])
     choose_statuses(run, one, two, t, h, turn)
     for c in range(run.status.shape[0]):
@@ -342,13 +217,13 @@ def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, pl
             run.slide[c] = slide_radius(run, c, mean_speed(run, one, two, c), pressed)
             run.rho[c] = run.slide[c]
             s = run.share[c]
-            size = length(run.away, row0, d)
+            size = magnitude(run.row, c, run.away)
             for a in range(row0, row0 + d):
                 run.delta[a] = 0.0
                 if status == BROKEN:
                     run.delta[a] = run.away[a]
                 elif status == PASSED:
-                    before = -run.slide[c] * run.g[one, a] / length(run.g[one], row0, d)
+                    before = -run.slide[c] * run.g[one, a] / magnitude(run.row, c, run.g[one])
                     after = run.slide[c] * run.away[a] / size
                     run.delta[a] = s * (before - after)
             if status == FREE and d == 2:

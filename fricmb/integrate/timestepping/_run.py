@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
 
@@ -40,7 +41,7 @@ class Run(NamedTuple):
     Factors: ``lu`` (k, n (2 b + 1)), ``of`` (k, 3 n_c + 1): h and weights each was made for, ``used`` (k,);
     ``Y`` (k, m, n), ``D`` (k, m, m): responses A^-1 W and h W^T A^-1 W; ``J``, ``rhs``, ``sizes``, ``pivots``.
     Run: ``top_q``, ``top_v`` (n,) running maxima, ``floor_q``, ``floor_v``; ``total`` (n_c,) losses; ``stops``;
-    ``window``; ``args``, ``out``: of called templates; ``X``; ``x``, ``i``: see _layout.
+    ``s``: room for calling templates; ``x``, ``i``: see _layout.
     Rows: ``row_t``, ``row_q``, ``row_v``, ``row_F``, ``row_g``, ``row_N``, ``row_mode``, ``row_loss``, ``row_x``;
     ``event`` (e, 3).  ``places``: table of blocks.
     """
@@ -143,10 +144,7 @@ class Run(NamedTuple):
     floor_v: Floats
     total: Floats
     stops: Floats
-    window: Floats
-    args: Floats
-    out: Floats
-    X: Floats
+    s: Scratch
     x: Floats
     i: Ints
     row_t: Floats

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import (
     EVENT_CLOSE,
     EVENT_OPEN,
@@ -16,14 +17,13 @@ from fricmb.integrate.problem import (
     Ints,
 )
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.timestepping._balls import mark_stuck
+from fricmb.integrate.timestepping._balls import mark_stuck, slide_radius
 from fricmb.integrate.timestepping._free import (
     add_normals,
     add_responses,
     compliances,
     find_normals,
     free_motion,
-    length,
     responses,
     set_signals,
     structure_forces,
@@ -42,7 +42,7 @@ from fricmb.integrate.timestepping._layout import (
     VARYING,
 )
 from fricmb.integrate.timestepping._proximal import solve_contacts
-from fricmb.integrate.timestepping._review import first_balls, review_balls, slide_radius
+from fricmb.integrate.timestepping._review import first_balls, review_balls
 from fricmb.integrate.timestepping._run import Run
 
 #: Most rounds of balls and normal forces in a step.
@@ -130,7 +130,7 @@ def forces_at_end(run: Run, one: int, two: int, c: int, middle: float, h: float)
     """Force of a contact at the end of the step, from the law or from the mean forces of two steps."""
     row0 = run.row[c]
     d = run.row[c + 1] - row0
-    speed = length(run.g[two], row0, d)
+    speed = magnitude(run.row, c, run.g[two])
     if speed > 0.0:
         radius = slide_radius(run, c, speed, run.push[two, c])
         for a in range(row0, row0 + d):
@@ -150,7 +150,7 @@ def forces_at_start(run: Run, two: int) -> None:
     for c in range(run.status.shape[0]):
         row0 = run.row[c]
         d = run.row[c + 1] - row0
-        speed = length(run.g[HERE], row0, d)
+        speed = magnitude(run.row, c, run.g[HERE])
         radius = slide_radius(run, c, speed, run.push[two, c])
         for a in range(row0, row0 + d):
             run.ends[HERE, a] = run.F[two, a] if speed == 0.0 else -radius * run.g[HERE, a] / speed

@@ -14,7 +14,7 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.step_control import SAMPLED
 from fricmb.integrate.timestepping._doubts import kinks, short_phases
-from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, begin, drive
+from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, drive
 from fricmb.integrate.timestepping._layout import (
     BAND,
     CONDENSED,
@@ -42,6 +42,7 @@ from fricmb.integrate.timestepping._layout import (
 )  # fmt: skip
 from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
 from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping._start import begin
 from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
 from fricmb.integrate.trajectory import Counters, Transitions
 
@@ -172,7 +173,7 @@ def _add_floors(run: Run, span: float) -> None:
     row_of = np.repeat(np.arange(len(run.row) - 1), np.diff(run.row))
     contact = np.repeat(row_of, np.diff(run.w_start))
     push = np.zeros(len(run.load))
-    np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (run.mu_s * normal)[contact])
+    np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (np.abs(run.mu_s) * normal)[contact])
     largest = float(np.max(push / mass, initial=0.0))
     run.floor_v[:] += 0.1 * largest * time
     run.floor_q[:] += 0.1 * largest * time**2

@@ -163,6 +163,18 @@ def test_a_belt_that_jumps_leaves_a_row_before_and_one_behind():
     assert sol.audit().ok
 
 
+def test_break_away_follows_the_load_where_the_coefficient_does():
+    """mu(N) N = P at N = (P^2 + sqrt(P^4 + 4 P^2)) / 2 for mu = 1/sqrt(1 + N)."""
+    law, pull = fm.laws.LoadDependent(mu_0=1.0, N_0=1.0, exponent=0.5), 2.0
+    block = fm.Body("block", mass=1.0)
+    lighter = fm.Contact("pad", block, law=law, normal_force=20.0 - fm.t)
+    scene = fm.Scene("lighter", [block, fm.Force("pull", block, axis="x", value=pull), lighter])
+    sol = fm.simulate(scene, t_end=17.0, rtol=1e-5, method="timestepping")
+    expected = 20.0 - 0.5 * (pull**2 + np.sqrt(pull**4 + 4.0 * pull**2))
+    assert [event.kind for event in sol.events] == ["slip"]
+    assert sol.events[0].t == pytest.approx(expected, abs=1e-4)
+
+
 def test_redundant_contacts_share_the_load():
     held = fm.Body("held", mass=1.0, axes="xy")
     force = [fm.Force("fx", held, axis="x", value=0.15 * fm.t), fm.Force("fy", held, axis="y", value=0.2 * fm.t)]

@@ -15,6 +15,7 @@ from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.problem_cache import once_per_problem
@@ -105,7 +106,7 @@ def _model(problem: Problem) -> Model:
     fastest = np.sqrt(np.abs(slip.w2)).max(initial=0.0)
     arrays = [
         blk, mat, co, ci, linked, row, np.stack([K, C, Minv]), np.stack([f0, Ku @ rate, stick.stuck_motion @ w]),
-        np.stack([D, Dinv]), np.array([contacts.mu_s[0] * N, contacts.mu_0[0] * N, fastest, *w]),
+        np.stack([D, Dinv]), np.array([stick_limits(contacts)[0], contacts.mu_0[0] * N, fastest, *w]),
     ]  # fmt: skip
     flags = np.array([m, len(stick.w2), slip.modal, stick.modal, coupled], dtype=np.int64)
     solid: list[Any] = [np.ascontiguousarray(x, dtype=float) for x in arrays]

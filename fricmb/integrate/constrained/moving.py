@@ -1,0 +1,97 @@
+"""What a mechanism computes in at one instant: signals, places of bodies and their derivatives, room for templates."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.constrained.pattern import of_pattern
+from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.problem import Codes, Floats, Problem
+
+
+class Moving(NamedTuple):
+    """What the present positions and velocities of places are, and rooms for calls.
+
+    ``s`` the scratch with X; ``grad``, ``hess`` derivatives of the places, ``grad_rate`` the rates of ``grad``; ``ddy``
+    (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
+    ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
+    their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``friction_rows``);
+    ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
+    ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached;
+    ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
+    matrices for slip of 0, which leaves forces along directions that joints block open.
+    """
+
+    s: Scratch
+    grad: Floats
+    grad_rate: Floats
+    hess: Floats
+    ddy: Floats
+    x: Floats
+    out: Floats
+    fy: Floats
+    fu: Floats
+    phi: Floats
+    phi_rate: Floats
+    form: Codes
+    held: Floats
+    part: Floats
+    borne: Floats
+    slight: Floats
+
+
+class Lengths(NamedTuple):
+    """Of the rooms for calls: places and their rates, what goes into templates and comes out."""
+
+    grad: int
+    hess: int
+    s_x: int
+    s_out: int
+    n_x: int
+    n_out: int
+
+
+def lengths(problem: Problem) -> Lengths:
+    """How long the rooms for calls have to be."""
+    return of_pattern(problem, "lengths", lambda: _lengths(problem))
+
+
+def _lengths(problem: Problem) -> Lengths:
+    m, packed = mechanism_of(problem), mech_of(problem)
+    widths = np.asarray(packed.joint.n_x, dtype=int)
+    rows = np.diff(m.joints.row)
+    directions = int(np.max(np.diff(problem.contacts.row), initial=1))
+    slip = directions + 2
+    n_x = int(np.max(2 * widths + rows, initial=8))
+    n_out = int(np.max(2 * rows + 3 * widths * rows + slip * widths * (widths + 1) + widths + 8, initial=8))
+    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
+    s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
+    for templates in (problem.elements.table, problem.contacts.normal_table):
+        s_x = max(s_x, int(np.max(np.diff(templates.x_start), initial=0)))
+    b = int(np.max(np.diff(m.places.dof_start), initial=1))
+    return Lengths(
+        grad=int(packed.place.grad_start[-1]),
+        hess=int(packed.place.hess_start[-1]),
+        s_x=s_x,
+        s_out=max(8 + s_f * (s_x + 4), 2 + s_x, states * (states + 3) + 4),
+        n_x=n_x,
+        n_out=max(n_out, 2 + 2 * b + 2 * b * b),
+    )
+
+
+def moving_of(problem: Problem) -> Moving:
+    """Arrays for evaluating the problem."""
+    m, n_u, size = mechanism_of(problem), problem.n_u, lengths(problem)
+    scratch = Scratch(
+        np.zeros(1 + 2 * m.n_y + 2 * n_u), np.zeros(n_u), np.zeros(size.s_x), np.zeros(size.s_out),
+        np.array([-np.inf, np.inf]),
+    )  # fmt: skip
+    return Moving(
+        scratch, np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
+        np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
+        np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
+        np.zeros(problem.n_c), np.ones(1), np.zeros(2), np.zeros(problem.n_c),
+    )  # fmt: skip

@@ -1,0 +1,72 @@
+"""The state of a mechanism at one instant, and room for its accelerations and reactions."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fricmb.integrate.constrained.jacobian_layers import Layers
+from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.problem import Codes, Floats, Pivots, Problem
+
+
+class State(NamedTuple):
+    """``t`` (1,), q, v, z; what follows: a (n,), lam (m,), F, g, n (m_p,) per row of ports; N, mode (n_c,); zd.
+
+    ``ga`` (m_p,) derivatives of slip velocities; ``work``, ``rate`` (n_c+2,) energies and powers: friction of every
+    port, damping, input.
+    """
+
+    t: Floats
+    q: Floats
+    v: Floats
+    z: Floats
+    a: Floats
+    lam: Floats
+    F: Floats
+    N: Floats
+    g: Floats
+    ga: Floats
+    zd: Floats
+    mode: Codes
+    n: Floats
+    work: Floats
+    rate: Floats
+
+
+def state_of(problem: Problem) -> State:
+    """An empty state: at the origin, at rest, slipping."""
+    m, nc, rows, nz = mechanism_of(problem), problem.n_c, problem.m, problem.n_z
+    return State(
+        np.zeros(1), np.zeros(m.n), np.zeros(m.n), np.zeros(nz), np.zeros(m.n), np.zeros(m.n_rows), np.zeros(rows),
+        np.zeros(nc), np.zeros(rows), np.zeros(rows), np.zeros(nz), np.ones(nc, np.int8), np.zeros(rows),
+        np.zeros(nc + 2), np.zeros(nc + 2),
+    )  # fmt: skip
+
+
+class Instant(NamedTuple):
+    """Rooms for solving at one instant: the matrix and its factors, right-hand side (size,), rates of X.
+
+    ``other`` (n,): accelerations to compare with.
+    """
+
+    L: Layers
+    ab: Floats
+    pivots: Pivots
+    r: Floats
+    x: Floats
+    ddy: Floats
+    other: Floats
+
+
+def instant_of(problem: Problem) -> Instant:
+    """Arrays for the problem."""
+    order = mech_of(problem).order
+    size, ldab = len(order.place), int(order.sizes[3])
+    layers = Layers(np.zeros(size * ldab), np.zeros(size * ldab), np.zeros(size * ldab))
+    m = mechanism_of(problem)
+    return Instant(
+        layers, np.zeros(size * ldab), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(m.n_y),
+        np.zeros(m.n),
+    )  # fmt: skip

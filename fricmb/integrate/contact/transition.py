@@ -1,0 +1,156 @@
+"""What follows at the instant of a transition: who slips, sticks, opens or turns round, and the rows on both sides."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
+from fricmb.integrate.model.accelerations import share_load, slip_rate
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.friction_cone import stick_limit
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
+from fricmb.integrate.output.recorder import AFTER, BEFORE, Rows, record, record_event
+from fricmb.integrate.problem import (
+    EVENT_CLOSE,
+    EVENT_OPEN,
+    EVENT_REVERSAL,
+    EVENT_SLIP,
+    EVENT_STICK,
+    LAW_SMOOTH,
+    OPEN,
+    SLIP,
+    STICK,
+    Codes,
+    Floats,
+    Ints,
+)
+from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.room_protocols import Events, Laws, Modes
+
+
+class Before(NamedTuple):
+    """Modes and directions before a transition."""
+
+    mode: Codes
+    n: Floats
+
+
+@kernel
+def turned(ports: Laws, k: int, mode: int, n: Floats, old: Floats) -> bool:
+    """Whether one-dimensional slip of contact k has changed its sense."""
+    row0 = ports.row[k]
+    one = mode == SLIP and ports.law[k] != LAW_SMOOTH and ports.row[k + 1] - row0 == 1
+    return bool(one and n[row0] * old[row0] < 0.0)
+
+
+@kernel
+def record_changes(ports: Laws, t: float, y: Modes, old: Modes, out: Events) -> None:
+    """Record an event at t for every contact whose mode, or sense of one-dimensional slip, differs from ``old``."""
+    for c in range(y.mode.shape[0]):
+        if y.mode[c] != old.mode[c]:
+            if y.mode[c] == OPEN:
+                record_event(out, t, c, EVENT_OPEN)
+            elif old.mode[c] == OPEN:
+                record_event(out, t, c, EVENT_CLOSE)
+            else:
+                record_event(out, t, c, EVENT_STICK if y.mode[c] == STICK else EVENT_SLIP)
+        elif turned(ports, c, y.mode[c], y.n, old.n):
+            record_event(out, t, c, EVENT_REVERSAL)
+
+
+@kernel
+def lands_now(packed: Packed, y: State, k: int, part: int) -> bool:
+    """Whether a slip ends so soon that no step to its end can be told from none: 16 roundings of the time away."""
+    if part != 0 or y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+        return False
+    speed = magnitude(packed.ports.row, k, y.g)
+    return bool(speed <= -16.0 * EPS * abs(y.t[0]) * slip_rate(packed, y, k))
+
+
+@kernel
+def holds_nothing(packed: Packed, y: State, k: int) -> bool:
+    """Whether a stuck contact that has reached its cone bears nothing but round-off: it is the cone that has closed."""
+    row0 = packed.ports.row[k]
+    if y.mode[k] != STICK or packed.ports.var[k] < 0:
+        return False
+    top = 0.0
+    for i in range(y.a.shape[0]):
+        top = max(top, abs(y.a[i]))
+    held = packed.ports.D[row0, row0] * magnitude(packed.ports.row, k, y.F)
+    return bool(held <= 1e-12 * top)
+
+
+@kernel
+def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool:
+    """Release, of redundant contacts that share a load, those that slip in the motion by which they give way.
+
+    They reach their cones as one: none can hold the load without the others.  False where there is no such motion.
+    """
+    nc = y.mode.shape[0]
+    kept = y.F.copy()
+    load = share_load(packed, s, y.mode, y.N, kept, y.way, 1.0 - 1e-6)
+    most = 0.0
+    for c in range(nc if load > 0.0 else 0):
+        row0 = packed.ports.row[c]
+        most = max(most, magnitude(packed.ports.row, c, y.way))
+    for c in range(nc if most > 0.0 else 0):
+        row0 = packed.ports.row[c]
+        speed = magnitude(packed.ports.row, c, y.way)
+        if old.mode[c] == STICK and r.part[c] == 1 and speed > 1e-3 * most:
+            r.part[c] = 2
+            for a in range(row0, packed.ports.row[c + 1]):
+                y.n[a] = y.way[a] / speed
+    return most > 0.0
+
+
+@block
+def transition(
+    packed: Packed, s: Scratch, y: State, k: int, lifted: bool, r: Rest, old: Before, out: Rows, address: Ints
+) -> int:
+    """Go through the transition that contact k has reached (k = -1: a breakpoint of prescribed motion).
+
+    ``lifted``: it is its normal force that has come to 0.
+
+    Records the rows on both sides and the events.  Returns the code of :func:`settle`.
+    """
+    ports = packed.ports
+    # an open contact has no other transition (located without a step, nothing has told which it is)
+    lifted = lifted or (k >= 0 and (y.mode[k] == OPEN or holds_nothing(packed, y, k)))
+    record(out, y, BEFORE)
+    for c in range(y.mode.shape[0]):
+        old.mode[c] = y.mode[c]
+    for a in range(y.n.shape[0]):
+        old.n[a] = y.n[a]
+    find_open(packed, s, y, address)
+    if lifted:
+        # the normal force is at its zero, up to round-off of either sign
+        y.mode[k] = SLIP if old.mode[k] == OPEN else OPEN
+    mark_rest(packed, s, y, r, address)
+    for c in range(y.mode.shape[0]):
+        row0 = ports.row[c]
+        force = ports.D[row0, row0] * stick_limit(ports, packed.laws, c, s, y.N[c])
+        if lands_now(packed, y, c, r.part[c]):
+            r.part[c] = 1
+        if c != k and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
+            # released at this very instant: tried stuck again it would be on its cone, and so without end
+            r.part[c] = 2
+    if k >= 0 and not lifted and packed.ports.law[k] != LAW_SMOOTH:
+        if old.mode[k] == STICK and ports.soft[0] > 0.0 and give_way(packed, s, y, r, old):
+            pass
+        elif old.mode[k] == STICK:
+            r.part[k] = 2
+            size = magnitude(ports.row, k, y.F)
+            for a in range(ports.row[k], ports.row[k + 1]):
+                y.n[a] = -y.F[a] / size
+        else:
+            r.part[k] = 1
+    code = settle(packed, s, y, r, address)
+    if code != 0:
+        return code
+    record_changes(ports, y.t[0], y, old, out)
+    record(out, y, AFTER)
+    return 0

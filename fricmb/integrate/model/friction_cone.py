@@ -1,0 +1,81 @@
+r"""The friction cone: what a contact can hold while it sticks.
+
+.. math:: |F| \le \mu_s(N) \, N
+
+Its two sides are ``friction_size`` and ``stick_limit``; all that decides between stick and slip asks for them, or for
+one of the forms below.  A cone of another shape begins here: with another size (an ellipse whose axes are those of the
+rows is done without it, by the scale of the rows), or with a limit that is given the force as well, for a law that
+depends on its direction.  Slip then needs what goes with it: its force along the normal of the set, in
+``step/contact_unknowns`` and ``constrained/friction_rows``.
+
+Methods for special structures know more, and write the same formula as it serves them:
+
+- ``collocation/one_contact`` (``stick``, ``phase``): one limit for the run, and |F| with its rate and a bound of its
+  second derivative, so that no step passes the instant of release;
+- ``taylor`` (``event_search``, ``turning``, ``starting_modes``): one direction and one limit for the run;
+- ``model/friction_discs`` and ``timestepping/_balls``: projections on the set, whose radius they are given.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.model.problem_structs import Table
+from fricmb.integrate.problem import Contacts, Floats, Ints
+from fricmb.integrate.run.room_protocols import Laws
+
+
+@kernel
+def break_away(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
+    """Coefficient up to which a contact sticks: declared, or (``mu_s`` < 0) the limit of the coefficient under N."""
+    if ports.mu_s[k] >= 0.0:
+        return float(ports.mu_s[k])
+    return float(coefficient(ports, laws, k, s, 0.0, N)[0])
+
+
+@kernel
+def stick_limit(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
+    """Force mu_s N up to which contact k sticks."""
+    return float(break_away(ports, laws, k, s, N) * N)
+
+
+@kernel
+def stick_limit_slope(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
+    """Rate of that force by the normal force."""
+    if ports.mu_s[k] >= 0.0:
+        return float(ports.mu_s[k])
+    mu, _, by_load = coefficient(ports, laws, k, s, 0.0, N)
+    return float(mu + N * by_load)
+
+
+def stick_limits(contacts: Contacts) -> Floats:
+    """The same of all contacts (n_c,) whose normal force is constant."""
+    return np.asarray(np.abs(contacts.mu_s) * contacts.N)
+
+
+@kernel
+def friction_size(row: Ints, k: int, F: Floats) -> float:
+    """What a force of contact k counts against its limit: its length."""
+    return magnitude(row, k, F)
+
+
+@kernel
+def cone_margin(ports: Laws, laws: Table, k: int, s: Scratch, F: Floats, N: float) -> float:
+    """How far the force of a contact is from its friction cone, mu_s N - |F|; below 0 it cannot stick."""
+    return float(stick_limit(ports, laws, k, s, N) - friction_size(ports.row, k, F))
+
+
+@kernel
+def squared_margin(ports: Laws, k: int, F: Floats, limit: float) -> float:
+    """The same by squares, (mu_s N)^2 - |F|^2: a polynomial where F and N are."""
+    return float(limit * limit - friction_size(ports.row, k, F) ** 2)
+
+
+@kernel
+def load_factor(ports: Laws, k: int, F: Floats, limit: float) -> float:
+    """|F| over its limit, above 1 beyond the cone; 2 for any force where there is nothing to hold it."""
+    size = friction_size(ports.row, k, F)
+    return float(size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0))
