@@ -2,63 +2,102 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._equations import Equations, Field
-from fricmb.sensitivity._found import whole
+from fricmb.sensitivity._found import Found, whole
+from fricmb.sensitivity._happenings import PASS, Happening
 from fricmb.sensitivity._parts import refuse
+from fricmb.sensitivity._phases import Phases
 
 #: Most steps of Newton's method, which takes five or six; of loads that friction changes; towards the direction in
 #: which slip ends, and the change at which those are over.
 _MOST, _LOADS, _TURNS, _TURNED = 50, 100, 2000, 1e-6
 #: Accelerations below this share of what friction makes are none; changes of directions that are round-off.
 _NOTHING, _SAME = 1e-12, 1e-11
+#: Where in a stretch beside rest the direction of slip is looked at, from there; at least this far, over 1 or the time:
+#: collocation comes up to such an instant by ever shorter steps.
+_CLOSE, _LEAST = 1e-3, 1e-10
 #: How far beside a direction others are looked at.
 _ASIDE = 1e-4
 #: Cosine of the angle up to which a direction is next to another one.
 _NEAR = 0.9
 
 
-def field_at_rest(
-    e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int], beside: Floats, ends: list[bool]
-) -> Field:
-    """The field with that direction of one contact at each time in which its slip begins, or has just ended.
+def signs_at_rest(
+    e: Equations, phases: Phases, happened: list[Happening], sample: Any, samples: Samples, after: Found
+) -> tuple[Floats, Floats]:
+    """Signs (m, n) before and after happenings, with the direction of slip in two directions that has ended or begins.
 
-    There its relative acceleration is A(n) = rho n with |n| = 1, rho being the growth of r, below 0 where slip
-    ``ends``: of several solutions in the one that the direction ``beside`` (m, n_t) turns into.  A = a - mu_k N D n is
-    linear but for loads, its own and those of others, that this friction changes: the rest a is found with n, in turn.
+    ``sample``: dense output; ``samples``: of the happenings; ``after``: what parts say behind them.
+    """
+    begin, found = np.array([one.phase for one in happened]), []
+    signs = phases.sign[:, begin - 1], phases.sign[:, begin]
+    for i, one in enumerate(happened):
+        for k, kind in zip(one.contacts, one.kinds, strict=True):
+            rests = kind in ("stick", PASS) or (kind == "slip" and not _moves_on(e, phases, after, i, k))
+            if e.contacts[k].d > 1 and rests:
+                found += [(i, k, ends) for ends in (True, False) if kind == PASS or ends == (kind == "stick")]
+    if not found:
+        return signs
+    numbers, contacts, ends = (list(own) for own in zip(*found, strict=True))
+    phase = [happened[i].phase - end for i, _, end in found]
+    beside = _beside(phases, sample, phase, ends)
+    for j, (i, k, end) in enumerate(found):
+        signs[not end][e.rows(k), i] = beside[e.rows(k), j] / np.linalg.norm(beside[e.rows(k), j])
+    near = np.column_stack([signs[not end][:, i] for i, _, end in found])
+    directions = directions_at_rest(e, take(samples, numbers), phases.mode[:, phase], near, contacts, ends)
+    for n, (i, k, end) in zip(directions, found, strict=True):
+        signs[not end][e.rows(k), i] = n
+    return signs
+
+
+def _beside(phases: Phases, sample: Any, phase: list[int], ends: list[bool]) -> Floats:
+    """Slip (m, n) shortly before stretches end, or after they begin."""
+    t = phases.t
+    aside = [max(_CLOSE * (t[k + 1] - t[k]), _LEAST * max(1.0, t[k])) for k in phase]
+    places = [t[k + 1] - x if end else t[k] + x for k, x, end in zip(phase, aside, ends, strict=True)]
+    return np.asarray(sample(np.array(places)).g)
+
+
+def _moves_on(e: Equations, phases: Phases, after: Found, i: int, k: int) -> bool:
+    """Whether slip begins with a speed: what a contact touches has jumped."""
+    g, W = whole(after.g[k], after.force.shape[1], e.columns)
+    speed = float(np.abs(W[i, :, e.n : 2 * e.n]).max(axis=0) @ phases.speed) + 1e-300
+    return bool(np.linalg.norm(g[i]) > 1e-3 * speed)
+
+
+def directions_at_rest(
+    e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int], ends: list[bool]
+) -> list[Floats]:
+    """Directions (d,) of one contact at each time in which its slip begins, or has just ended.
+
+    ``sign`` (m, n_t): those near by.  At rest a relative acceleration is A(n) = rho n with |n| = 1, rho being the
+    growth of r, below 0 where slip ``ends``: of several solutions that which the direction near by turns into.
+    A = a - mu_k N D n is linear but for loads, its own and those of others, that this friction changes: a is found
+    with n.
     """
     found = sign.copy()
-    for i, k in enumerate(contacts):
-        found[e.rows(k), i] = 0.0
-    field = e.field(samples, mode, found)
     for _ in range(_LOADS):
-        before = found.copy()
+        before, field = found.copy(), e.field(samples, mode, found)
         A = accelerations(e, field, contacts)
         for i, k in enumerate(contacts):
             own, W = e.rows(k), whole(field.found.g[k], samples.t.size, e.columns)[1][i][:, e.n : 2 * e.n]
             D = e.contacts[k].size_at_rest(field.found.N[k], i) * W @ e.free(field.found, mode[:, i], i) @ W.T
             solve = _settled if ends[i] else _begun
-            found[own, i] = solve(D, A[i] + D @ before[own, i], beside[own, i])
+            found[own, i] = solve(D, A[i] + D @ before[own, i], sign[own, i])
         changed = [float(np.abs(found[e.rows(k), i] - before[e.rows(k), i]).max()) for i, k in enumerate(contacts)]
         if max(changed) <= _SAME:
-            return field
-        field = e.field(samples, mode, found)
+            return [found[e.rows(k), i] for i, k in enumerate(contacts)]
     return refuse(
         e.contacts[contacts[int(np.argmax(changed))]].part,
         "the begin or end of slip in two directions under loads that its friction changes as much",
     )
-
-
-def put(field: Field, i: int, own: Field, j: int) -> None:
-    """Time number j of a field into another's time number i."""
-    field.a[i], field.a_slopes[i] = own.a[j], own.a_slopes[j]
-    field.rate[i], field.rate_slopes[i] = own.rate[j], own.rate_slopes[j]
-    for k, (F, slopes) in own.F.items():
-        field.F[k][0][i], field.F[k][1][i] = F[j], slopes[j]
 
 
 def accelerations(e: Equations, field: Field, contacts: list[int]) -> list[Floats]:
@@ -69,7 +108,7 @@ def accelerations(e: Equations, field: Field, contacts: list[int]) -> list[Float
 
 
 def across(e: Equations, samples: Samples, mode: Codes, sign: Floats, k: int, n: Floats) -> tuple[Floats, Floats]:
-    """Directions across n as rows (d - 1, d), and how fast A of :func:`field_at_rest` falls along them (d - 1, d).
+    """Directions across n as rows (d - 1, d), and how fast A of :func:`directions_at_rest` falls along them (d - 1, d).
 
     ``samples``, ``mode``, ``sign``: of one time.
     """

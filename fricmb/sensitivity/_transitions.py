@@ -17,9 +17,9 @@ from fricmb.integrate.problem import STICK, Codes, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._breakpoints import Breakpoints
-from fricmb.sensitivity._directions import field_at_rest, put
+from fricmb.sensitivity._directions import signs_at_rest
 from fricmb.sensitivity._equations import Equations
-from fricmb.sensitivity._found import total, whole
+from fricmb.sensitivity._found import total
 from fricmb.sensitivity._happenings import PASS, Happening
 from fricmb.sensitivity._phases import BESIDE, Phases
 from fricmb.sensitivity._starts import held
@@ -27,9 +27,6 @@ from fricmb.sensitivity._triggers import Trigger, Triggers
 
 #: An event function counts as 0 within this share of its scale, or this many tolerances.
 _ZERO, _TOLERANCES = 1e-7, 100.0
-#: Where in a stretch beside rest the direction of slip is looked at, from there; at least this far, over 1 or the time:
-#: collocation comes up to such an instant by ever shorter steps.
-_NEAR, _LEAST = 1e-3, 1e-10
 #: Below this normalised rate a transition is too close to one that only touches to be trusted.
 TOUCHES = 1e-3
 
@@ -62,42 +59,12 @@ class Transitions:
         # functions of time may jump here, at an instant that is known to some units of round-off
         beside = BESIDE * np.maximum(1.0, np.abs(times))
         before, after = (replace(self.samples, t=times + sign * beside) for sign in (-1.0, 1.0))
-        self.before = equations.field(before, phases.mode[:, begin - 1], phases.sign[:, begin - 1])
-        self.after = equations.field(after, phases.mode[:, begin], phases.sign[:, begin])
-        self._beginnings()
+        said = equations.said(after, phases.mode[:, begin], phases.sign[:, begin])
+        signs = signs_at_rest(equations, phases, happened, sample, self.samples, said)
+        self.before = equations.field(before, phases.mode[:, begin - 1], signs[0])
+        self.after = equations.field(after, phases.mode[:, begin], signs[1])
         self.triggers = Triggers(equations, phases, happened, self.before, self.samples, self.zero)
         self._kept: dict[int, list[Trigger]] = {}
-
-    def _beginnings(self) -> None:
-        """Fields where slip in two directions begins or has just ended, along its direction at r = 0."""
-        found = []
-        for i, one in enumerate(self.happened):
-            for k, kind in zip(one.contacts, one.kinds, strict=True):
-                wide = self.equations.contacts[k].d > 1
-                if wide and (kind == "stick" or (kind == "slip" and not self._moves_on(i, k))):
-                    found.append((i, k, kind == "stick"))
-                if kind == PASS:
-                    found += [(i, k, True), (i, k, False)]
-        if not found:
-            return
-        phase = [self.happened[i].phase - ends for i, _, ends in found]
-        samples, mode = take(self.samples, [i for i, _, _ in found]), self.phases.mode[:, phase]
-        sign, contacts = self.phases.sign[:, phase], [k for _, k, _ in found]
-        t = self.phases.t
-        aside = [max(_NEAR * (t[k + 1] - t[k]), _LEAST * max(1.0, t[k])) for k in phase]
-        beside = self.sample(np.array([
-            t[k + 1] - x if ends else t[k] + x for k, x, (_, _, ends) in zip(phase, aside, found, strict=True)
-        ])).g  # fmt: skip
-        own = field_at_rest(self.equations, samples, mode, sign, contacts, beside, [ends for _, _, ends in found])
-        for j, (i, _, ends) in enumerate(found):
-            put(self.before if ends else self.after, i, own, j)
-
-    def _moves_on(self, i: int, k: int) -> bool:
-        """Whether slip begins with a speed: what a contact touches has jumped."""
-        e = self.equations
-        g, W = whole(self.after.found.g[k], len(self.happened), e.columns)
-        speed = float(np.abs(W[i, :, e.n : 2 * e.n]).max(axis=0) @ self.phases.speed) + 1e-300
-        return bool(np.linalg.norm(g[i]) > 1e-3 * speed)
 
     def of(self, i: int) -> list[Trigger]:
         """Event functions of a happening."""

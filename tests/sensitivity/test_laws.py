@@ -6,10 +6,12 @@ import pytest
 import fricmb as fm
 from tests.oracle.table import LAWS, SITUATIONS, case
 
-from .differences import derived, said, shares_off, surest
+from .differences import said, shares_off
 
 #: Brings compiled code, and is refused.
 _LEFT_OUT = {"Contensou"}
+#: Of many elements, whose kinks cost a step each.
+_COSTLY = {"ElastoPlastic", "GeneralisedMaxwellSlip", "Iwan", "Leuven"}
 _SITUATIONS = ("reversal", "stick-slip")
 _RTOL = 1e-8
 
@@ -33,15 +35,14 @@ def test_law(name, situation):
     assert max(off.values()) < max(said(sol), default=1e3 * _RTOL), (off, sol.stats.notes)
 
 
-@pytest.mark.parametrize("name", ["Ambrosio", "Dahl", "LinearRegularised", "RateAndState", "Tabulated", "Threlfall"])
+@pytest.mark.parametrize("name", sorted(name for name in LAWS.keys() - _COSTLY if 1 in LAWS[name].dimensions))
 def test_law_in_a_joint(name):
-    """Of a dry pin, whose load is its reaction."""
+    """Of a dry pin, whose load is its reaction, by a number of the law."""
     scene = fm.models.dry_pendulum(law=LAWS[name], radius=0.2)
     own = [p for p in scene.parameters if p.startswith("pin.friction") and np.ndim(scene.parameters[p]) == 0]
-    names = ("arm.inertia", *own[:1])
-    sol = fm.simulate(scene, t_end=3.0, rtol=_RTOL, sensitivities=names)
-    for parameter in names:
-        value, unsure = surest(scene, parameter, t_end=3.0)
-        error = np.maximum(np.abs(derived(sol, parameter) - value) - 3.0 * unsure, 0.0).max()
-        assert error < 1e3 * _RTOL * np.abs(value).max()
-        assert unsure.max() < 1e-3 * np.abs(value).max()
+    names = own[:1] or ("arm.inertia",)
+    sol = fm.simulate(scene, t_end=2.0, rtol=_RTOL, sensitivities=names)
+    # a table has no numbers of its own, and where its knots are passed differences need two steps to tell
+    off = shares_off(sol, names, t_end=2.0, steps=(5e-4,) if own else (2e-3, 2e-4))
+    assert off
+    assert max(off.values()) < max(said(sol), default=1e3 * _RTOL), (off, sol.stats.notes)

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 import fricmb as fm
 from fricmb import models
 
-from .differences import worst
+from .differences import said, shares_off, worst
 
 PENDULUM = {"mass": 1.3, "inertia": 0.2, "length": 0.7, "radius": 0.05, "mu": 0.6, "gravity": 9.81}
 
@@ -80,6 +80,38 @@ def test_against_differences(make, names, t_end):
     found = worst(make(), names, rtol=1e-8, t_end=t_end)
     assert set(found) == set(names)
     assert max(found.values()) < 1e3
+
+
+LAWS = {
+    "Coulomb": fm.laws.Coulomb(mu_s=0.3, mu_k=0.2),
+    "HyperbolicStribeck": fm.laws.HyperbolicStribeck.example(),
+    "LuGre": fm.laws.LuGre(sigma0=200.0, sigma1=0.0, sigma2=0.1, mu_s=0.3, mu_k=0.2, v_s=0.1),
+    "Stribeck": fm.laws.Stribeck(mu_s=0.3, mu_k=0.2, v_s=0.1),
+}
+
+
+@pytest.mark.parametrize(
+    ("make", "law", "names", "t_end"),
+    [
+        (models.rolling_coin, "Coulomb", ("coin.mass", "floor.friction.mu_k"), 1.0),
+        (models.rolling_coin, "LuGre", ("floor.friction.sigma2",), 0.5),
+        (models.billiard, "Stribeck", ("gravity.acceleration.z", "cloth.friction.mu_s"), 1.0),
+        (models.ball_in_cylinder, "HyperbolicStribeck", ("gravity.acceleration.z", "tube.friction.mu_k"), 0.8),
+        (models.dry_ball_joint, "Stribeck", ("hook.radius", "bob.mass"), 1.0),
+        (models.rising_top, "Coulomb", ("table.friction.mu_k", "gravity.acceleration.z"), 0.15),
+    ],
+)
+def test_laws_of_bodies_in_space(make, law, names, t_end):
+    """To a thousand tolerances, or to what a note says."""
+    start = {
+        models.rolling_coin: {"angle": 1.0, "rates": (9.0, 1.5, -2.5)},
+        models.ball_in_cylinder: {"rise": 1.0},
+        models.rising_top: {"spin": 150.0},
+    }.get(make, {})
+    sol = fm.simulate(make(law=LAWS[law], **start), t_end=t_end, rtol=1e-8, sensitivities=names)
+    off = shares_off(sol, names, steps=(5e-4,), t_end=t_end)
+    assert off
+    assert max(off.values()) < max([1e3 * 1e-8, *said(sol)]), (off, sol.stats.notes)
 
 
 def test_ball_that_slides_until_it_rolls():

@@ -8,7 +8,7 @@ through dampers) with every neighbour, and ends at contacts that stick: so it to
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import SLIP, STICK
+from fricmb.integrate.problem import SLIP, STICK, Floats2, Ints
 from fricmb.integrate.taylor.group_correction import group_changes
 from fricmb.integrate.taylor.layout import BEFORE, N_GROUPS, N_TOUCHED, SHIFTED
 from fricmb.integrate.taylor.network import Net
@@ -121,6 +121,15 @@ def correct(net: Net, changed: int, tau: float, h: float) -> int:
 
 
 @kernel
+def add_rows(table: Floats2, rows: Floats2, last: int, place: Ints, count: int) -> None:
+    """Add the first columns of rows to the columns at their places, up to degree ``last``."""
+    for k in range(last + 1):
+        target, row = table[k], rows[k]
+        for a in range(count):
+            target[place[a]] += row[a]
+
+
+@kernel
 def add_correction(net: Net, count: int, tau: float) -> None:
     """Shift the correction to powers of s and add it."""
     P = net.Q.shape[0] - 1
@@ -128,15 +137,7 @@ def add_correction(net: Net, count: int, tau: float) -> None:
     shift_rows(net.dQ, P, count, -tau)
     shift_rows(net.dR, P - 2, count, -tau)
     shift_rows(net.groups.dF, P - 2, touched, -tau)
-    local, here = net.local, net.groups.here
-    for k in range(P + 1):
-        target, row = net.Q[k], net.dQ[k]
-        for a in range(count):
-            target[local[a]] += row[a]
-    for k in range(P - 1):
-        target, row = net.R[k], net.dR[k]
-        for a in range(count):
-            target[local[a]] += row[a]
-        target, row = net.groups.F[k], net.groups.dF[k]
-        for slot in range(touched):
-            target[here[slot]] += row[slot]
+    add_rows(net.Q, net.dQ, P, net.local, count)
+    add_rows(net.R, net.dR, P - 2, net.local, count)
+    if touched > 0:
+        add_rows(net.groups.F, net.groups.dF, P - 2, net.groups.here, touched)

@@ -8,24 +8,27 @@ from fricmb.integrate.taylor.network import Net
 
 
 @kernel
+def sift_up(net: Net, at: int, c: int, s: float) -> None:
+    """Give a contact its place above ``at``, the first free one."""
+    while at > 0:
+        up = (at - 1) >> 1
+        if net.heap_t[up] <= s:
+            break
+        net.heap_t[at] = net.heap_t[up]
+        net.heap_c[at] = net.heap_c[up]
+        at = up
+    net.heap_t[at] = s
+    net.heap_c[at] = c
+
+
+@kernel
 def renew_heap(net: Net) -> None:
     """Fill the heap from ``due`` alone, without what is out of date."""
     count = 0
     for c in range(net.due.shape[0]):
-        s = net.due[c]
-        if s > 1.0:
-            continue
-        at = count
-        count += 1
-        while at > 0:
-            up = (at - 1) >> 1
-            if net.heap_t[up] <= s:
-                break
-            net.heap_t[at] = net.heap_t[up]
-            net.heap_c[at] = net.heap_c[up]
-            at = up
-        net.heap_t[at] = s
-        net.heap_c[at] = c
+        if not net.due[c] > 1.0:
+            sift_up(net, count, c, net.due[c])
+            count += 1
     net.i[N_HEAP] = count
 
 
@@ -38,17 +41,8 @@ def push_due(net: Net, c: int, s: float) -> None:
     if net.i[N_HEAP] >= net.heap_t.shape[0]:
         renew_heap(net)
         return
-    at = net.i[N_HEAP]
-    net.i[N_HEAP] = at + 1
-    while at > 0:
-        up = (at - 1) >> 1
-        if net.heap_t[up] <= s:
-            break
-        net.heap_t[at] = net.heap_t[up]
-        net.heap_c[at] = net.heap_c[up]
-        at = up
-    net.heap_t[at] = s
-    net.heap_c[at] = c
+    sift_up(net, net.i[N_HEAP], c, s)
+    net.i[N_HEAP] += 1
 
 
 @kernel

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.problem import Floats, Floats2
+from fricmb.integrate.problem import SLIP, Floats, Floats2
 from fricmb.integrate.taylor.layout import TOL
 from fricmb.integrate.taylor.network import Net
 
@@ -18,6 +18,12 @@ from fricmb.integrate.taylor.network import Net
 SHARE = 0.1
 #: Less than that is round-off of an interpolant, relative to the coefficient.
 SEEN = 2e-14
+
+
+@kernel
+def slip_law(net: Net, c: int) -> int:
+    """Number of contact c among those under laws of slip speed, if it slips; else -1."""
+    return int(net.groups.lawful[c]) if net.mode[c] == SLIP else -1
 
 
 @kernel

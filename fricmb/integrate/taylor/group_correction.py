@@ -7,8 +7,8 @@ the new and over the old motion.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import SLIP, STICK
-from fricmb.integrate.taylor.friction_curve import compose
+from fricmb.integrate.problem import STICK
+from fricmb.integrate.taylor.friction_curve import compose, slip_law
 from fricmb.integrate.taylor.group_forces import is_held, solve_group, stuck_contact
 from fricmb.integrate.taylor.layout import BEFORE, N_GROUPS, N_TOUCHED
 from fricmb.integrate.taylor.network import Net
@@ -60,8 +60,8 @@ def catch_up(net: Net, first: int, k: int) -> None:
     groups = net.groups
     for slot in range(first, net.i[N_TOUCHED]):
         c = groups.here[slot]
-        at = groups.lawful[c]
-        if at < 0 or net.mode[c] != SLIP:
+        at = slip_law(net, c)
+        if at < 0:
             continue
         b = groups.local_b[slot]
         for q in range(k):

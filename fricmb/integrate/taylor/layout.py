@@ -14,3 +14,5 @@ WORK, WORK2, WORK3 = range(3)
 WATCH, SHIFTED, BEFORE = range(3)
 # since[.]: the contact broke away where the step ended
 AT_END = 2.0
+# relative round-off of one operation
+EPS = 2.3e-16

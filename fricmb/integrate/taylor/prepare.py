@@ -9,6 +9,7 @@ import numpy as np
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
+from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
@@ -154,7 +155,7 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     N = contacts.N
     return {
         "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
-        "compliance": compliance, "belt": contacts.w, "stick": np.abs(contacts.mu_s) * N, "slip": contacts.mu_0 * N,
+        "compliance": compliance, "belt": contacts.w, "stick": stick_limits(contacts), "slip": contacts.mu_0 * N,
         "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "owner": owner,
         "plain": plain.astype(np.int8), "grouped": np.flatnonzero(~plain),
         "first_dof": rows.index[rows.start[:-1]],

@@ -6,7 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.integrate.taylor.curve_check import curve_part
-from fricmb.integrate.taylor.friction_curve import coefficient_at, compose, fit_around
+from fricmb.integrate.taylor.friction_curve import coefficient_at, compose, fit_around, slip_law
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
 from fricmb.integrate.taylor.layout import ALLOWED, FASTEST
 from fricmb.integrate.taylor.network import Net
@@ -189,8 +189,8 @@ def curves_hold(net: Net) -> float:
     allowed = 1.0
     for i in range(net.grouped.shape[0]):
         c = net.grouped[i]
-        at = net.groups.lawful[c]
-        if at < 0 or net.mode[c] != SLIP:
+        at = slip_law(net, c)
+        if at < 0:
             continue
         allowed = min(allowed, curve_part(net, c, net.groups.b[at], 1.0))
     return float(allowed)

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.curve_check import curve_part, within
-from fricmb.integrate.taylor.friction_curve import coefficient_at, fit_around
-from fricmb.integrate.taylor.layout import FASTEST, N_TOUCHED, TOL, UNTIL, WORK
+from fricmb.integrate.taylor.friction_curve import coefficient_at, fit_around, slip_law
+from fricmb.integrate.taylor.layout import EPS, FASTEST, N_TOUCHED, TOL, UNTIL, WORK
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import relative_row
-
-EPS = 2.3e-16
 
 
 @kernel
 def first_curve(net: Net, c: int, held: float, tau: float, h: float) -> None:
     """A curve for a contact that begins to slip, over the speeds that it may reach in the rest of the step."""
-    at = net.groups.lawful[c]
-    if at < 0 or net.mode[c] != SLIP:
+    if slip_law(net, c) < 0:
         return
     rest = (1.0 - tau) * h
     jump = abs(abs(held) - net.groups.N[c] * coefficient_at(net, c, 0.0))
@@ -36,8 +32,8 @@ def widen(net: Net, tau: float) -> bool:
     last = groups.F.shape[0] - 1
     for slot in range(net.i[N_TOUCHED]):
         c = groups.here[slot]
-        at = groups.lawful[c]
-        if at < 0 or net.mode[c] != SLIP:
+        at = slip_law(net, c)
+        if at < 0:
             continue
         b = groups.local_b[slot]
         x = b[b.shape[0] - 1]
@@ -66,8 +62,8 @@ def good_until(net: Net, count: int, tau: float, h: float) -> float:
     part = 1.0 if error <= 1.0 else 0.9 * error ** (-1.0 / (last - 1.0))
     for slot in range(net.i[N_TOUCHED]):
         c = groups.here[slot]
-        at = groups.lawful[c]
-        if at < 0 or net.mode[c] != SLIP:
+        at = slip_law(net, c)
+        if at < 0:
             continue
         part = min(part, curve_part(net, c, groups.local_b[slot], 1.0 - tau))
     return float(min(net.x[UNTIL], tau + (1.0 - tau) * part))

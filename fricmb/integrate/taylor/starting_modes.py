@@ -7,14 +7,12 @@ import math
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.account import displacement, lose_sliding
-from fricmb.integrate.taylor.layout import LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.layout import EPS, LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row
 from fricmb.integrate.taylor.series import taylor_series
 from fricmb.integrate.taylor.signals import belt_grain, belt_value, signal_series
 from fricmb.integrate.taylor.turning import MARGIN, keep_event, set_mode
-
-EPS = 2.3e-16
 
 
 @kernel

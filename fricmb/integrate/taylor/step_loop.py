@@ -15,6 +15,7 @@ from fricmb.integrate.taylor.layout import (
     ALLOWED,
     AT_END,
     END,
+    EPS,
     FASTEST,
     INPUT,
     LIMIT,
@@ -41,7 +42,7 @@ from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate,
 from fricmb.integrate.taylor.sample import sample
 from fricmb.integrate.taylor.series import taylor_series
 from fricmb.integrate.taylor.signals import ROUNDING, belt_value, signal_series
-from fricmb.integrate.taylor.starting_modes import EPS, set_window, settle
+from fricmb.integrate.taylor.starting_modes import set_window, settle
 
 #: Why a run came back.
 DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP = range(9)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
+from fricmb.integrate.taylor.friction_curve import slip_law
 from fricmb.integrate.taylor.layout import N_GROUPS, N_TOUCHED
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import relative_row, shift_one
@@ -58,8 +59,8 @@ def add_contact(net: Net, c: int, tau: float, h: float) -> bool:
     for k in range(last + 1):
         was[k] = groups.F[k, c]
     shift_one(was, last, tau)
-    at = groups.lawful[c]
-    if at >= 0 and net.mode[c] == SLIP:
+    at = slip_law(net, c)
+    if at >= 0:
         b = groups.local_b[slot]
         x = b[b.shape[0] - 1]
         for k in range(last + 2):

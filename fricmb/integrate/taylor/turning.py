@@ -1,4 +1,7 @@
-"""What a contact whose mode ends goes over to, and the transition that is reported."""
+"""What a contact whose mode ends goes over to, and the transition that is reported.
+
+One direction and one limit, ``net.stick``: the friction cone is a comparison (see ``model/friction_cone``).
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Stick in closed form: the time at which the force of a stuck contact reaches its cone.
 
 The force is a sum of the structure's own motions, so its second derivative has a bound at every instant; steps that
-this bound allows never pass a root, whatever happens between, and close in on it quadratically.
+this bound allows never pass a root, whatever happens between, and close in on it quadratically.  The cone
+is that of ``model/friction_cone``, written with its rate.
 """
 
 from __future__ import annotations
