@@ -144,9 +144,10 @@ def _begun(D: Floats, a: Floats, beside: Floats) -> Floats:
 def _settled(D: Floats, a: Floats, beside: Floats) -> Floats:
     """The unit vector n with (D + rho I) n = a into which a direction turns: r n' = (I - n n^T)(a - D n).
 
-    That climbs a^T n - n^T D n/2.
+    That climbs a^T n - n^T D n/2.  Where it comes to one along which slip does not end, this has gone on along a line
+    and through rest, as long as nothing is beside it: then the vector next to it.
     """
-    n = beside / np.linalg.norm(beside)
+    n = unit = beside / np.linalg.norm(beside)
     step = 1.0 / (float(np.linalg.eigvalsh(D)[-1]) + float(np.linalg.norm(a)))
     for _ in range(_TURNS):
         turns = step * (a - D @ n)
@@ -157,7 +158,8 @@ def _settled(D: Floats, a: Floats, beside: Floats) -> Floats:
         n /= np.linalg.norm(n)
         if np.linalg.norm(turns) <= _TURNED:
             break
-    return _polished(D, a, n)
+    n = _polished(D, a, n)
+    return n if n @ (a - D @ n) < 0.0 else _polished(D, a, unit)
 
 
 def _polished(D: Floats, a: Floats, unit: Floats) -> Floats:

@@ -106,7 +106,7 @@ class Triggers:
         sides, falls = across(e, take(self.samples, [i]), mode, sign, k, n)
         w = np.linalg.solve(np.vstack([n, falls]), np.append(1.0 / kappa, np.zeros(len(sides))))
         b = float(np.mean(np.sum(falls * sides, axis=1)))
-        s = 1.0 / (kappa * (2.0 - kappa / b))
+        s = 1.0 / (kappa * (2.0 - min(kappa / b, 1.0)))  # of more than b directions turn away: slip along a line
         D = np.linalg.eigvalsh(W @ e.free(self.before.found, mode[:, 0], i) @ W.T)
         uneven = 1.0 - float(D[0] / D[-1]) + float(np.linalg.norm(falls @ n)) / b
         length = np.linalg.norm(g, axis=0)

@@ -161,6 +161,7 @@ def test_slip_that_ends_in_the_direction_that_its_own_turns_into():
         ("roller", 101, "j0.friction.mu_k"),  # lands twice; a ball joint on it rubs under a load that this changes
         ("tree", 107, "gravity.acceleration.z"),  # a ball joint below another one
         ("roller", 103, "b0.inertia_across"),  # a direction that hardly settles
+        ("roller", 202, "k1.stiffness"),  # a ball whose slip passes rest along a line
     ],
 )
 def test_bodies_in_space_whose_friction_changes_its_own_load(kind, seed, name):
