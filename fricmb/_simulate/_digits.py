@@ -41,13 +41,22 @@ def _unresolved(run: Trajectory, least: float) -> Iterator[tuple[str, float]]:
     seen = run.row_motion()
     noise = force_grain(problem, np.abs(seen.q).max(axis=1, initial=0.0))
     contacts = problem.contacts
-    events, span = run.transitions, np.ptp(run.ends)
-    # what sets out at the start has not been held
-    for k in np.unique(events.contact[(events.kind == EVENT_SLIP) & (events.t > run.ends[0] + 1e-6 * span)]):
+    for k in _held_before(run):
         limit = float(contacts.mu_s[k] * seen.N[k].max(initial=0.0))
         grain = float(noise[contacts.row[k] : contacts.row[k + 1]].max())
         if grain > least * limit > 0.0:
             yield problem.contact_names[k], grain / limit
+
+
+def _held_before(run: Trajectory) -> set[int]:
+    """Contacts that let go after they have been held for a time."""
+    events, least = run.transitions, 1e-6 * float(np.ptp(run.ends))
+    since, found = np.full(run.problem.n_c, run.ends[0]), set()
+    for t, k, kind in zip(events.t, events.contact, events.kind, strict=True):
+        if kind == EVENT_SLIP and t - since[k] > least:
+            found.add(int(k))
+        since[k] = t
+    return found
 
 
 def force_grain(problem: Problem, q: Floats) -> Floats:

@@ -83,7 +83,7 @@ def test_two_directions_modes_and_joints_pass(scene, t_end):
         (with_(F=lambda s: s.F * (1 + 1e-3)), "friction law"),
         (with_(F=lambda s: s.F * np.where(s.mode == 0, 1 + 1e-3, 1.0)), "cone of friction"),
         (with_(v=lambda s: s.v + 1e-3 * (s.mode == 0)), "creep in stick"),
-        (with_(mode=lambda s: np.where((s.t > 5.0) & (s.t < 6.0), 1, s.mode).astype(np.int8)), "release from stick"),
+        (with_(mode=lambda s: np.where((s.t > 5.0) & (s.t < 12.0), 1, s.mode).astype(np.int8)), "release from stick"),
         (with_(N=lambda s: s.N * 1.001), "normal force"),
         (with_(friction_loss=lambda s: s.friction_loss * 1.01), "friction losses"),
     ],

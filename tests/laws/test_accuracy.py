@@ -173,7 +173,8 @@ def test_elliptic_cone_dissipates_most():
     assert np.abs(sol.energy.residual).max() < 1e-9
     # the first integral of motion along the principal axes: vx' = -0.6 vx/s, vy' = -2.4 vy/s, so vy = C vx^4
     moving = slip & (np.abs(sol.v[0]) > 1e-3)
-    np.testing.assert_allclose(sol.v[1][moving] / 0.6, (sol.v[0][moving] / 0.6) ** 4, rtol=1e-7)
+    # to the tolerance of the run, which is a part of the largest velocity
+    np.testing.assert_allclose(sol.v[1][moving] / 0.6, (sol.v[0][moving] / 0.6) ** 4, rtol=1e-7, atol=1e-11)
 
 
 def test_elliptic_cone_sticks_inside_its_ellipse():

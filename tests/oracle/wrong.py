@@ -87,13 +87,13 @@ def excursion(size: float) -> Audit:
 
 
 def phantom(size: float) -> Audit:
-    """Said to slip for a second, without motion, under a load that share below what would be held."""
+    """Said to slip for six seconds, without motion, under a load that share below what would be held."""
     sol = run(block(coulomb(0.8, 0.8), load=0.8 * (1.0 - size)))
     kinds = [EVENT_KINDS.index(kind) for kind in ("slip", "stick")]
-    between = Transitions(t=np.array([5.0, 6.0]), contact=np.zeros(2, np.int64), kind=np.array(kinds))
+    between = Transitions(t=np.array([5.0, 11.0]), contact=np.zeros(2, np.int64), kind=np.array(kinds))
 
     def slips(samples: Any) -> Any:
-        mode = np.where((samples.t > 5.0) & (samples.t < 6.0), 1, samples.mode).astype(np.int8)
+        mode = np.where((samples.t > 5.0) & (samples.t < 11.0), 1, samples.mode).astype(np.int8)
         return dataclasses.replace(samples, mode=mode)
 
     return changed(sol, slips, between)

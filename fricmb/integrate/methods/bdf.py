@@ -42,7 +42,7 @@ from fricmb.integrate.run.breakpoints import reached, set_window
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, FULL, HANDOVER
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
-from fricmb.integrate.step.step_matrix import Factor, forget, jacobians
+from fricmb.integrate.step.step_matrix import forget, jacobians
 from fricmb.integrate.step.tableau import one_stage, radau
 from fricmb.integrate.trajectory import Trajectory
 
@@ -102,11 +102,11 @@ def drive_bdf(
 
 
 @entry
-def jacobian_at(packed: Packed, s: Scratch, y: State, fac: Factor) -> None:
+def jacobian_at(packed: Packed, s: Scratch, y: State, one: OneStep) -> None:
     """The Jacobian of the structure at a state, for the spectrum."""
     set_time(packed.signals, s, y.t[0], y.q.shape[0])
     set_state(s, y.q, y.v)
-    jacobians(packed, s, fac)
+    jacobians(packed, s, one.fac)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +171,7 @@ class Bdf(Integrator):
 def bdf_loop(run: Collector, one: OneStep, multi: OneStep) -> Callable[[], int]:
     """The loop over steps of BDF, ``multi``, with those of the one-step method between them, ``one``."""
     problem = run.problem
-    jacobian_at(run.packed, run.scratch, run.y, multi.fac)
+    jacobian_at(run.packed, run.scratch, run.y, multi)
     spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
     signals = 2 * problem.n + problem.n_z + problem.n_c + 2
     past = differences(signals, run.t_end - run.start.t, cost(problem, len(one.tab.c)) / cost(problem, 1))

@@ -20,7 +20,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
 from fricmb.integrate.step.radau_step import OneStep
 
-#: A slip speed below this part of the velocities that it is the difference of is round-off: the slip begins.
+#: A slip speed below this part of the velocities that it is the difference of is round-off: the slip begins; so does a
+#: normal force below this part of what it reaches in the step.
 BEGINS = 1e-13
 
 
@@ -82,11 +83,11 @@ def force_noise(packed: Packed, y: State, k: int, h: float) -> float:
 @kernel
 def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, k: int) -> float:
     """Where |F| of a stuck contact first leaves the cone, by squares; 2 where it does not."""
-    limit = stick_limit(packed.ports, packed.laws, k, s, y.N[k])
-    first = max(0.0, squared_margin(packed.ports, k, y.F, limit))
+    held = stick_limit(packed.ports, packed.laws, k, s, y.N[k])
+    first = max(0.0, squared_margin(packed.ports, k, y.F, held))
     n_s = one.tab.c.shape[0]
     # stage multipliers are of lower order: a hair beyond the cone inside the step is left to its end
-    hair = 1e-6 * limit * limit
+    hair = 1e-6 * held * held
     limit = stick_limit(packed.ports, packed.laws, k, s, end.N[k])
     last = squared_margin(packed.ports, k, end.F, limit)
     # and in a very short step they are the round-off of velocities over the step
@@ -97,7 +98,7 @@ def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair
-    if packed.ports.soft[0] > 0.0:
+    if packed.ports.soft[0] > 0.0 or held < BEGINS * limit:  # a load that sets out from 0: see ``normal_crossing``
         x = crossing_at_stages(one.tab, first + hair, one.margin)
     else:
         x = first_crossing(one.tab, first + hair, one.margin, one.series)
@@ -110,13 +111,21 @@ def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
 
 @kernel
 def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) -> float:
-    """Where the normal force of a closed contact goes below 0, or of an open one above; 2 where it does not."""
+    """Where the normal force of a closed contact goes below 0, or of an open one above; 2 where it does not.
+
+    One that sets out from 0 leaves it, whatever the polynomial makes of its first moment: of a power as Hertz's it dips
+    below 0 before the first stage however short the step is.
+    """
     sign = -1.0 if y.mode[k] == OPEN else 1.0
     set_time(packed.signals, s, y.t[0], y.q.shape[0])
     set_state(s, y.q, y.v)
+    largest = 0.0
     for j in range(one.tab.c.shape[0]):
         one.margin[j] = sign * one.N[j, k]
+        largest = max(largest, one.margin[j])
     first = max(0.0, sign * normal_force(packed.ports, packed.normals, k, s))
+    if first < BEGINS * largest:
+        return crossing_at_stages(one.tab, first, one.margin)
     return first_crossing(one.tab, first, one.margin, one.series)
 
 
