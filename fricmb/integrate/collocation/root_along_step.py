@@ -180,6 +180,10 @@ def exact_root(
         if aimed:
             second = max(0.0, first - f / rate)
     for _ in range(12):
+        if first == 0.0 and f > 0.0:
+            # what only rises from the start of the step has its root before that
+            first = np.nan
+            break
         if f == 0.0 or (aimed and abs(second - first) <= 2.0 * t_unit):
             if may_stay(packed, y, end, one, acc, k, h, first):
                 return -max(first, 1e-290)

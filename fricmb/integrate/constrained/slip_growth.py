@@ -10,7 +10,7 @@ from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats
-from fricmb.integrate.step.slip_growth import LONGEST, drive
+from fricmb.integrate.step.slip_growth import LONGEST, drive, fall_between
 
 
 @kernel
@@ -35,8 +35,14 @@ def growth(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> float:
         if y.mode[p] != SLIP or port.law[p] == LAW_CONSTANT:
             continue
         fall = fall_at(mech, k, p, y.g, y.N[p], y.z, h)
+        low = high = magnitude(port.row, p, y.g)
+        load = abs(y.N[p])
         for j in range(st.g.shape[0]):
             fall = max(fall, fall_at(mech, k, p, st.g[j], st.N[j, p], st.Z[j], h))
+            speed = magnitude(port.row, p, st.g[j])
+            low, high, load = min(low, speed), max(high, speed), max(load, abs(st.N[j, p]))
+        if port.law[p] != LAW_SMOOTH:
+            fall = max(fall, fall_between(port, port.laws, p, k.s, low, high, load))
         if fall <= 0.0:
             continue
         light = 0.0

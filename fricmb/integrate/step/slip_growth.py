@@ -13,10 +13,11 @@ from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_for
 from fricmb.integrate.model.problem_structs import Packed, Table
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Ints
+from fricmb.integrate.run.room_protocols import Laws
 from fricmb.integrate.step.radau_step import OneStep
 
-#: Longest step, in times by which slip grows e-fold.
-LONGEST = 1.0
+#: Longest step, in times by which slip grows e-fold; part of the largest slip speed in a step below which none matters.
+LONGEST, LEAST = 1.0, 1e-12
 
 
 @kernel
@@ -58,19 +59,35 @@ def drive(
 
 
 @kernel
+def fall_between(ports: Laws, laws: Table, k: int, s: Scratch, low: float, high: float, N: float) -> float:
+    """Largest slope by which friction of contact k falls between two slip speeds, looked at by factors of 2.
+
+    A law that is flat at rest and falls within a speed far below those of the stages shows its fall at none of them.
+    """
+    value = 0.0
+    r = high
+    while r > max(low, LEAST * high):
+        value = max(value, -coefficient(ports, laws, k, s, r, N)[1] * N)
+        r *= 0.5
+    return float(value)
+
+
+@kernel
 def fall_of(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, h: float) -> float:
-    """Largest slope, at the start and at the stages, by which friction of contact k falls with slip speed."""
+    """Largest slope by which friction of contact k falls with slip speed within a step."""
     ports, w = packed.ports, one.w
     if ports.law[k] == LAW_SMOOTH:
         value = drive(packed.laws, ports.row, ports.z_start, s, k, y.g, y.N[k], y.z, h)
         for j in range(w.r.shape[0]):
             value = max(value, drive(packed.laws, ports.row, ports.z_start, s, k, w.g[j], w.N[j, k], w.z[j], h))
         return float(value)
-    speed = magnitude(ports.row, k, y.g)
-    value = -coefficient(ports, packed.laws, k, s, speed, y.N[k])[1] * y.N[k]
+    low = high = magnitude(ports.row, k, y.g)
+    load = y.N[k]
+    value = -coefficient(ports, packed.laws, k, s, low, load)[1] * load
     for j in range(w.r.shape[0]):
         value = max(value, -coefficient(ports, packed.laws, k, s, w.r[j, k], w.N[j, k])[1] * w.N[j, k])
-    return float(value)
+        low, high, load = min(low, w.r[j, k]), max(high, w.r[j, k]), max(load, w.N[j, k])
+    return float(max(value, fall_between(ports, packed.laws, k, s, low, high, load)))
 
 
 @kernel
