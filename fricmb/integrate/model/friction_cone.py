@@ -3,17 +3,19 @@ r"""The friction cone: what a contact can hold while it sticks.
 .. math:: |F| \le \mu_s(N) \, N
 
 Its two sides are ``friction_size`` and ``stick_limit``; all that decides between stick and slip asks for them, or for
-one of the forms below.  A cone of another shape begins here: with another size (an ellipse whose axes are those of the
-rows is done without it, by the scale of the rows), or with a limit that is given the force as well, for a law that
-depends on its direction.  Slip then needs what goes with it: its force along the normal of the set, in
-``step/contact_unknowns`` and ``constrained/friction_rows``.
+one of the forms below. A cone of another shape begins here: with another size (an ellipse whose axes are those of the
+rows is done without it, by ``Elliptic.axis_scale`` and the scale of the rows in ``system/_contacts``), or with a
+limit that is given the force as well, for a law that depends on its direction. Slip then needs what goes with it: its
+force along the normal of the set, in ``step/contact_unknowns`` and ``constrained/friction_rows``.
 
 Methods for special structures know more, and write the same formula as it serves them:
 
 - ``collocation/one_contact`` (``stick``, ``phase``): one limit for the run, and |F| with its rate and a bound of its
   second derivative, so that no step passes the instant of release;
 - ``taylor`` (``event_search``, ``turning``, ``starting_modes``): one direction and one limit for the run;
-- ``model/friction_discs`` and ``timestepping/_balls``: projections on the set, whose radius they are given.
+- ``model/friction_discs`` and ``timestepping/_balls``: projections on the set, whose radius they are given;
+- ``contact/mode_decision``, ``contact/disc_projection``, ``constrained/mode_decision``: sizes beside limits that stand
+  still at an instant; ``contact/event_location.passes_by``: a force without any friction beside the limit.
 """
 
 from __future__ import annotations

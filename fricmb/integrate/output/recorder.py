@@ -72,7 +72,7 @@ def record(out: Rows, y: State, kind: int) -> None:
     out.used[0] = k + 1
 
 
-#: Part of the time by which transitions are one instant: what it takes to locate them.
+#: Part of the time within which transitions are one instant (how near they are located says ``locate``).
 SAME_INSTANT = 1e-14
 
 

@@ -1,4 +1,9 @@
-"""How long the next step may be."""
+"""How long the next step may be: the formula, and the ladder of step sizes.
+
+Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_step.advance`` (5: ``radau``, general
+``collocation``, ``bdf`` around transitions), ``backward_differences.GROWTH`` (3: ``bdf``), ``constrained/attempt_step``
+(3), ``collocation/one_contact/run.length_factor`` (3), ``taylor/step_loop`` (1.5), ``timestepping/_drive.adapt`` (2).
+"""
 
 from __future__ import annotations
 
