@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fricmb._simulate._closes import FIXED
-from fricmb._simulate._joined import JoinedRun
+from fricmb._simulate._joined import runs_of
 from fricmb.integrate import Trajectory
 from fricmb.integrate.problem import EVENT_SLIP, Floats, Problem
 
@@ -22,13 +22,12 @@ def digit_notes(trajectory: Trajectory, rtol: float | None) -> tuple[str, ...]:
     A spring K between positions q gives forces in steps of K times the last digit of q.  A contact lets go when the
     force that it holds reaches its limit, so the time of that is no better known than that force.
     """
-    runs = [run for _, run in trajectory.runs] if isinstance(trajectory, JoinedRun) else [trajectory]
     least = FIXED if rtol is None else rtol
     asked = "" if rtol is None else f" (rtol = {rtol:g} is not reached)"
     return tuple(
         f"round-off of positions times the stiffest springs is {part:.1e} of the friction limit of contact {name!r}:"
         f" when it lets go, and what follows from that, is no more exact{asked}"
-        for run in runs
+        for run in runs_of(trajectory)
         for name, part in _unresolved(run, least)
     )
 
@@ -42,8 +41,10 @@ def _unresolved(run: Trajectory, least: float) -> Iterator[tuple[str, float]]:
     noise = force_grain(problem, np.abs(seen.q).max(axis=1, initial=0.0))
     contacts = problem.contacts
     for k in _held_before(run):
-        limit = float(contacts.mu_s[k] * seen.N[k].max(initial=0.0))
-        grain = float(noise[contacts.row[k] : contacts.row[k + 1]].max())
+        rows = slice(contacts.row[k], contacts.row[k + 1])
+        # what it held when it let go, whatever its law says of that
+        limit = float(np.linalg.norm(seen.F[rows], axis=0).max(initial=0.0))
+        grain = float(noise[rows].max())
         if grain > least * limit > 0.0:
             yield problem.contact_names[k], grain / limit
 

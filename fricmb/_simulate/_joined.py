@@ -263,3 +263,8 @@ def island_stats(trajectory: Trajectory, members: Sequence[Member]) -> tuple[Isl
         )
         for (i, run), method in zip(trajectory.runs, trajectory.methods, strict=True)
     )
+
+
+def runs_of(trajectory: Trajectory) -> list[Trajectory]:
+    """The runs that a trajectory is made of: of each island its own."""
+    return [run for _, run in trajectory.runs] if isinstance(trajectory, JoinedRun) else [trajectory]

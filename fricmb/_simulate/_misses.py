@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb._simulate._joined import JoinedRun
+from fricmb._simulate._joined import runs_of
 from fricmb.integrate.output.row_trajectory import RowTrajectory
 from fricmb.integrate.problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
 from fricmb.integrate.run.chunked_run import KeptTrajectory
@@ -26,7 +26,7 @@ STRAIGHT = 1e-9
 def miss_notes(sol: Solution, trajectory: Trajectory, rtol: float | None) -> tuple[str, ...]:
     """Sentences for ``stats.notes``; ``rtol`` None: fixed steps."""
     near = NEAR * (FIXED if rtol is None else rtol)
-    runs = [run for _, run in trajectory.runs] if isinstance(trajectory, JoinedRun) else [trajectory]
+    runs = runs_of(trajectory)
     notes = [note for run in runs for note in _passes(run, near)]
     # steps that are controlled by their error see the jump (but those of mechanisms)
     seen = rtol is not None and all(isinstance(run, RowTrajectory) for run in runs)

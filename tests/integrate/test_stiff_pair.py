@@ -13,9 +13,10 @@ import fricmb as fm
 BELT, STRETCHED, LEFT = 0.05, 1.5, 0.5
 SLIP = 2.0 * math.pi - 2.0 * math.atan(0.5 / BELT)
 HOLD = (STRETCHED - LEFT) / BELT
+COULOMB = fm.laws.Coulomb(mu_s=1.5, mu_k=1.0)
 
 
-def pair(stiffness):
+def pair(stiffness, law=COULOMB):
     """Mass 1 on a spring of stiffness 1, mu_s N = 1.5 and mu_k N = 1, starting with the belt."""
     start = {"position": {"x": LEFT}, "velocity": {"x": BELT}}
     one, two = (fm.Body(name, mass=0.5, **start) for name in ("one", "two"))
@@ -25,7 +26,7 @@ def pair(stiffness):
         fm.Spring("soft", one, axis="x", stiffness=1.0),
         fm.Spring("tie", one, two, axis="x", stiffness=stiffness),
         fm.Damper("calm", one, two, axis="x", damping=0.5 * math.sqrt(stiffness)),
-        fm.Contact("sole", two, belt, law=fm.laws.Coulomb(mu_s=1.5, mu_k=1.0), normal_force=1.0),
+        fm.Contact("sole", two, belt, law=law, normal_force=1.0),
     ])  # fmt: skip
 
 
@@ -44,6 +45,13 @@ def test_long_steps_keep_the_forces_of_a_stiff_tie(stiffness, rtol, method):
     np.testing.assert_allclose(lets_go, HOLD + period * turns, atol=close)
     np.testing.assert_allclose(holds[:3], (HOLD + SLIP + period * turns)[:3], atol=close)
     assert any("round-off of positions" in note for note in sol.stats.notes) == (stiffness > 1e11)
+
+
+def test_a_law_that_asks_the_load_for_its_limit_is_told_of_round_off_too():
+    """Stick and slip of a kind: sqrt(2) of friction up to break-away, and as much behind."""
+    law = fm.laws.LoadDependent(mu_0=2.0, N_0=1.0, exponent=0.5)
+    notes = fm.simulate(pair(1e12, law), t_end=100.0, rtol=1e-4, method="radau").stats.notes
+    assert any("friction limit of contact 'sole'" in note for note in notes)
 
 
 def test_springs_that_an_eigenproblem_hides_are_left_to_steps():

@@ -113,3 +113,20 @@ def test_a_bouncing_block_comes_to_rest_along_the_ground(kind):
     assert kinds[stop + 1 : stop + 3] == ["open", "close"]
     assert np.abs(sol.velocity("block.x")[sol.t > sol.events[stop].t]).max() < 1e-12
     assert np.abs(sol.energy.residual).max() < 1e-7
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+@pytest.mark.parametrize("t_end", [0.5, 5.0, 20.0])
+def test_a_block_bounces_on_for_ever(t_end, method):
+    """Touches and lift-offs in closed form: flights of 2 v/g, and (2/w) (pi - atan(v w/g)) on the ground."""
+    v, g, w = 0.1, 9.81, 100.0
+    block = fm.Body("block", mass=1.0, axes="xy", velocity={"x": 1.0, "y": v})
+    law = fm.normal.Spring(axis="y", stiffness=w**2)
+    sole = fm.Contact("sole", block, law=fm.laws.Coulomb(mu_s=0.5), normal_force=law, axes="x")
+    scene = fm.Scene("s", [block, sole, fm.Force("weight", block, axis="y", value=-g)])
+    sol = fm.simulate(scene, t_end=t_end, rtol=1e-8, method=method)
+    flight, touch = 2.0 * v / g, 2.0 / w * (np.pi - np.arctan(v * w / g))
+    for kind, first in (("close", flight), ("open", flight + touch)):
+        found = np.array([event.t for event in sol.events if event.kind == kind])
+        expected = np.arange(first, t_end, flight + touch)
+        np.testing.assert_allclose(found, expected, atol=1e-7 * t_end)

@@ -167,10 +167,10 @@ def solve_stages(
     m = ports.row[-1]
     mi = w.Fin.shape[1]
     linear = packed.elements.address.shape[0] == 0 and mi == m
-    stiff = stiffness(packed, fac, st.hA)
+    stiff = stiffness(packed, fac, st.hA) if linear else 0.0
     once = linear and stiff <= 1.0
     # what velocities leave unsolved is a force of stiff springs, by which contacts let go: it has to be as small
-    done = 1e-3 / max(1.0, stiff) if linear else 1e-3
+    done = 1e-3 / max(1.0, stiff)
     last = np.inf
     P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
     w.G[:] = fac.G[fac.slot[0]]
