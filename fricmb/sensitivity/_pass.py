@@ -14,8 +14,8 @@ from fricmb.sensitivity._bends import bends_of
 from fricmb.sensitivity._collocation import radau
 from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._formula_switches import formula_switches
 from fricmb.sensitivity._happenings import PASS, Happening, happenings
-from fricmb.sensitivity._jumps import jumps
 from fricmb.sensitivity._landings import extrapolated, near_misses, passes, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
@@ -63,7 +63,7 @@ class Tangent:
         bends = bends_of(e, self.phases, sample)
         if bends.t.size:
             self.phases = phases_of(piece, transitions_at, sol.names.row, breakpoints.t, bends.t)
-        self.jumps = jumps(e, self.phases, sample, bends)
+        self.switches = formula_switches(e, self.phases, sample, bends)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)
@@ -87,10 +87,10 @@ class Tangent:
     ) -> Iterator[str]:
         """Notes of what the errors of the run leave open."""
         e, rtol = self.equations, self.rtol
-        for jump in self.jumps.values():
-            if not jump.sound:
+        for switch in self.switches.values():
+            if not switch.sound:
                 yield (
-                    f"at t = {jump.t:.10g} rates of states jump where a formula hardly switches, or by a reaction:"
+                    f"at t = {switch.t:.10g} rates of states jump where a formula hardly switches, or by a reaction:"
                     " derivatives of what follows are not sound"
                 )
         taken = {(one.contacts[0], one.phase) for one in happened if one.kinds == [PASS]}
@@ -144,8 +144,8 @@ class Tangent:
                 event_times[one.events] = dt
                 transversality[one.events] = transitions.transversality(i)
                 transitions.say_unsafe(i)
-            elif phase != last and phase in self.jumps:
-                S = self.jumps[phase].over(S)
+            elif phase != last and phase in self.switches:
+                S = self.switches[phase].over(S)
             last = phase
             found[k] = S
             S = map_[:, :n_y] @ S

@@ -20,7 +20,7 @@ _TOUCHES = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jump:
+class FormulaSwitch:
     """Rates before less those after (n_y,); of the condition its slopes (columns,) and how fast it passes 0.
 
     ``sound``: False where it hardly passes, or depends on reactions, whose slopes are not followed here.
@@ -38,8 +38,8 @@ class Jump:
         return np.asarray(S + np.outer(self.rates, dt))
 
 
-def jumps(e: Equations, phases: Phases, sample: Any, bends: Bends) -> dict[int, Jump]:
-    """Jumps by the stretch that begins with each."""
+def formula_switches(e: Equations, phases: Phases, sample: Any, bends: Bends) -> dict[int, FormulaSwitch]:
+    """Switches by the stretch that begins with each."""
     if not bends.t.size:
         return {}
     begins = np.searchsorted(phases.t, bends.t)
@@ -59,5 +59,7 @@ def jumps(e: Equations, phases: Phases, sample: Any, bends: Bends) -> dict[int, 
         parts = np.append(slopes[: e.n_y] * before.y_dot[i], slopes[-1])
         rate = float(parts.sum())
         sound = not loaded and abs(rate) > _TOUCHES * np.abs(parts).sum()
-        found[int(begins[i])] = Jump(t=float(bends.t[i]), rates=off[i], slopes=slopes, rate=rate or 1e-300, sound=sound)
+        found[int(begins[i])] = FormulaSwitch(
+            t=float(bends.t[i]), rates=off[i], slopes=slopes, rate=rate or 1e-300, sound=sound,
+        )
     return found
