@@ -40,7 +40,7 @@ ROOT = Path(fricmb.__file__).parent
 
 
 def _files(root: Path) -> dict[Path, str]:
-    """Python files below a package, and the room that each is in."""
+    """Python files below a package, and the package that each is in."""
     found = {}
     for path in root.rglob("*.py"):
         parts = path.relative_to(root).parts
@@ -49,32 +49,32 @@ def _files(root: Path) -> dict[Path, str]:
 
 
 def _imported(path: Path, prefix: str) -> set[str]:
-    """Rooms below a prefix such as ``"fricmb."`` that a file imports, inside functions too."""
-    rooms = set()
+    """Packages below a prefix such as ``"fricmb."`` that a file imports, inside functions too."""
+    packages = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
         names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        rooms |= {name.removeprefix(prefix).split(".")[0].lstrip("_") for name in names if name.startswith(prefix)}
-    return rooms
+        packages |= {name.removeprefix(prefix).split(".")[0].lstrip("_") for name in names if name.startswith(prefix)}
+    return packages
 
 
 def _facts(root: Path, prefix: str) -> tuple[Counter, Counter]:
-    """Lines of each room, and how many files of one import from another."""
+    """Lines of each package, and how many files of one import from another."""
     lines: Counter = Counter()
     arrows: Counter = Counter()
-    for path, room in _files(root).items():
-        lines[room] += len(path.read_text(encoding="utf-8").splitlines())
-        for other in _imported(path, prefix) - {room}:
-            arrows[room, other] += 1
+    for path, package in _files(root).items():
+        lines[package] += len(path.read_text(encoding="utf-8").splitlines())
+        for other in _imported(path, prefix) - {package}:
+            arrows[package, other] += 1
     return lines, arrows
 
 
 def _panel(ax, floors, lines: Counter, arrows: Counter, title: str) -> None:
-    """Floors one above the other, rooms as boxes, imports as lines; those between rooms of one floor are bent."""
-    at = {room: ((k + 0.5) / len(floor), y) for y, floor in enumerate(floors) for k, room in enumerate(floor)}
-    for (room, other), count in arrows.items():
-        if room in at and other in at and other not in EVERYWHERE:
-            (x, y), (u, v) = at[room], at[other]
+    """Floors one above the other, packages as boxes, imports as lines; those between packages of one floor are bent."""
+    at = {package: ((k + 0.5) / len(floor), y) for y, floor in enumerate(floors) for k, package in enumerate(floor)}
+    for (package, other), count in arrows.items():
+        if package in at and other in at and other not in EVERYWHERE:
+            (x, y), (u, v) = at[package], at[other]
             bend = 0.15 if y == v else 0.0
             ax.annotate(
                 "", (u, v), (x, y), zorder=1,
@@ -83,8 +83,8 @@ def _panel(ax, floors, lines: Counter, arrows: Counter, title: str) -> None:
                     "connectionstyle": f"arc3,rad={bend}",
                 },
             )  # fmt: skip
-    for room, place in at.items():
-        label = f"{room}\n{lines[room]}" if lines[room] else room
+    for package, place in at.items():
+        label = f"{package}\n{lines[package]}" if lines[package] else package
         ax.text(*place, label, ha="center", va="center", fontsize=7, zorder=2,
                 bbox={"boxstyle": "round,pad=0.3", "facecolor": "white", "edgecolor": "#404040", "linewidth": 0.8},
         )  # fmt: skip
@@ -100,6 +100,6 @@ def draw(file: Path) -> None:
     models = Path(fricmb.models.__file__).parent
     lines, arrows = _facts(ROOT, "fricmb.")
     lines["models"] = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in models.rglob("*.py"))
-    _panel(left, PACKAGE, lines, arrows, "fricmb: rooms and their lines; who imports from whom")
-    _panel(right, ENGINE, *_facts(ROOT / "integrate", "fricmb.integrate."), "the rooms of integrate")
+    _panel(left, PACKAGE, lines, arrows, "fricmb: packages and their lines; who imports from whom")
+    _panel(right, ENGINE, *_facts(ROOT / "integrate", "fricmb.integrate."), "the packages of integrate")
     figure.savefig(file)

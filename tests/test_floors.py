@@ -45,15 +45,15 @@ HANDED_ON = {("bdf", "constrained"), ("radau", "constrained")}
 OUTSIDE = {"__init__", "__main__"}
 
 
-def floor(room):
-    return next(i for i, rooms in enumerate(FLOORS) if room in rooms)
+def floor(name):
+    return next(i for i, layers in enumerate(FLOORS) if name in layers)
 
 
 def sources():
     return sorted([*(ROOT / "fricmb").rglob("*.py"), *(ROOT / "models").rglob("*.py")])
 
 
-def room(path):
+def layer(path):
     """The layer that a file belongs to: `fricmb/plan/_graph.py` -> plan, `fricmb/simulate.py` -> simulate."""
     parts = path.relative_to(ROOT).parts
     if parts[0] == "models":
@@ -93,10 +93,10 @@ def statements(body):
 
 @pytest.mark.parametrize("path", sources(), ids=lambda path: str(path.relative_to(ROOT)))
 def test_imports_only_go_down(path):
-    here = room(path)
+    here = layer(path)
     if here in OUTSIDE:
         return
-    known = {name for rooms in FLOORS for name in rooms}
+    known = {name for layers in FLOORS for name in layers}
     upwards = [
         f"line {line}: {other}"
         for line, other in imports_at_module_level(path)
@@ -132,7 +132,7 @@ def test_imports_inside_the_engine_only_go_down():
 def test_ground_floor_stands_alone():
     """`integrate` could be shipped with the errors alone."""
     for path in sources():
-        if room(path) == "integrate":
+        if layer(path) == "integrate":
             others = {other for _, other in imports_at_module_level(path)}
             assert others <= {"integrate", "errors"}, path
 

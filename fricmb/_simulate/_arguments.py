@@ -95,8 +95,8 @@ def check_limit(seconds: Any) -> float | None:
     return number("time_limit", seconds, "a positive number of seconds, or None", lambda x: x > 0.0)
 
 
-def check_room(numbers: int, span: Span) -> None:
-    """Whether the values at the times asked for find room in memory; ``numbers``: of each time."""
+def check_memory(numbers: int, span: Span) -> None:
+    """Whether the values at the times asked for fit into memory; ``numbers``: of each time."""
     wanted = 0.0 if span.t_eval is None else 8.0 * numbers * span.t_eval.size
     if span.t_eval is None or wanted < LITTLE:
         return

@@ -17,7 +17,7 @@ from fricmb.solution import IslandStats, Names
 from fricmb.values import value_of
 
 #: Most numbers that the rows of a joined run may hold: accepted steps of many islands are thinned beyond.
-ROOM = 20_000_000
+MOST = 20_000_000
 THINNED = "rows are thinned: accepted steps of many islands; the dense output has everything"
 
 
@@ -208,7 +208,7 @@ def _resting_forces(members: Sequence[Member], run: set[int], n_c: int) -> Float
 def _common_times(times: Sequence[Floats], t_end: float, width: int) -> tuple[Floats, bool]:
     """Times of all runs, rising, one that is several times in a run (a transition) as often; whether thinned.
 
-    Thinned are the times that occur once, so that rows of ``width`` numbers stay within ROOM.
+    Thinned are the times that occur once, so that rows of ``width`` numbers stay within MOST.
     """
     every: Floats = np.unique(np.concatenate([*times, [t_end]]))
     often = np.ones(every.size, dtype=np.int64)
@@ -218,14 +218,14 @@ def _common_times(times: Sequence[Floats], t_end: float, width: int) -> tuple[Fl
         often[place] = np.maximum(often[place], count)
     inside = every <= t_end
     every, often = every[inside], often[inside]
-    most = ROOM // width
+    most = MOST // width
     thinned = bool(often.sum() > most)
     if thinned:
         keep = often > 1
         keep[[0, -1]] = True
         once = np.flatnonzero(~keep)
-        room = max(most - int(often[keep].sum()), 100)
-        keep[once[np.unique(np.linspace(0, once.size - 1, min(room, once.size)).astype(np.int64))]] = True
+        left = max(most - int(often[keep].sum()), 100)
+        keep[once[np.unique(np.linspace(0, once.size - 1, min(left, once.size)).astype(np.int64))]] = True
         every, often = every[keep], often[keep]
     return np.repeat(every, often), thinned
 

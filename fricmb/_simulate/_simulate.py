@@ -102,7 +102,7 @@ def simulate(
     with CompileWatch() as compiling, blas_threads(scene):
         from fricmb._simulate._arguments import (
             check_limit,
-            check_room,
+            check_memory,
             check_sensitivities,
             check_span,
             check_step,
@@ -129,7 +129,7 @@ def simulate(
         keep = check_keep(dense, chunk, on_chunk, span)
         asked = check_sensitivities(mechanics.scene, sensitivities, on_chunk)
         if on_chunk is None:
-            check_room(2 * start.q.size + len(mechanics.names.contacts) + 3, span)
+            check_memory(2 * start.q.size + len(mechanics.names.contacts) + 3, span)
         watch = Watch(check_limit(time_limit), Footprint(), since=begin)
 
         accuracy = rtol if chosen.adaptive else None

@@ -25,14 +25,14 @@ class Record:
         self.order = np.zeros(64, dtype=np.int64)
 
     def reserve(self, more: int) -> None:
-        """Make room for ``more`` points."""
+        """Make space for ``more`` points."""
         need = self.size + more
         if need <= len(self.t):
             return
-        room = max(need, 2 * len(self.t))
+        size = max(need, 2 * len(self.t))
         for name in ("t", "y", "yp", "order"):
             old = getattr(self, name)
-            new = np.zeros((room, *old.shape[1:]), dtype=old.dtype)
+            new = np.zeros((size, *old.shape[1:]), dtype=old.dtype)
             new[: self.size] = old[: self.size]
             setattr(self, name, new)
 

@@ -115,7 +115,7 @@ class Dense(Matrix):
 
 
 class Banded(Matrix):
-    """Columns of the band, with the room that LAPACK wants above."""
+    """Columns of the band, with the space that LAPACK wants above."""
 
     def __init__(self, pattern: Pattern, lower: int, upper: int) -> None:
         super().__init__(pattern)

@@ -31,7 +31,7 @@ def compile_all(
     Returns
     -------
     list of str
-        The files, as room/name.
+        The files, as kind/name.
 
     Raises
     ------
@@ -46,23 +46,23 @@ def compile_all(
     def take(task: str, answer: dict[str, Any]) -> None:
         nonlocal done
         done += 1
-        for room, names in answer["files"].items():
-            found.setdefault(room, set()).update(names)
+        for kind, names in answer["files"].items():
+            found.setdefault(kind, set()).update(names)
         if report is not None:
             report(task, done, total)
 
     for tasks in stages:  # the runs find the kernels there
         work_off(tasks, min(workers, len(tasks)), take)
     if into is not None:
-        for room, names in found.items():
-            _copy(room, names, Path(into) / room)
-    return sorted(f"{room}/{name}" for room, names in found.items() for name in names)
+        for kind, names in found.items():
+            _copy(kind, names, Path(into) / kind)
+    return sorted(f"{kind}/{name}" for kind, names in found.items() for name in names)
 
 
-def _copy(room: str, names: set[str], target: Path) -> None:
+def _copy(kind: str, names: set[str], target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
     for name in names:
-        source = find_file(room, name)
+        source = find_file(kind, name)
         if source is None:
-            raise FricmbError(f"compile: {room}/{name} could not be kept; expected a cache folder that can be written")
+            raise FricmbError(f"compile: {kind}/{name} could not be kept; expected a cache folder that can be written")
         shutil.copyfile(source, target / name)

@@ -1,6 +1,6 @@
 """Which classes a file may name: those of this package that hold data, and those that the reader knows already.
 
-Nothing is imported because a file says so, unless it is a room of this package that holds declarations and runs.
+Nothing is imported because a file says so, unless it is one of the packages of fricmb that hold declarations and runs.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from fricmb.errors import FricmbError
 from fricmb.integrate import Trajectory
 from fricmb.values import Declaration
 
-#: Rooms of this package whose classes are declarations and runs.
-ROOMS = ("laws", "normal", "scene", "space", "values", "integrate", "models", "_simulate")
+#: Packages of fricmb whose classes are declarations and runs.
+PACKAGES = ("laws", "normal", "scene", "space", "values", "integrate", "models", "_simulate")
 #: Word for ``laws=``: import the modules that the file names, which runs their code.
 IMPORT = "import"
 
@@ -30,13 +30,13 @@ def path_of(kind: type) -> str:
 
 
 def is_own(kind: type) -> bool:
-    """Whether a class belongs to the rooms of this package."""
-    return _is_room(kind.__module__)
+    """Whether a class belongs to these packages."""
+    return _is_ours(kind.__module__)
 
 
-def _is_room(module: str) -> bool:
+def _is_ours(module: str) -> bool:
     package, _, rest = module.partition(".")
-    return package == "fricmb" and rest.partition(".")[0] in ROOMS
+    return package == "fricmb" and rest.partition(".")[0] in PACKAGES
 
 
 def source_of(kind: type) -> str:
@@ -78,7 +78,7 @@ class Kinds:
     def find(self, path: Any) -> type:
         """The class of that name; FricmbError where it is not known here."""
         module, _, name = str(path).partition(":")
-        kind = _own(module, name) if _is_room(module) else self._foreign(str(path), module, name)
+        kind = _own(module, name) if _is_ours(module) else self._foreign(str(path), module, name)
         if not is_data(kind):
             raise FricmbError(f"{path} is no declaration, law or run")
         return kind

@@ -171,7 +171,7 @@ def test_without_a_home_files_are_kept_for_the_process(monkeypatch, capsys):
     for one in (cache_files._folder, cache_files._temporary):
         one.cache_clear()
     try:
-        found = [cache_files.cache_folder(room) for room in ("kernels", "templates", "kernels")]
+        found = [cache_files.cache_folder(kind) for kind in ("kernels", "templates", "kernels")]
         assert all(path.is_absolute() and path.is_dir() for path in found)
         assert found[0] == found[2]
         assert "no home folder" in capsys.readouterr().err

@@ -15,8 +15,8 @@ from scipy.integrate import solve_ivp
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.run_rooms import implicit_step, made
 from fricmb.integrate.methods.run_setup import Collector, set_accuracy
+from fricmb.integrate.methods.run_workspace import implicit_step, made
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
@@ -41,7 +41,7 @@ def one_try(
 
 
 def begun(problem, start, t_end):
-    """A run in rooms of its own."""
+    """A run in a workspace of its own."""
     return Collector(problem, start, t_end, Workspace(made(problem)).rooms)
 
 

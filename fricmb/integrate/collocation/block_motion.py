@@ -89,7 +89,7 @@ def terms_under_polynomials(
     """Terms at tau of the Taylor series of u and v: u' = v + P0, v' = -w2 u - d v + P1 + slope t; returns how many.
 
     ``v0``, ``a0``: v and v' at the start without the polynomials, whose coefficients are in tau/h.  Term q is of the
-    order q + 1; ``u``, ``v`` have room for MOST + 1.
+    order q + 1; ``u``, ``v`` have terms for MOST + 1.
     """
     s = P0.shape[0]
     power = 1.0
@@ -118,12 +118,13 @@ def terms_under_polynomials(
 
 @kernel
 def under_polynomials(
-    w2: float, d: float, v0: float, a0: float, slope: float, h: float, tau: float, P0: Floats, P1: Floats, room: Floats2
+    w2: float, d: float, v0: float, a0: float, slope: float, h: float, tau: float, P0: Floats, P1: Floats,
+    terms: Floats2,
 ) -> tuple[float, float]:
-    """Gains of u and v at tau, by :func:`terms_under_polynomials`; ``room`` (2, MOST + 1)."""
-    count = terms_under_polynomials(w2, d, v0, a0, slope, h, tau, P0, P1, room[0], room[1])
+    """Gains of u and v at tau, by :func:`terms_under_polynomials`; ``terms`` (2, MOST + 1)."""
+    count = terms_under_polynomials(w2, d, v0, a0, slope, h, tau, P0, P1, terms[0], terms[1])
     du, dv = 0.0, 0.0
     for q in range(count):
-        du += room[0, q]
-        dv += room[1, q]
+        du += terms[0, q]
+        dv += terms[1, q]
     return du, dv

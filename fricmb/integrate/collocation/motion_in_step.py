@@ -101,8 +101,8 @@ def input_series(ex: Exact, P: Floats2, h: float, series: Floats2, gain: Floats2
 
 
 @kernel
-def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, room: Floats2) -> tuple[float, float]:
-    """Gains of u and v of block j at tau; ``room`` for :func:`under_polynomials`."""
+def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, terms: Floats2) -> tuple[float, float]:
+    """Gains of u and v of block j at tau; ``terms`` for :func:`under_polynomials`."""
     b = ex.blk.shape[2]
     n_s = series.shape[1] - 1
     if is_stiff(ex, j, h):
@@ -113,7 +113,7 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, room: F
         return du, dv
     first, second = series[j, :n_s], series[b + j, :n_s]
     return under_polynomials(
-        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, tau, first, second, room
+        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, tau, first, second, terms
     )  # fmt: skip
 
 
@@ -121,12 +121,12 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, room: F
 def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: Floats) -> None:
     """Gains of positions and velocities at tau after the start of the step, after :func:`input_series`."""
     modal = ex.flags[IS_MODAL] == 1
-    room = np.empty((2, MOST + 1))
+    terms = np.empty((2, MOST + 1))
     for i in range(dq.shape[0]):
         dq[i] = 0.0
         dv[i] = 0.0
     for j in range(ex.blk.shape[2]):
-        u, v = block_gain(ex, j, h, tau, series, room)
+        u, v = block_gain(ex, j, h, tau, series, terms)
         for i in range(dq.shape[0]):
             dq[i] += ex.mat[Q_U, i, j] * u
             dv[i] += ex.mat[V_V, i, j] * v
@@ -137,23 +137,24 @@ def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: F
 
 
 @kernel
-def block_at_nodes(ex: Exact, j: int, h: float, span: float, series: Floats2, room: Floats2, gain: Floats2) -> None:
+def block_at_nodes(ex: Exact, j: int, h: float, span: float, series: Floats2, terms: Floats2, gain: Floats2) -> None:
     """Gains of u and v of block j into ``gain`` (2, s), at the nodes of a step of length ``span``."""
     n_s = gain.shape[1]
     u, v, c = gain[0], gain[1], ex.nd[VECTORS, NODE, :n_s]
     if is_stiff(ex, j, h):
         for i in range(n_s):
-            u[i], v[i] = block_gain(ex, j, h, c[i] * span, series, room)
+            u[i], v[i] = block_gain(ex, j, h, c[i] * span, series, terms)
         return
     first, second = series[j, :n_s], series[ex.blk.shape[2] + j, :n_s]
     count = terms_under_polynomials(
-        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, span, first, second, room[0], room[1]
+        ex.blk[0, W2, j], ex.blk[0, DAMP, j], ex.bs[V0, j], ex.bs[A0, j], 0.0, h, span, first, second,
+        terms[0], terms[1],
     )  # fmt: skip
     u[:] = 0.0
     v[:] = 0.0
     # a term of order q + 1 at the part c of the way is c^(q + 1) of what it is at the end
     for q in range(count - 1, -1, -1):
-        x, y = room[0, q], room[1, q]
+        x, y = terms[0, q], terms[1, q]
         for i in range(n_s):
             u[i] = (u[i] + x) * c[i]
             v[i] = (v[i] + y) * c[i]
@@ -167,11 +168,11 @@ def gains_at_nodes(ex: Exact, h: float, span: float, series: Floats2, dq: Floats
     """
     n_s = series.shape[1] - 1
     modal = ex.flags[IS_MODAL] == 1
-    room, gain = np.empty((2, MOST + 1)), np.empty((2, n_s))
+    terms, gain = np.empty((2, MOST + 1)), np.empty((2, n_s))
     dq[:, :] = 0.0
     dv[:, :] = 0.0
     for j in range(ex.blk.shape[2]):
-        block_at_nodes(ex, j, h, span, series, room, gain)
+        block_at_nodes(ex, j, h, span, series, terms, gain)
         for a in range(dq.shape[1]):
             q_u, v_v = ex.mat[Q_U, a, j], ex.mat[V_V, a, j]
             if q_u == 0.0 and v_v == 0.0 and modal:

@@ -70,7 +70,7 @@ def move_to(
 ) -> bool:  # fmt: skip
     """Put the state at tau of the step h just solved into ``end``.
 
-    ``gain`` (4, n + m): room; in the last two rows the gains at h.
+    ``gain`` (4, n + m): space to work in; in the last two rows the gains at h.
     """
     ex, w, ports = one.exact, one.w, packed.ports
     n, m = y.q.shape[0], y.g.shape[0]

@@ -17,9 +17,9 @@ from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.one_step import one_step_loop
-from fricmb.integrate.methods.run_rooms import exact_step_rooms, run_rooms
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
-from fricmb.integrate.model.instant_rooms import InstantRooms
+from fricmb.integrate.methods.run_workspace import exact_step_workspace, run_workspace
+from fricmb.integrate.model.instant_workspace import InstantWorkspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes2, Floats, Floats2, Ints, Problem, Start
@@ -92,13 +92,14 @@ class ExactRun(RowTrajectory):
         self._nodes, self._exact_up_to = exact
 
     def _fill(
-        self, rooms: InstantRooms, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
+        self, workspace: InstantWorkspace, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2,
+        energies: bool,
     ) -> None:
         packed, problem = packed_of(self.problem), self.problem
         exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         sample_exact(
-            packed, rooms.s, rooms.y, exact, self._values, self._mode, packed.breakpoints, index, t, side, out,
+            packed, workspace.s, workspace.y, exact, self._values, self._mode, packed.breakpoints, index, t, side, out,
             modes, sizes, pivots, addresses("complete"),
         )  # fmt: skip
 
@@ -114,9 +115,9 @@ def run_general(
     nonlinear = len(problem.elements.table.address) > 0 or varies
     exact = exact_of(problem, s, safety, exact_up_to)
     columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
-    steps = exact_step_rooms(problem, exact, lambda: exact_step(problem, exact))
-    with run_rooms(problem) as rooms, steps as (one,):
-        run = Collector(problem, start, t_end, rooms, one, places=places(bool(plain), nonlinear), columns=columns)
+    steps = exact_step_workspace(problem, exact, lambda: exact_step(problem, exact))
+    with run_workspace(problem) as workspace, steps as (one,):
+        run = Collector(problem, start, t_end, workspace, one, places=places(bool(plain), nonlinear), columns=columns)
         set_accuracy(run, tolerance)
         run.made = partial(ExactRun, exact=(s, exact_up_to))
         return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)

@@ -1,7 +1,7 @@
 """Banded matrices, real and complex: factors with row pivoting by LAPACK, and solving with them.
 
 Entry (i, j) of a matrix with ``half`` diagonals on either side stands at ``2 half + i - j`` in column j, which is
-3 half + 1 long: room for the rows that pivoting brings.
+3 half + 1 long: space for the rows that pivoting brings.
 """
 
 from __future__ import annotations

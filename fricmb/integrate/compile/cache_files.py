@@ -24,34 +24,34 @@ _DAYS = 60
 _DAY = 86_400.0
 #: What is installed with the package.
 _SHIPPED = Path(__file__).parents[2] / "_made"
-#: Names of the files that this process has read or written, room by room.
+#: Names of the files that this process has read or written, kind by kind.
 _used: dict[str, set[str]] = {}
 
 
 def used_files() -> dict[str, list[str]]:
-    """Names of the files that this process has read or written since it was last asked, room by room."""
-    found = {room: sorted(names) for room, names in _used.items() if names}
+    """Names of the files that this process has read or written since it was last asked, kind by kind."""
+    found = {kind: sorted(names) for kind, names in _used.items() if names}
     _used.clear()
     return found
 
 
-def cache_folder(room: str) -> Path:
-    """Where the files of a room ("kernels", "templates") are: ``FRICMB_CACHE_DIR/room``, else the user's cache folder.
+def cache_folder(kind: str) -> Path:
+    """Where the files of a kind ("kernels", "templates") are: ``FRICMB_CACHE_DIR/kind``, else the user's cache folder.
 
     Of kernels ``NUMBA_CACHE_DIR/fricmb``, if that is set.
     """
-    numba = os.environ.get("NUMBA_CACHE_DIR") if room == "kernels" else None
-    return _folder(room, numba, os.environ.get("FRICMB_CACHE_DIR"))
+    numba = os.environ.get("NUMBA_CACHE_DIR") if kind == "kernels" else None
+    return _folder(kind, numba, os.environ.get("FRICMB_CACHE_DIR"))
 
 
-def find_file(room: str, name: str) -> Path | None:
+def find_file(kind: str, name: str) -> Path | None:
     """Where a kept file is: in the cache folder, in the package, or (None) nowhere that outlives a process."""
-    places = (cache_folder(room) / name, _SHIPPED / room / name)
+    places = (cache_folder(kind) / name, _SHIPPED / kind / name)
     return next((path for path in places if path.is_file()), None)
 
 
 @cache
-def _folder(room: str, numba: str | None, ours: str | None) -> Path:
+def _folder(kind: str, numba: str | None, ours: str | None) -> Path:
     if numba:
         return Path(numba) / "fricmb"
     if not ours:
@@ -59,13 +59,13 @@ def _folder(room: str, numba: str | None, ours: str | None) -> Path:
 
         ours = user_cache_dir("fricmb")
         if not Path(ours).is_absolute():  # nobody knows of a home
-            return _temporary(room, f"there is no home folder to keep {room} in")
-    return Path(ours) / room
+            return _temporary(kind, f"there is no home folder to keep {kind} in")
+    return Path(ours) / kind
 
 
 @cache
-def _temporary(room: str, why: str) -> Path:
-    path = Path(tempfile.mkdtemp(prefix=f"fricmb-{room}-"))
+def _temporary(kind: str, why: str) -> Path:
+    path = Path(tempfile.mkdtemp(prefix=f"fricmb-{kind}-"))
     say(f"{why}; this process keeps them in {path}")
     return path
 
@@ -88,11 +88,11 @@ def _bars_aside() -> contextlib.AbstractContextManager[object]:
 
 
 class CacheFiles:
-    """The files of one room.
+    """The files of one kind.
 
     Parameters
     ----------
-    room : str
+    kind : str
         "kernels" or "templates".
     seal : callable
         From what is kept to the bytes of a file.
@@ -103,23 +103,23 @@ class CacheFiles:
     """
 
     def __init__(
-        self, room: str, seal: Callable[[bytes], bytes], unseal: Callable[[bytes], bytes | None], again: str
+        self, kind: str, seal: Callable[[bytes], bytes], unseal: Callable[[bytes], bytes | None], again: str
     ) -> None:
-        self._room, self._seal, self._unseal, self._again = room, seal, unseal, again
+        self._kind, self._seal, self._unseal, self._again = kind, seal, unseal, again
         self._other: Path | None = None
         self._memory: dict[str, bytes] = {}
 
     @property
     def folder(self) -> Path:
         """The folder that is meant."""
-        return cache_folder(self._room)
+        return cache_folder(self._kind)
 
     def read(self, name: str) -> bytes | None:
         """What is kept under a name, or None."""
-        _used.setdefault(self._room, set()).add(name)
+        _used.setdefault(self._kind, set()).add(name)
         if name in self._memory:
             return self._memory[name]
-        for folder in (self.folder, self._other, _SHIPPED / self._room):
+        for folder in (self.folder, self._other, _SHIPPED / self._kind):
             if folder is not None and (held := self._read(folder / name)) is not None:
                 return held
         return None
@@ -131,7 +131,7 @@ class CacheFiles:
             return None
         held = self._unseal(data)
         if held is None:
-            say(f"a kept file of the {self._room} is damaged and is {self._again}: {path}")
+            say(f"a kept file of the {self._kind} is damaged and is {self._again}: {path}")
             remove(path)
         else:
             _touch(path)
@@ -148,7 +148,7 @@ class CacheFiles:
             except OSError as error:
                 why = error.strerror or str(error)
                 with contextlib.suppress(OSError):
-                    self._other = _temporary(self._room, f"{self._room} cannot be kept in {self.folder} ({why})")
+                    self._other = _temporary(self._kind, f"{self._kind} cannot be kept in {self.folder} ({why})")
         try:
             if self._other is not None:
                 _write(self._other / name, data)

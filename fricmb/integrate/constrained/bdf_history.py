@@ -34,7 +34,7 @@ class Formula(NamedTuple):
 
 
 def formula_of(problem: Problem, start: Start) -> Formula:
-    """Room for the steps of a run."""
+    """Space for the steps of a run."""
     base, one = room(state_of(problem)), room(stages_of(problem, one_stage()))
     set_out(base, start)
     q = np.array(start.q, float)

@@ -45,8 +45,8 @@ def constraints_at(problem: Problem, t: float, q: Floats, v: Floats) -> Constrai
     row, column, value = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count)
     F, N, g = np.zeros(problem.m), np.zeros(nc), np.zeros(problem.m)
     q, v = (np.array(x, dtype=float) for x in (q, v))
-    with evaluation(problem) as rooms:
-        used = constraints(mech, rooms.k, float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value)
+    with evaluation(problem) as workspace:
+        used = constraints(mech, workspace.k, float(t), q, v, np.zeros(m), F, N, g, phi, rate, row, column, value)
     if m + problem.n <= DENSE:
         G = np.zeros((m, problem.n))
         np.add.at(G, (row[:used], column[:used]), value[:used])

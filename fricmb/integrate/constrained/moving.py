@@ -1,4 +1,4 @@
-"""What a mechanism computes in at one instant: signals, places of bodies and their derivatives, room for templates."""
+"""What a mechanism computes in at one instant: signals, places of bodies and their derivatives, space for templates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fricmb.integrate.problem import Codes, Floats, Problem
 
 
 class Moving(NamedTuple):
-    """What the present positions and velocities of places are, and rooms for calls.
+    """What the present positions and velocities of places are, and space for calls.
 
     ``s`` the scratch with X; ``grad``, ``hess`` derivatives of the places, ``grad_rate`` the rates of ``grad``; ``ddy``
     (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
@@ -44,7 +44,7 @@ class Moving(NamedTuple):
 
 
 class Lengths(NamedTuple):
-    """Of the rooms for calls: places and their rates, what goes into templates and comes out."""
+    """Of the space for calls: places and their rates, what goes into templates and comes out."""
 
     grad: int
     hess: int
@@ -55,7 +55,7 @@ class Lengths(NamedTuple):
 
 
 def lengths(problem: Problem) -> Lengths:
-    """How long the rooms for calls have to be."""
+    """How long the arrays for calls have to be."""
     return of_pattern(problem, "lengths", lambda: _lengths(problem))
 
 

@@ -28,7 +28,7 @@ class Control(NamedTuple):
     that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c
     for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts`` work done; ``longest`` (1,) step of all;
     ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
-    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s+1, n_z) rooms of
+    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s+1, n_z) space of
     ``law_defect``.
     """
 

@@ -18,7 +18,7 @@ from fricmb.integrate.problem import Codes2, Floats2, Floats3, Ints, Problem
 
 
 class Record(NamedTuple):
-    """Room for steps.
+    """Space for steps.
 
     ``span`` (k, 2): start and length; ``values`` (k, s+1, 2n + n_z + n_c + 2): [q, v, z, work] at 0, c; ``force``
     (k, m + 2 m_p): [lam, F, n] at the start; ``mode`` (k, n_c); ``opened`` (k, n_j) 1 for joints without contact;
@@ -37,7 +37,7 @@ class Record(NamedTuple):
 
 
 def record_of(problem: Problem, stages: int, capacity: int) -> Record:
-    """Empty room for ``capacity`` steps."""
+    """Empty space for ``capacity`` steps."""
     m, nc = mechanism_of(problem), problem.n_c
     return room(Record(
         np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, 2 * m.n + problem.n_z + nc + 2)),
@@ -83,7 +83,7 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
 
 @kernel
 def crowded(out: Record, n_c: int) -> bool:
-    """Whether another step and its transitions might not find room."""
+    """Whether another step and its transitions might not find space."""
     return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + n_c + 2 > out.event.shape[0])
 
 

@@ -17,7 +17,7 @@ from fricmb.integrate.constrained.recorder import record_of
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
-from fricmb.integrate.constrained.workspace import Rooms, run_rooms
+from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import differences
@@ -57,16 +57,16 @@ def run_mechanism(
     if mechanism_of(problem).joints.hands_over.any():
         problem = with_open(problem, away(problem, start))
     start, notes = consistent_start(problem, start)
-    with run_rooms(problem, stages) as rooms:
-        small, reach = _set_up(rooms, problem, start, t_end, tolerance)
+    with run_workspace(problem, stages) as workspace:
+        small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
-        k, w, y, end, before, st, out, control = rooms
+        k, w, y, end, before, st, out, control = workspace
         given = (mech, k, w, y, end, before, st, control, out, record, part)
         go_on = _bdf_loop(problem, start, t_end, stages, given) if multistep else partial(drive, *given)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
         code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
         if code == DONE:
-            _settle(rooms, problem, start, t_end, reach)
+            _settle(workspace, problem, start, t_end, reach)
             code = chunks.fill(go_on, y.t, memory, progress)
         chunks.take()
         failure = None if code == DONE else ended() or (None if code == FULL else failure_text(code, problem, y, out))
@@ -81,10 +81,12 @@ def run_mechanism(
     )  # fmt: skip
 
 
-def _set_up(rooms: Rooms, problem: Problem, start: Start, t_end: float, tolerance: Tolerance) -> tuple[float, float]:
-    """Put start, times and tolerance into empty rooms; a speed of round-off, and that which loads would bring."""
-    m, y, c = mechanism_of(problem), rooms.y, rooms.control
-    for state in (y, rooms.end, rooms.before):
+def _set_up(
+    workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, tolerance: Tolerance
+) -> tuple[float, float]:
+    """Put start, times and tolerance into an empty workspace; a speed of round-off, and that which loads bring."""
+    m, y, c = mechanism_of(problem), workspace.y, workspace.control
+    for state in (y, workspace.end, workspace.before):
         set_out(state, start)
     c.rtol[0], c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
     c.longest[0] = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
@@ -92,7 +94,7 @@ def _set_up(rooms: Rooms, problem: Problem, start: Start, t_end: float, toleranc
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
     c.stops[:] = np.sort(problem.signals.breakpoints)
-    rooms.out.opened[0] = (m.joints.dropped == 2).sum()
+    workspace.out.opened[0] = (m.joints.dropped == 2).sum()
     reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
     small = 1e-12 * max(top, reach)
     if top <= small:
@@ -100,9 +102,9 @@ def _set_up(rooms: Rooms, problem: Problem, start: Start, t_end: float, toleranc
     return small, reach
 
 
-def _settle(rooms: Rooms, problem: Problem, start: Start, t_end: float, reach: float) -> None:
+def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, reach: float) -> None:
     """What counts as 1, and the first step, from what is found at the start."""
-    y, out, c = rooms.y, rooms.out, rooms.control
+    y, out, c = workspace.y, workspace.out, workspace.control
     out.size[0] = max(float(out.size[0]), reach)
     load = _load(mechanism_of(problem), y)
     if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
@@ -127,13 +129,15 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
 COST = 3.3
 
 
-def _bdf_loop(problem: Problem, start: Start, t_end: float, stages: int, rooms: tuple[Any, ...]) -> Callable[[], int]:
+def _bdf_loop(
+    problem: Problem, start: Start, t_end: float, stages: int, workspace: tuple[Any, ...]
+) -> Callable[[], int]:
     """The loop that takes BDF steps; its blocks are compiled for those who ask for it."""
     from fricmb.integrate.constrained.bdf_loop import drive_bdf
 
     add_blocks("multistep")
     past = differences(signals(problem), t_end - start.t, COST * stages / 5)
-    together = (*rooms, past, formula_of(problem, start))
+    together = (*workspace, past, formula_of(problem, start))
     return partial(drive_bdf, *together)
 
 

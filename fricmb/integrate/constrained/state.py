@@ -1,4 +1,4 @@
-"""The state of a mechanism at one instant, and room for its accelerations and reactions."""
+"""The state of a mechanism at one instant, and space for its accelerations and reactions."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def state_of(problem: Problem) -> State:
 
 
 class Instant(NamedTuple):
-    """Rooms for solving at one instant: the matrix and its factors, right-hand side (size,), rates of X.
+    """What is needed to solve at one instant: the matrix and its factors, right-hand side (size,), rates of X.
 
     ``other`` (n,): accelerations to compare with.
     """

@@ -141,10 +141,10 @@ def complete_at(
     mech = mech_of(problem)
     windows = _windows(mech.breakpoints, t)
     solid, still = np.ascontiguousarray, 1e-11 * float(np.abs(v).max(initial=0.0))
-    with evaluation(problem) as rooms:
+    with evaluation(problem) as workspace:
         instants(
-            mech, rooms.k, rooms.w, rooms.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float), windows,
-            still, F, N, g, lam, a, project,
+            mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),
+            windows, still, F, N, g, lam, a, project,
         )  # fmt: skip
     return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
 

@@ -78,7 +78,7 @@ def drive(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
     rec: Record, part: Codes,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the room for steps is used up."""
+    """Step from y until the end of the span, or until the space for steps is used up."""
     set_window(c, k.s.window, y.t[0])
     while True:
         if stopped() or crowded(rec, y.mode.shape[0]):

@@ -1,4 +1,4 @@
-"""Rooms that evaluations and runs of a mechanism work in, found again by their sizes."""
+"""Workspaces of evaluations and runs of a mechanism, lent by their sizes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Evaluation(NamedTuple):
     y: State
 
 
-class Rooms(NamedTuple):
+class RunWorkspace(NamedTuple):
     """For a run: evaluation, the state, the end and the start of a step, stages, what is watched, step control."""
 
     k: Moving
@@ -40,27 +40,27 @@ class Rooms(NamedTuple):
 
 
 def evaluation(problem: Problem) -> AbstractContextManager[Evaluation]:
-    """Rooms for evaluating a problem; the state is empty."""
+    """Workspace for evaluating a problem; the state is empty."""
     key = "mechanism at an instant", _sizes(problem)
     return lent(key, lambda: Evaluation(moving_of(problem), instant_of(problem), state_of(problem)))
 
 
-def run_rooms(problem: Problem, stages: int) -> AbstractContextManager[Rooms]:
-    """Rooms for a run of so many stages; states are empty."""
+def run_workspace(problem: Problem, stages: int) -> AbstractContextManager[RunWorkspace]:
+    """Workspace for a run of so many stages; states are empty."""
     return lent(("run of a mechanism", stages, _sizes(problem)), lambda: _made(problem, stages))
 
 
-def _made(problem: Problem, stages: int) -> Rooms:
+def _made(problem: Problem, stages: int) -> RunWorkspace:
     y, end, before = (state_of(problem) for _ in range(3))
     st = stages_of(problem, radau(stages))
-    return Rooms(
+    return RunWorkspace(
         moving_of(problem), instant_of(problem), y, end, before, st, watch_of(problem, stages), control_of(problem, st)
     )
 
 
 def _sizes(problem: Problem) -> tuple[int, ...]:
-    """All that the rooms of a problem are long."""
-    return of_pattern(problem, "sizes of rooms", lambda: _find_sizes(problem))
+    """All that the arrays of a problem's workspaces are long."""
+    return of_pattern(problem, "sizes of workspaces", lambda: _find_sizes(problem))
 
 
 def _find_sizes(problem: Problem) -> tuple[int, ...]:

@@ -35,7 +35,7 @@ MARGIN = 1e-11
 
 
 class Rest(NamedTuple):
-    """Room for the problem of accelerations: constant-law ports, their state, modes, and who takes part.
+    """Space for the problem of accelerations: constant-law ports, their state, modes, and who takes part.
 
     ``part`` (n_c,): 1 a contact at rest, 2 one that is just released (its direction n is a hint, and F is on the cone).
     ``rested`` (n_c,): 1 where one at rest has been so before this instant, 0 where it comes to rest now.

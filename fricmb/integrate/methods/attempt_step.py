@@ -46,7 +46,7 @@ class Clock(NamedTuple):
     """Step control: ``h`` (1,) next step, ``usual`` (1,) step to start with after a transition, ``span`` (2,) bounds.
 
     ``longest`` (1,) step of all; ``stops`` breakpoints; ``same`` (2,) transitions in a row at one instant, and since
-    the time ``retry[1]``; ``found``, ``retry[0]`` room for locating.
+    the time ``retry[1]``; ``found``, ``retry[0]`` space for locating.
     """
 
     h: Floats

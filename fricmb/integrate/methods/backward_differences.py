@@ -30,7 +30,7 @@ class Differences(NamedTuple):
     ``status`` (8,): see above.  ``good`` (1,) last accepted step.  ``new``, ``guess``, ``lag``, ``d`` (n_y,) values,
     prediction, psi without it, and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;  ``unit`` (1,) allowed
     local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
-    ``U``, ``E``, ``column`` room for rescaling.
+    ``U``, ``E``, ``column`` space for rescaling.
     """
 
     D: Floats2
@@ -50,7 +50,7 @@ class Differences(NamedTuple):
 
 
 def differences(n_y: int, span: float, cost: float) -> Differences:
-    """Room for the history of a run over ``span``; ``cost`` of a one-step step, in steps of BDF."""
+    """Space for the history of a run over ``span``; ``cost`` of a one-step step, in steps of BDF."""
     signal, one = np.zeros(n_y), np.zeros(1)
     square = np.zeros((MAX_ORDER + 1, MAX_ORDER + 1))
     return room(

@@ -29,8 +29,8 @@ from fricmb.integrate.methods.bdf_stability import Guard, guard_of, spectrum
 from fricmb.integrate.methods.bdf_step import bdf_step
 from fricmb.integrate.methods.bdf_transitions import note_loads
 from fricmb.integrate.methods.one_step import run_one_step
-from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
+from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import arrive, crowded
 from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
@@ -70,7 +70,7 @@ def drive_bdf(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
     past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the room for rows is used up."""
+    """Step from y until the end of the span, or until the space for rows is used up."""
     stop = set_window(clock, s.window, y.t[0])
     while True:
         if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
@@ -160,9 +160,9 @@ class Bdf(Integrator):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:
             # as many steps of Radau are far more accurate there
             return run_one_step(problem, start, t_end, formula, tolerance, memory, progress)
-        single, several = step_rooms(problem, one_stage()), step_rooms(problem, formula)
-        with run_rooms(problem) as rooms, several as (one,), single as (multi,):
-            run = Collector(problem, start, t_end, rooms, one, multi, further=("start_history", "bdf_step"))
+        single, several = step_workspace(problem, one_stage()), step_workspace(problem, formula)
+        with run_workspace(problem) as workspace, several as (one,), single as (multi,):
+            run = Collector(problem, start, t_end, workspace, one, multi, further=("start_history", "bdf_step"))
             set_accuracy(run, tolerance)
             code = run.begin()
             return run_loop(run, code, bdf_loop(run, one, multi), memory, progress)

@@ -20,8 +20,8 @@ import numpy as np
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.bdf2_paper_step import Last, drive_paper
-from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
+from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 from fricmb.integrate.trajectory import Trajectory
@@ -57,8 +57,8 @@ class Bdf2Paper(Integrator):
         """
         if step is None or not step > 0.0:
             raise ValueError(f"bdf2-paper needs a step > 0, got {step!r}")
-        with run_rooms(problem) as rooms, step_rooms(problem, one_stage()) as (one,):
-            run = Collector(problem, start, t_end, rooms, one, further=("solve_with",))
+        with run_workspace(problem) as workspace, step_workspace(problem, one_stage()) as (one,):
+            run = Collector(problem, start, t_end, workspace, one, further=("solve_with",))
             # its equations are solved to round-off: their error is not to be seen beside that of the formula
             acc = set_accuracy(run, Tolerance(rtol=1e-8))
             code, y = run.begin(), run.y

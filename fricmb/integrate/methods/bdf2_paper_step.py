@@ -149,7 +149,7 @@ def drive_paper(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, last: Last, out: Rows, h: float,
     t_end: float, address: Ints,
 ) -> int:  # fmt: skip
-    """Step from y to ``t_end``, or until the room for rows is used up."""
+    """Step from y to ``t_end``, or until the space for rows is used up."""
     n = y.q.shape[0]
     while True:
         if stopped() or crowded(out, 2, y.mode.shape[0]):

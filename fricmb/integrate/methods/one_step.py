@@ -8,8 +8,8 @@ from functools import partial
 from typing import ClassVar
 
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.methods.run_rooms import run_rooms, step_rooms
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
+from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import drive
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.radau_step import OneStep
@@ -71,8 +71,8 @@ def run_one_step(
     progress: Callable[[float], None] | None,
 ) -> Trajectory:  # fmt: skip
     """A run by the formula of a tableau; see ``Integrator.integrate``."""
-    with run_rooms(problem) as rooms, step_rooms(problem, tableau) as (one,):
-        run = Collector(problem, start, t_end, rooms, one)
+    with run_workspace(problem) as workspace, step_workspace(problem, tableau) as (one,):
+        run = Collector(problem, start, t_end, workspace, one)
         set_accuracy(run, tolerance)
         return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)
 

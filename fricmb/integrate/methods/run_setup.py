@@ -1,4 +1,4 @@
-"""What every run of this package's own loops needs around them: rooms, start, rows in chunks, the trajectory."""
+"""What every run of this package's own loops needs around them: a workspace, start, rows in chunks, the trajectory."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate.contact.initial_modes import begin, natural_scales
 from fricmb.integrate.contact.mode_decision import fill_rest
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.run_rooms import RunRooms
+from fricmb.integrate.methods.run_workspace import RunWorkspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.model.structure import Structure
@@ -45,16 +45,16 @@ def set_accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
 
 
 class Collector:
-    """State and rooms of one run; takes the rows out of the kernels' room chunk by chunk.
+    """State and workspace of one run; takes the rows out of the recorder chunk by chunk.
 
-    ``rooms``: lent, all else is made; ``steps``: rooms of the formulas, which count their work; ``made``: what is made
-    of rows in the end; ``columns``: what a method adds to a row.
+    ``workspace``: lent, all else is made; ``steps``: those of the formulas, which count their work; ``made``: what is
+    made of rows in the end; ``columns``: what a method adds to a row.
     """
 
     made: Callable[..., RowTrajectory] = staticmethod(RowTrajectory)
 
     def __init__(
-        self, problem: Problem, start: Start, t_end: float, rooms: RunRooms, *steps: OneStep,
+        self, problem: Problem, start: Start, t_end: float, workspace: RunWorkspace, *steps: OneStep,
         further: tuple[str, ...] = (), places: Ints | None = None, columns: int = 0,
     ) -> None:  # fmt: skip
         self.problem = problem
@@ -62,7 +62,7 @@ class Collector:
         self.t_end = t_end
         self.steps = steps
         self.packed = packed_of(problem)
-        self.scratch, self.y, self.end, self.rest, self.old, self.acc, self.clock = rooms
+        self.scratch, self.y, self.end, self.rest, self.old, self.acc, self.clock = workspace
         set_out(self.y, start)
         set_out(self.end, start)
         self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
@@ -119,7 +119,7 @@ def run_loop(
     run: Collector, code: int, step: Callable[[], int], memory: float | None,
     progress: Callable[[float], None] | None,
 ) -> RowTrajectory:  # fmt: skip
-    """Let ``step`` fill the room for rows, again and again, until the end of the run, of memory, or a failure."""
+    """Let ``step`` fill the space for rows, again and again, until the end of the run, of memory, or a failure."""
     if code == DONE:
         set_clock(run)
         code = run.chunks.fill(step, run.y.t, memory, progress)

@@ -36,7 +36,7 @@ def arrive(
 
 @kernel
 def crowded(out: Rows, n_s: int, nc: int) -> bool:
-    """Whether the rows of one more step might not find room."""
+    """Whether the rows of one more step might not find space."""
     return bool(out.used[0] + 2 * n_s + 4 > out.kind.shape[0] or out.used[1] + nc > out.event.shape[0])
 
 
@@ -45,7 +45,7 @@ def drive(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, r: Rest, old: Before, out: Rows,
     clock: Clock, address: Ints,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the room for rows is used up."""
+    """Step from y until the end of the span, or until the space for rows is used up."""
     stop = set_window(clock, s.window, y.t[0])
     while True:
         if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):

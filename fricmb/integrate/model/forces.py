@@ -14,7 +14,7 @@ from fricmb.integrate.problem import Floats, Problem
 
 
 class Scratch(NamedTuple):
-    """X = [t, q, v, u, u'], the second derivatives of the signals, and room for one template's call.
+    """X = [t, q, v, u, u'], the second derivatives of the signals, and space for one template's call.
 
     ``window`` (2,): the interval between two breakpoints on whose inner side functions of time are evaluated.
     """

@@ -1,4 +1,4 @@
-"""The state of a run at one instant, and room for what follows from it."""
+"""The state of a run at one instant, and space for what follows from it."""
 
 from __future__ import annotations
 

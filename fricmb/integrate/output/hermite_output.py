@@ -246,7 +246,7 @@ def sample_rows(
 ) -> None:  # fmt: skip
     """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
 
-    ``side``: a time in the interval between breakpoints that each belongs to; ``part``: room for the rows of a step,
+    ``side``: a time in the interval between breakpoints that each belongs to; ``part``: space for the rows of a step,
     of no length where energies are not asked for.
     """
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]

@@ -17,7 +17,7 @@ INSIDE, STEP, BEFORE, AFTER = 0, 1, 2, 3
 
 
 class Rows(NamedTuple):
-    """Room for rows: [t, q, v, a, z, z', F, N, work, rate], kinds and modes; ``used`` (2,) rows and transitions.
+    """Space for rows: [t, q, v, a, z, z', F, N, work, rate], kinds and modes; ``used`` (2,) rows and transitions.
 
     ``event`` (n_e, 3): time, contact, kind.
     """
@@ -36,7 +36,7 @@ def widths(problem: Problem) -> list[int]:
 
 
 def rows(problem: Problem, capacity: int, further: int = 0) -> Rows:
-    """Empty room for ``capacity`` rows with ``further`` columns behind."""
+    """Empty space for ``capacity`` rows with ``further`` columns behind."""
     kinds = np.zeros(capacity, np.int8)
     modes = np.zeros((capacity, problem.n_c), np.int8)
     values = np.zeros((capacity, sum(widths(problem)) + further))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.model.instant_rooms import InstantRooms, instant_rooms
+from fricmb.integrate.model.instant_workspace import InstantWorkspace, instant_workspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
@@ -100,8 +100,8 @@ class RowTrajectory(Trajectory):
         modes = np.zeros((len(t), nc), np.int8)
         index = index.astype(np.int64)
         side = np.where(self._arriving[index] & (t <= self._times[index]), np.nextafter(t, -np.inf), self._times[index])
-        with instant_rooms(problem) as rooms:
-            self._fill(rooms, index, t, side, out, modes, energies)
+        with instant_workspace(problem) as workspace:
+            self._fill(workspace, index, t, side, out, modes, energies)
         ends = np.cumsum([1, n, n, nz, m, nc, m, nc + 2])
         _, q, v, z, F, N, g, work = np.split(np.ascontiguousarray(out.T), ends[:-1])
         return MotionSamples(t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T)), work
@@ -116,7 +116,8 @@ class RowTrajectory(Trajectory):
         return passed < first
 
     def _fill(
-        self, rooms: InstantRooms, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2, energies: bool
+        self, workspace: InstantWorkspace, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2,
+        energies: bool,
     ) -> None:
         """Rows of values and modes at times within the rows ``index``.
 
@@ -127,6 +128,6 @@ class RowTrajectory(Trajectory):
         rows = int(np.diff(self._steps).max(initial=1)) + 1
         part = np.zeros((rows if energies else 0, 2, problem.n_c + 2))
         sample_rows(
-            packed, rooms.s, rooms.y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side, part,
-            out, modes, sizes, pivots, addresses("complete"),
+            packed, workspace.s, workspace.y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side,
+            part, out, modes, sizes, pivots, addresses("complete"),
         )  # fmt: skip

@@ -31,7 +31,7 @@ def cached_by_content(function: Callable[_P, _T]) -> Callable[_P, _T]:
             return function(*args, **kwargs)
         key = tuple([(held.shape, held.tobytes()) if isinstance(held, np.ndarray) else held for held in given])
         if key in found:
-            with suppress(KeyError):  # another thread may have made room meanwhile
+            with suppress(KeyError):  # another thread may have made space meanwhile
                 return found[key]
         made = function(*args, **kwargs)
         for old in list(found)[: len(found) + 1 - MANY]:

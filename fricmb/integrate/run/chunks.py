@@ -1,4 +1,4 @@
-"""Rows of a run, taken out of the kernels' room chunk by chunk, until its end."""
+"""Rows of a run, taken out of the kernels' recorder chunk by chunk, until its end."""
 
 from __future__ import annotations
 
@@ -16,34 +16,34 @@ from fricmb.integrate.trajectory import Counters, Transitions
 class Chunks:
     """What the loop of a run has left so far.
 
-    ``room`` has ``used`` (2,) numbers of rows and transitions, ``event`` (n_e, 3) time, contact and kind of these, and
-    the arrays named ``columns``, row by row.  From the first row on in which the first of them is not finite, all are
-    left out, and the run is ``broken``.
+    ``recorder`` has ``used`` (2,) numbers of rows and transitions, ``event`` (n_e, 3) time, contact and kind of these,
+    and the arrays named ``columns``, row by row.  From the first row on in which the first of them is not finite, all
+    are left out, and the run is ``broken``.
     """
 
-    def __init__(self, room: Any, *columns: str) -> None:
-        self.room = room
+    def __init__(self, recorder: Any, *columns: str) -> None:
+        self.recorder = recorder
         self.columns = columns
         self.parts: list[tuple[Any, ...]] = []
         self.broken = False
         self._events: list[Any] = []
 
     def take(self) -> None:
-        """Empty the room."""
-        k, e = (int(x) for x in self.room.used)
+        """Take out what is there."""
+        k, e = (int(x) for x in self.recorder.used)
         if not self.broken:
-            values = getattr(self.room, self.columns[0])[:k]
+            values = getattr(self.recorder, self.columns[0])[:k]
             found = np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
             self.broken = not found.all()
             k = int(np.argmin(found)) if self.broken else k
-            self.parts.append(tuple(getattr(self.room, name)[:k].copy() for name in self.columns))
-        self._events.append(self.room.event[:e].copy())
-        self.room.used[:] = 0
+            self.parts.append(tuple(getattr(self.recorder, name)[:k].copy() for name in self.columns))
+        self._events.append(self.recorder.event[:e].copy())
+        self.recorder.used[:] = 0
 
     def fill(
         self, step: Callable[[], int], t: Any, memory: float | None, progress: Callable[[float], None] | None
     ) -> int:
-        """Let ``step`` fill the room, again and again, until the end of the run, of memory (bytes), or a failure.
+        """Let ``step`` fill the recorder, again and again, until the end of the run, of memory (bytes), or a failure.
 
         ``t`` (1,): where the run stands.  Returns what the last call did; FULL where something else ended the run.
         """

@@ -1,4 +1,4 @@
-"""How much memory a run takes, and whether its result will find room."""
+"""How much memory a run takes, and whether its result will fit."""
 
 from __future__ import annotations
 

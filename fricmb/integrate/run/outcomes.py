@@ -4,7 +4,7 @@ from __future__ import annotations
 
 #: A step that is left to the other of two methods.
 HANDOVER = -1
-#: A step that was accepted or rejected, one that ended with a transition; the run is done, the room for rows is full.
+#: A step that was accepted or rejected, one that ended with a transition; the run is done, the space for rows is full.
 ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
 #: Why a run cannot go on.
 FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW, FAIL_INFINITE = range(5, 11)

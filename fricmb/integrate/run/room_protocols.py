@@ -20,7 +20,7 @@ class Times(Protocol):
 
 
 class Events(Protocol):
-    """Room for transitions: ``event`` (n_e, 3) time, contact, kind; ``used`` (2,) numbers of rows and transitions."""
+    """Space for transitions: ``event`` (n_e, 3) time, contact, kind; ``used`` (2,) numbers of rows and transitions."""
 
     @property
     def event(self) -> Floats2:

@@ -1,4 +1,4 @@
-"""Rooms that runs work in: lent to a run, given back, and for the next one as they were when they were made."""
+"""Workspaces: rooms that are lent to a run, given back, and for the next one as they were when they were made."""
 
 from __future__ import annotations
 

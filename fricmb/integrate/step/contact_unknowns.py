@@ -14,7 +14,7 @@ from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Float
 
 
 class PortState(NamedTuple):
-    """Port unknowns of s stages and room for their Newton iteration.
+    """Port unknowns of s stages and space for their Newton iteration.
 
     ``n``, ``F``, ``g`` (s, m), ``r``, ``N`` (s, n_c), ``z``, ``zd`` (s, n_z); ``Fo`` (s, m+n_v) and ``Fin`` likewise:
     all port inputs (F, then varying N), ``gbuf`` their last values; ``gb`` (s, m+n_v) their outputs at Fo;
@@ -63,12 +63,12 @@ def port_state(problem: Problem, s: int) -> PortState:
         (s, m + nv),
         (nz,),
     ]
-    rooms = [np.zeros(shape) for shape in shapes]
+    values = [np.zeros(shape) for shape in shapes]
     local = np.zeros((s, nc, 3 + states, 4 + states))
     G = np.zeros((s * (m + nv), s * (m + nv)))
     sizes, pivots = np.zeros(4, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
     solver = [np.zeros((unknowns, unknowns)), np.zeros(unknowns), np.zeros(s * (m + nv)), sizes, pivots]
-    return PortState._make([*rooms, local, G, *solver])
+    return PortState._make([*values, local, G, *solver])
 
 
 @kernel

@@ -43,7 +43,7 @@ class Exact(NamedTuple):
     ``held`` (places, 3, s m, s m) what is left of the contacts' equations where some stick (collocation/held_rows),
     ``held_for`` (places, 2) for which of them and which rung, ``held_next`` (1,), ``rows`` (s m,).
     ``J`` (s, n_f, n_xe), ``JN`` (s, n_v, n_xn) slopes of elements and normal forces; ``fe`` (s, n_f) residuals of
-    element forces; ``A``, ``R``, ``pivots`` room for their elimination.
+    element forces; ``A``, ``R``, ``pivots`` space for their elimination.
     """
 
     flags: Ints

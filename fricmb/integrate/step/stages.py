@@ -27,7 +27,7 @@ from fricmb.integrate.step.tableau import Tableau
 class Stages(NamedTuple):
     """Stage values V, Q (s, n), forces f, residuals; ``psi_v``, ``psi_q`` (n,), times ``t`` (s,).
 
-    ``weight`` (s, s), ``line`` (s,): room for starting values.
+    ``weight`` (s, s), ``line`` (s,): space for starting values.
     """
 
     V: Floats2
@@ -47,11 +47,11 @@ class Stages(NamedTuple):
 def stages(problem: Problem, tableau: Tableau) -> Stages:
     """Arrays for the stages of one step."""
     n, s = problem.n, len(tableau.c)
-    rooms = [np.zeros((s, n)) for _ in range(5)]
+    values = [np.zeros((s, n)) for _ in range(5)]
     levels = len(tableau.lam)
     history = [np.zeros(s), np.zeros(n), np.zeros(n), np.zeros((s, s)), np.zeros((levels, n), complex)]
     history += [np.zeros((s, s)), np.zeros(s)]
-    return Stages._make([*rooms, *history])
+    return Stages._make([*values, *history])
 
 
 @kernel

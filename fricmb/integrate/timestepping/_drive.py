@@ -123,12 +123,12 @@ def arrive(run: Run, t: float) -> None:
 
 @entry
 def drive(run: Run) -> int:
-    """Step until the end, or until there is no room for rows or transitions."""
+    """Step until the end, or until there is no space for rows or transitions."""
     while True:
         if run.x[TIME] >= run.x[END] or run.i[N_STOP] >= run.stops.shape[0]:
             return DONE
-        room = run.i[N_ROWS] + 3 <= run.row_t.shape[0]
-        if stopped() or not room or run.i[N_EVENTS] + 3 * run.mode.shape[1] > run.event.shape[0]:
+        space = run.i[N_ROWS] + 3 <= run.row_t.shape[0]
+        if stopped() or not space or run.i[N_EVENTS] + 3 * run.mode.shape[1] > run.event.shape[0]:
             return FULL
         t = run.x[TIME]
         h = next_length(run)

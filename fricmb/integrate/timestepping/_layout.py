@@ -7,7 +7,7 @@
 TIME, STEP, END, TOL, RESIDUAL, LONGEST, SHORTEST, FIXED, ERROR, SETTLED, NOISE, SAME, LEEWAY, FAULT = range(14)
 # what FAULT says: nothing; the coefficient is negative; a coefficient or normal force is no number
 SOUND, DRIVES, NO_NUMBER = 0.0, 1.0, 2.0
-# i: accepted and rejected steps; rounds, Newton iterations, factorisations; rows and events in the room; next stop;
+# i: accepted and rejected steps; rounds, Newton iterations, factorisations; rows and events so far; next stop;
 # whether the contacts are solved condensed; half band width; whether normal forces vary; steps not settled
 N_STEPS, N_REJECTED, N_ROUNDS, N_NEWTON, N_FACTOR, N_ROWS, N_EVENTS, N_STOP, CONDENSED, BAND, VARYING, N_UNSETTLED = (
     range(12)

@@ -116,7 +116,7 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
 
 
 def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, bool, int]:
-    """The arrays of a run with room for so many rows; whether contacts are condensed, and the band's half width."""
+    """The arrays of a run with space for so many rows; whether contacts are condensed, and the band's half width."""
     statics = once_per_problem(problem, ("timestepping", contacts), lambda: _statics(problem, contacts))
     n, m, nc, n_u = problem.n, problem.m, problem.n_c, problem.n_u
     band, condensed = statics["band"], statics["condensed"]
@@ -153,7 +153,7 @@ def _states(n: int, m: int, nc: int, n_u: int) -> dict[str, Any]:
 
 
 def no_rows(n: int, m: int, nc: int, capacity: int) -> dict[str, Any]:
-    """Room for so many rows."""
+    """Space for so many rows."""
     z = np.zeros
     return {
         "row_t": z(capacity), "row_q": z((capacity, n)), "row_v": z((capacity, n)), "row_F": z((capacity, m)),

@@ -1,4 +1,4 @@
-"""Arrays of a run: structure, contacts, states, room of a step, rows.
+"""Arrays of a run: structure, contacts, states, space for a step, rows.
 
 With n dofs, n_c contacts of m rows and a step h from (q0, v0) to (q1, v1), bars for means over the step:
 
@@ -41,7 +41,7 @@ class Run(NamedTuple):
     Factors: ``lu`` (k, n (2 b + 1)), ``of`` (k, 3 n_c + 1): h and weights each was made for, ``used`` (k,);
     ``Y`` (k, m, n), ``D`` (k, m, m): responses A^-1 W and h W^T A^-1 W; ``J``, ``rhs``, ``sizes``, ``pivots``.
     Run: ``top_q``, ``top_v`` (n,) running maxima, ``floor_q``, ``floor_v``; ``total`` (n_c,) losses; ``stops``;
-    ``s``: room for calling templates; ``x``, ``i``: see _layout.
+    ``s``: space for calling templates; ``x``, ``i``: see _layout.
     Rows: ``row_t``, ``row_q``, ``row_v``, ``row_F``, ``row_g``, ``row_N``, ``row_mode``, ``row_loss``, ``row_x``;
     ``event`` (e, 3).  ``places``: table of blocks.
     """

@@ -53,8 +53,8 @@ FAILURES = {
 #: Errors of a step: TIGHT rtol^(3/2) in smooth motion (third order, so that their sum goes with rtol), LOOSE rtol where
 #: a transition falls into it.
 TIGHT, LOOSE = 3.0, 1.0
-#: Numbers in the room for rows.
-ROOM = 2e6
+#: Numbers in the space for rows.
+ROWS = 2e6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +114,7 @@ class TimeStepping(Integrator):
     ) -> SteppedRun:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         width = 2 * problem.n + 2 * problem.m + 2 * problem.n_c + 4
-        capacity = int(np.clip(ROOM / width, 8, 1024))
+        capacity = int(np.clip(ROWS / width, 8, 1024))
         run, condensed, band = run_of(problem, self.contacts, capacity)
         run.i[CONDENSED], run.i[BAND] = int(condensed), band
         run = self._set_start(problem, run, start, t_end, tolerance)
@@ -184,7 +184,7 @@ _ROWS = ("row_t", "row_q", "row_v", "row_F", "row_g", "row_N", "row_mode", "row_
 
 
 def _emptied(run: Run) -> dict[str, Any]:
-    """What the room for rows and transitions holds, taken out of it."""
+    """What the space for rows and transitions holds, taken out of it."""
     rows, events = int(run.i[N_ROWS]), int(run.i[N_EVENTS])
     taken = {name: getattr(run, name)[:rows].copy() for name in _ROWS}
     taken["event"] = run.event[:events].copy()

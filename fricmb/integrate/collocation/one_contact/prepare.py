@@ -158,7 +158,7 @@ def set_longest_step(run: Run, longest: float) -> None:
 
 
 def rows(n: int, m: int, s: int, size: int) -> Rows:
-    """Room for ``size`` steps, phases and events."""
+    """Space for ``size`` steps, phases and events."""
     width = 4 + 3 * n + m * s + s + 1
     kinds = np.zeros((size, 2), dtype=np.int64)
     return Rows(np.zeros((size, width)), kinds, np.zeros((size, 5 * n + 2)), np.zeros((size, 2)))

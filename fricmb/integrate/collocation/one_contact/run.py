@@ -76,7 +76,7 @@ from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints
 from fricmb.integrate.run.stop import stopped
 
-#: Why a run came back: at its end; no room for rows; for a progress report; or what went wrong.
+#: Why a run came back: at its end; no space for rows; for a progress report; or what went wrong.
 DONE, FULL, PAUSE, UNDERFLOW, ENDLESS, NOT_FINITE = range(6)
 #: Steps after which the reference point moves along.
 REBASE = 16
@@ -243,7 +243,7 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
 
 @entry
 def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float) -> int:
-    """Run from the state until the end, or until there is no room for the rows of another phase."""
+    """Run from the state until the end, or until there is no space for the rows of another phase."""
     stalled = 0
     if run.si[MODE] == UNSETTLED:
         settle(run)

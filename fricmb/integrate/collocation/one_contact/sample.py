@@ -67,14 +67,14 @@ def sample_rows(
     """Fill q, v (n, n_t), F, g (m, n_t), mode, loss (n_t,) at ``tau`` after the start of each row ``at``.
 
     ``hold`` (2, m, n), ``load`` (2, m): held force by position and velocity, and of the loads; ``polynomial``
-    (m + 2 n, s), ``x`` (2, n): room.
+    (m + 2 n, s), ``x`` (2, n): space to work in.
     """
     phases = run.phases
     steps = run.steps
     n = run.blk.shape[2]
     m = run.flags[ROWS]
     s = run.nd.shape[1] - 1
-    room = np.empty((2, MOST + 1))
+    space = np.empty((2, MOST + 1))
     last = -1
     base = AT_BLOCKS + 3 * n
     for i in range(at.shape[0]):
@@ -112,7 +112,7 @@ def sample_rows(
             if slips:
                 du, dv = under_polynomials(
                     run.blk[0, W2, j], run.blk[0, DAMP, j], v0, a0, slope, h, tau[i], polynomial[m + j],
-                    polynomial[m + n + j], room,
+                    polynomial[m + n + j], space,
                 )  # fmt: skip
                 vj = v0 + dv
             else:

@@ -59,17 +59,17 @@ def stuck_force(run: Run, t: float, b: int, horizon: float) -> float:
 @kernel
 def safe_step(F: float, FdF: float, dF: float, bound: float, limit: float) -> float:
     """A step on which ``|F + F' t| + bound t^2/2`` cannot pass ``limit``, short of it by no more than second order."""
-    room = limit - F
-    longest = dF + math.sqrt(dF * dF + 2.0 * bound * room)
-    step = 2.0 * room / longest if longest > 0.0 else 1e300
+    slack = limit - F
+    longest = dF + math.sqrt(dF * dF + 2.0 * bound * slack)
+    step = 2.0 * slack / longest if longest > 0.0 else 1e300
     if F > 0.0:
         # sqrt(F^2 + x) <= F + x/(2 F)
         b = FdF / F
         a = 0.5 * (dF * dF / F + bound)
-        down = b + math.sqrt(b * b + 4.0 * a * room)
+        down = b + math.sqrt(b * b + 4.0 * a * slack)
         if down > 0.0:
-            step = max(step, 2.0 * room / down)
-        elif room > 0.0:
+            step = max(step, 2.0 * slack / down)
+        elif slack > 0.0:
             step = 1e300
     return step
 

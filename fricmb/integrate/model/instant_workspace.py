@@ -1,4 +1,4 @@
-"""Rooms in which a scene without joints is evaluated at single instants, found again by its sizes."""
+"""Workspace in which a scene without joints is evaluated at single instants, found again by its sizes."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.workspace import lent
 
 
-class InstantRooms(NamedTuple):
+class InstantWorkspace(NamedTuple):
     """For what is to be known at single instants; the state is empty."""
 
     s: Scratch
     y: State
 
 
-def instant_rooms(problem: Problem) -> AbstractContextManager[InstantRooms]:
-    """Rooms for evaluating a problem."""
+def instant_workspace(problem: Problem) -> AbstractContextManager[InstantWorkspace]:
+    """What to evaluate a problem in."""
     key = "at an instant", sizes_of(problem)
-    return lent(key, lambda: InstantRooms(scratch_of(problem), state_of(problem)))
+    return lent(key, lambda: InstantWorkspace(scratch_of(problem), state_of(problem)))
 
 
 def sizes_of(problem: Problem) -> tuple[int, ...]:
-    """All that the rooms of a problem are long."""
-    return once_per_problem(problem, "sizes of rooms", lambda: _find_sizes(problem))
+    """All that the arrays of a problem's workspaces are long."""
+    return once_per_problem(problem, "sizes of workspaces", lambda: _find_sizes(problem))
 
 
 def _find_sizes(problem: Problem) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""Runs borrow the rooms that they work in: those of one run never reach another."""
+"""Runs borrow workspaces: what is left in those of one run never reach another."""
 
 from __future__ import annotations
 

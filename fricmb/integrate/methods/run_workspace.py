@@ -1,4 +1,4 @@
-"""Rooms that the runs of scenes without joints work in, lent by their sizes."""
+"""Workspaces of runs of scenes without joints, lent by their sizes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fricmb.integrate.contact.mode_decision import Rest, rest_of
 from fricmb.integrate.contact.transition import Before
 from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.model.forces import Scratch, scratch_of
-from fricmb.integrate.model.instant_rooms import sizes_of
+from fricmb.integrate.model.instant_workspace import sizes_of
 from fricmb.integrate.model.state import State, state_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
@@ -24,7 +24,7 @@ from fricmb.integrate.step.step_matrix import changes, factor
 from fricmb.integrate.step.tableau import Tableau
 
 
-class RunRooms(NamedTuple):
+class RunWorkspace(NamedTuple):
     """Evaluation, the present state and the end of a step, contacts at rest, modes before, scales, step control."""
 
     s: Scratch
@@ -36,29 +36,29 @@ class RunRooms(NamedTuple):
     clock: Clock
 
 
-class StepRooms(NamedTuple):
+class StepWorkspace(NamedTuple):
     """For steps of one formula."""
 
     one: OneStep
 
 
-def run_rooms(problem: Problem) -> AbstractContextManager[RunRooms]:
-    """Rooms for a run by any method; states are empty."""
+def run_workspace(problem: Problem) -> AbstractContextManager[RunWorkspace]:
+    """Workspace for a run by any method; states are empty."""
     return lent(("run", sizes_of(problem)), lambda: made(problem))
 
 
-def step_rooms(problem: Problem, tableau: Tableau) -> AbstractContextManager[StepRooms]:
-    """Rooms for implicit steps of a formula."""
+def step_workspace(problem: Problem, tableau: Tableau) -> AbstractContextManager[StepWorkspace]:
+    """Workspace for implicit steps of a formula."""
     key = "steps", sizes_of(problem), changes(problem), tuple(tableau.c.tolist()), len(tableau.lam)
-    return lent(key, lambda: StepRooms(implicit_step(problem, tableau)))
+    return lent(key, lambda: StepWorkspace(implicit_step(problem, tableau)))
 
 
-def exact_step_rooms(
+def exact_step_workspace(
     problem: Problem, exact: Exact, make: Callable[[], OneStep]
-) -> AbstractContextManager[StepRooms]:
-    """Rooms for steps with an exact structure, which is the scene's own and lives as long as it."""
-    among: Store = once_per_problem(problem, "rooms of exact steps", dict)
-    return lent(id(exact), lambda: StepRooms(make()), among)
+) -> AbstractContextManager[StepWorkspace]:
+    """Workspace for steps with an exact structure, which is the scene's own and lives as long as it."""
+    among: Store = once_per_problem(problem, "workspaces of exact steps", dict)
+    return lent(id(exact), lambda: StepWorkspace(make()), among)
 
 
 def implicit_step(problem: Problem, tableau: Tableau) -> OneStep:
@@ -66,14 +66,14 @@ def implicit_step(problem: Problem, tableau: Tableau) -> OneStep:
     return one_step_of(problem, tableau, factor(problem, tableau), stages(problem, tableau), no_exact())
 
 
-def made(problem: Problem) -> RunRooms:
+def made(problem: Problem) -> RunWorkspace:
     """Empty arrays for a run."""
     n, nc, nz = problem.n, problem.n_c, problem.n_z
     floats = [np.zeros(size) for size in (1, n, n, nz, nc, n, n, n)]
     stops = np.zeros(problem.signals.breakpoints.size)
     h, usual, longest = (np.zeros(1) for _ in range(3))
     clock = Clock(h, usual, np.zeros(2), longest, stops, np.zeros(2, np.int64), np.zeros(2), np.zeros(2))
-    return RunRooms(
+    return RunWorkspace(
         scratch_of(problem), state_of(problem), state_of(problem), rest_of(problem),
         Before(np.zeros(nc, np.int8), np.zeros(problem.m)), Accuracy._make(floats), clock,
     )  # fmt: skip
