@@ -64,7 +64,7 @@ def _way_off(r: Floats, slips: Any, i: int, step: int, clear: float) -> int:
 
 
 def _in_band(problem: Problem, run: Trajectory, k: int, t: float, back: float) -> bool:
-    """Whether the force that would hold contact k at rest at t lies above mu_k N and not above mu_s N.
+    """Whether the force that would hold contact k at rest at t lies above mu_0 N and not above mu_s N.
 
     Taken a little before: its change is small, and the direction of slip does not swing yet.
     """
@@ -118,7 +118,7 @@ def _passes(run: Trajectory, near: float) -> Iterator[str]:
 
 
 def _caught(run: Trajectory, k: int, r: Floats, top: float) -> list[float]:
-    """When a slip ended in stick by a force above mu_k N though its path was no straight line."""
+    """When a slip ended in stick by a force above mu_0 N though its path was no straight line."""
     problem, seen = run.problem, run.row_motion()
     contacts, events = problem.contacts, run.transitions
     rows = slice(contacts.row[k], contacts.row[k + 1])

@@ -43,7 +43,7 @@ STICK, SLIP, OPEN = 0, 1, 2
 #: Kinds of event, in the order of :data:`EVENT_KINDS`.
 EVENT_STICK, EVENT_SLIP, EVENT_OPEN, EVENT_CLOSE, EVENT_REVERSAL = range(5)
 EVENT_KINDS = ("stick", "slip", "open", "close", "reversal")
-#: Kinds of law: constant mu_s and mu_k; coefficient mu(r, N); smooth force F(v, N, z), which never sticks.
+#: Kinds of law: constant mu_s and mu_0; coefficient mu(r, N); smooth force F(v, N, z), which never sticks.
 LAW_CONSTANT, LAW_COEFFICIENT, LAW_SMOOTH = 0, 1, 2
 #: Kinds of normal force: constant; an expression that acts on nobody; a law whose force both bodies feel; the reaction
 #: of a joint.
@@ -166,7 +166,7 @@ class Contacts:
     law_table : Templates
         One entry a contact (address 0 for LAW_CONSTANT); the linear forms are unused.
     mu_s, mu_0 : (n_c,)
-        Break-away coefficient and limit of the slip coefficient for r -> 0 (for LAW_CONSTANT: mu_k).  ``mu_s`` < 0:
+        Break-away coefficient and limit of the slip coefficient for r -> 0 (``mu_k`` of a constant law).  ``mu_s`` < 0:
         break-away is that limit under the present normal force, of this size at the start.
     piecewise : (n_c,) bool
         Whether a law is a table or compiled by itself: its slope may jump, or what it is made of.

@@ -14,8 +14,8 @@ STIFF, VISC, MINV = range(3)
 LOAD_0, LOAD_1, STUCK_V = range(3)
 # con[., a, b]: W^T M^-1 W and its inverse
 D, D_INV = range(2)
-# lim: mu_s N, mu_k N, the fastest frequency, then w
-MU_S, MU_K, FASTEST, BELT = range(4)
+# lim: mu_s N, mu_0 N, the fastest frequency, then w
+MU_S_N, MU_0_N, FASTEST, BELT = range(4)
 # flags: number of rows, blocks in stick, whether blocks are modes in slip and in stick, whether rows are linked
 ROWS, STUCK_BLOCKS, MODAL, STUCK_MODAL, COUPLED = range(5)
 # nd[VECTORS, .]: nodes, weights, Legendre tails; the other planes are matrices

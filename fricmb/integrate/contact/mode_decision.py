@@ -1,9 +1,9 @@
 """Modes at an instant: which of the contacts at rest stick, and where the others set out to (set-valued laws).
 
 The problem is one of accelerations: with a = a0 + D F, a stuck contact has a = 0 and |F| <= mu_s N, a slipping one
-F = -mu(0) N n and a = rho n, rho >= 0 the initial growth of its slip speed.  It is the port problem of a step with D
+F = -mu_0 N n and a = rho n, rho >= 0 the initial growth of its slip speed.  It is the port problem of a step with D
 for G and accelerations for velocities, so the same Newton solves it.  All are tried stuck; the worst beyond its cone is
-released, one at a time.  For mu_s > mu_k more than one set may hold: what comes to rest is released before what has
+released, one at a time.  For mu_s > mu_0 more than one set may hold: what comes to rest is released before what has
 rested, which lets go only where it has to.  A cone is never split into axes.  Where these trials turn in a circle,
 ``disc_projection.release`` finds a set that holds.
 """

@@ -23,7 +23,7 @@ from fricmb.integrate.collocation.layout import (
     LOSS,
     LOW_END,
     MONOMIAL,
-    MU_K,
+    MU_0_N,
     N_EVENTS,
     NEXT,
     NODE,
@@ -89,7 +89,7 @@ def polynomial_of_r(run: Run, r0: float) -> None:
 def grain_of_r(run: Run, h: float) -> float:
     """Round-off of r over a step: of what friction alone changes it by, many forces being about as large."""
     last = run.flags[ROWS] - 1
-    return float(1e-14 * h * run.lim[MU_K] * max(run.con[D, 0, 0], run.con[D, last, last]))
+    return float(1e-14 * h * run.lim[MU_0_N] * max(run.con[D, 0, 0], run.con[D, last, last]))
 
 
 @kernel
@@ -183,7 +183,7 @@ def closing_rate(run: Run, since: float) -> float:
             value += run.co[C1, a, j] * (bx[A, j] - bx[E1, j]) + run.co[C0, a, j] * bx[V_END, j]
         run.wk[LINES, OUT + 2, a] = value
         for b in range(m):
-            value -= run.con[D, a, b] * run.lim[MU_K] * run.nx[DIRECTION, b, end]
+            value -= run.con[D, a, b] * run.lim[MU_0_N] * run.nx[DIRECTION, b, end]
         rate += run.nx[DIRECTION, a, end] * value
     return float(rate)
 
@@ -202,7 +202,7 @@ def turns(run: Run) -> bool:
         for b in range(2):
             force += run.con[D_INV, a, b] * run.wk[LINES, OUT + 2, b]
         hold += force * force
-    return bool(math.sqrt(hold) > run.lim[MU_K] * (1.0 + 1e-9))
+    return bool(math.sqrt(hold) > run.lim[MU_0_N] * (1.0 + 1e-9))
 
 
 @kernel
@@ -212,8 +212,8 @@ def snap(run: Run, r: float, tau: float) -> None:
         push = 0.0
         lift = 0.0
         for a in range(run.flags[ROWS]):
-            push -= run.ci[B1, a, j] * run.lim[MU_K] * run.sm[N, a]
-            lift -= run.ci[B0, a, j] * run.lim[MU_K] * run.sm[N, a]
+            push -= run.ci[B1, a, j] * run.lim[MU_0_N] * run.sm[N, a]
+            lift -= run.ci[B0, a, j] * run.lim[MU_0_N] * run.sm[N, a]
         acceleration = run.bx[A, j] + push
         velocity = run.bx[V, j] + lift
         run.bx[U, j], run.bx[U_LOW, j] = two_sum(
@@ -222,7 +222,7 @@ def snap(run: Run, r: float, tau: float) -> None:
         jerk = run.bx[K, j] - run.blk[0, W2, j] * lift - run.blk[0, DAMP, j] * acceleration
         run.bx[V, j] += acceleration * tau + 0.5 * jerk * tau * tau
     run.sx[TIME], run.sx[TIME_LOW] = two_sum(run.sx[TIME], run.sx[TIME_LOW], tau)
-    run.sx[LOSS] += 0.5 * run.lim[MU_K] * r * tau
+    run.sx[LOSS] += 0.5 * run.lim[MU_0_N] * r * tau
 
 
 @block
@@ -273,7 +273,7 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
         tau = -r / rate
         if abs(tau) > 0.5 * length:
             return -4.0
-        reach = max(run.wk[LINES, CHANGE, 0], run.wk[LINES, CHANGE, m - 1]) * run.lim[MU_K] * abs(tau)
+        reach = max(run.wk[LINES, CHANGE, 0], run.wk[LINES, CHANGE, m - 1]) * run.lim[MU_0_N] * abs(tau)
         swing = abs(tau) * run.lim[FASTEST]
         if reach * (0.5 * turn * abs(tau) + 0.2 * swing * swing) <= 5e-3 * tol and swing <= 0.01:
             accelerations(run, 0, run.blk.shape[2], since)

@@ -20,7 +20,7 @@ from fricmb.integrate.collocation.layout import (
     LOAD_1,
     MODAL,
     MODE,
-    MU_S,
+    MU_S_N,
     MW,
     N_PHASES,
     OUT,
@@ -195,7 +195,7 @@ def settle(run: Run) -> bool:
     size = 0.0
     for a in range(m):
         size += run.wk[LINES, OUT + 1, a] * run.wk[LINES, OUT + 1, a]
-    if math.sqrt(size) <= run.lim[MU_S] * (1.0 + 1e-12):
+    if math.sqrt(size) <= run.lim[MU_S_N] * (1.0 + 1e-12):
         run.si[MODE] = STICK
         return True
     run.si[MODE] = SLIP

@@ -19,7 +19,7 @@ from fricmb.integrate.collocation.layout import (
     DAMP,
     MODAL,
     MONOMIAL,
-    MU_K,
+    MU_0_N,
     Q_U,
     Q_V,
     ROWS,
@@ -151,7 +151,7 @@ def sample_rows(
                 F[a, i] = value
                 size += value * value
             # the friction of slip has a known size; interpolation keeps it but for its own error
-            size = run.lim[MU_K] / math.sqrt(size)
+            size = run.lim[MU_0_N] / math.sqrt(size)
             for a in range(m):
                 F[a, i] *= size
             power = theta

@@ -10,7 +10,7 @@ from fricmb.integrate.collocation.layout import (
     FREE,
     JACOBIAN,
     LINES,
-    MU_K,
+    MU_0_N,
     OUT,
     RELATIVE,
     RHS,
@@ -31,7 +31,7 @@ def relative_velocity(run: Run, slot: int, d: int) -> None:
             x = 0.0
             for l in range(s):
                 x += run.tk[slot, run.flags[ROWS] * a + a, i, l] * run.nx[DIRECTION, a, l]
-            run.nx[RELATIVE, a, i] = run.nx[FREE, a, i] - run.lim[MU_K] * x
+            run.nx[RELATIVE, a, i] = run.nx[FREE, a, i] - run.lim[MU_0_N] * x
     if run.flags[COUPLED] == 1:
         for i in range(s):
             x = 0.0
@@ -39,8 +39,8 @@ def relative_velocity(run: Run, slot: int, d: int) -> None:
             for l in range(s):
                 x += run.tk[slot, 1, i, l] * run.nx[DIRECTION, 1, l]
                 y += run.tk[slot, 2, i, l] * run.nx[DIRECTION, 0, l]
-            run.nx[RELATIVE, 0, i] -= run.lim[MU_K] * x
-            run.nx[RELATIVE, 1, i] -= run.lim[MU_K] * y
+            run.nx[RELATIVE, 0, i] -= run.lim[MU_0_N] * x
+            run.nx[RELATIVE, 1, i] -= run.lim[MU_0_N] * y
 
 
 @kernel
@@ -65,7 +65,7 @@ def slip_directions(run: Run, slot: int, tol: float) -> int:
                 value = tx * tk[slot, 0, i, l] * ux + ty * tk[slot, 3, i, l] * uy
                 if run.flags[COUPLED] == 1:
                     value += tx * tk[slot, 1, i, l] * uy + ty * tk[slot, 2, i, l] * ux
-                wk[JACOBIAN, i, l] = run.lim[MU_K] * value
+                wk[JACOBIAN, i, l] = run.lim[MU_0_N] * value
             wk[JACOBIAN, i, i] += nx[DIRECTION, 0, i] * nx[RELATIVE, 0, i] + nx[DIRECTION, 1, i] * nx[RELATIVE, 1, i]
         if not eliminate(run, s):
             return -1
@@ -140,12 +140,12 @@ def start_direction(run: Run) -> float:
     sm = run.sm
     if run.flags[ROWS] == 1:
         sm[N, 0] = 1.0 if wk[LINES, OUT, 0] >= 0.0 else -1.0
-        return float(max(0.0, abs(wk[LINES, OUT, 0]) - run.lim[MU_K] * con[D, 0, 0]))
+        return float(max(0.0, abs(wk[LINES, OUT, 0]) - run.lim[MU_0_N] * con[D, 0, 0]))
     rho = 0.0
     for _ in range(60):
-        p = run.lim[MU_K] * con[D, 0, 0] + rho
-        q = 0.5 * run.lim[MU_K] * (con[D, 0, 1] + con[D, 1, 0])
-        r = run.lim[MU_K] * con[D, 1, 1] + rho
+        p = run.lim[MU_0_N] * con[D, 0, 0] + rho
+        q = 0.5 * run.lim[MU_0_N] * (con[D, 0, 1] + con[D, 1, 0])
+        r = run.lim[MU_0_N] * con[D, 1, 1] + rho
         det = p * r - q * q
         if det == 0.0:
             rho = max(rho, 1e-300)
@@ -161,7 +161,7 @@ def start_direction(run: Run) -> float:
         curve = (sm[N, 0] * (r * sm[N, 0] - q * sm[N, 1]) + sm[N, 1] * (p * sm[N, 1] - q * sm[N, 0])) / det
         size = math.sqrt(size2)
         step = (size - 1.0) * size2 / curve
-        if step <= 1e-15 * (rho + run.lim[MU_K] * (con[D, 0, 0] + con[D, 1, 1])):
+        if step <= 1e-15 * (rho + run.lim[MU_0_N] * (con[D, 0, 0] + con[D, 1, 1])):
             break
         rho += step
     size = math.hypot(sm[N, 0], sm[N, 1])

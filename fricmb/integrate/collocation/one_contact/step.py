@@ -27,7 +27,7 @@ from fricmb.integrate.collocation.layout import (
     LOW_END,
     MINV,
     MODAL,
-    MU_K,
+    MU_0_N,
     MW,
     N_BUILDS,
     N_ITERATIONS,
@@ -132,7 +132,7 @@ def solve_slip(run: Run, slot: int, h: float, tol: float, address: Ints) -> bool
         relative_velocity(run, slot, 1)
         return True
     enough = min(
-        1e-6, 0.1 * tol / max(1e-300, wk[LINES, CHANGE, 0], wk[LINES, CHANGE, 1]) / (run.lim[MU_K] * h + 1e-300),
+        1e-6, 0.1 * tol / max(1e-300, wk[LINES, CHANGE, 0], wk[LINES, CHANGE, 1]) / (run.lim[MU_0_N] * h + 1e-300),
     )  # fmt: skip
     count = slip_directions(run, slot, max(enough, 1e-28))
     run.si[N_ITERATIONS] += max(count, 1)
@@ -149,7 +149,7 @@ def end_state(run: Run, slot: int, h: float) -> None:
     s = nx.shape[2]
     end = s - 1
     modal = run.flags[MODAL] == 1
-    muN = run.lim[MU_K]
+    muN = run.lim[MU_0_N]
     for j in range(run.blk.shape[2]):
         du = bx[V, j] * h + bx[A, j] * tb[slot, IS, j, end] + bx[K, j] * tb[slot, IIS, j, end]
         dv = bx[A, j] * tb[slot, S, j, end] + bx[K, j] * tb[slot, IS, j, end]
@@ -196,7 +196,7 @@ def step_error(run: Run, h: float, tol: float) -> float:
     """Estimated error of a slip step in units of the tolerance, the worst over signals by their own scales."""
     m = run.flags[ROWS]
     s = run.nx.shape[2]
-    muN = run.lim[MU_K]
+    muN = run.lim[MU_0_N]
     worst = 0.0
     for a in range(m):
         last = 0.0
@@ -220,7 +220,7 @@ def rates(run: Run) -> None:
         for j in range(n):
             value += run.dof[MINV, i, j] * run.bx[FORCE, j]
         for a in range(run.flags[ROWS]):
-            value -= run.row[MW, a, i] * run.lim[MU_K] * run.sm[N, a]
+            value -= run.row[MW, a, i] * run.lim[MU_0_N] * run.sm[N, a]
         run.bx[RATE, i] = value
 
 
@@ -244,17 +244,17 @@ def keep_slip(run: Run, h: float) -> float:
     at = AT_BLOCKS + 3 * n
     for a in range(m):
         for l in range(s):
-            run.steps[at_row, at + a * s + l] = -run.lim[MU_K] * run.nx[DIRECTION, a, l]
+            run.steps[at_row, at + a * s + l] = -run.lim[MU_0_N] * run.nx[DIRECTION, a, l]
     at += m * s
     power = 0.0
     for a in range(m):
         power += run.sm[G, a] * run.sm[G, a]
-    run.steps[at_row, at] = run.lim[MU_K] * math.sqrt(power)
+    run.steps[at_row, at] = run.lim[MU_0_N] * math.sqrt(power)
     loss = 0.0
     for l in range(s):
         power = 0.0
         for a in range(m):
-            power += run.lim[MU_K] * run.nx[DIRECTION, a, l] * run.nx[RELATIVE, a, l]
+            power += run.lim[MU_0_N] * run.nx[DIRECTION, a, l] * run.nx[RELATIVE, a, l]
         run.steps[at_row, at + 1 + l] = power
         loss += h * run.nd[VECTORS, WEIGHT, l] * power
     run.si[N_ROWS] += 1

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.collocation.block_motion import fundamental
-from fricmb.integrate.collocation.layout import DAMP, FREE, LINES, MU_S, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
+from fricmb.integrate.collocation.layout import DAMP, FREE, LINES, MU_S_N, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.run.stop import stopped
@@ -79,7 +79,7 @@ def release_time(run: Run, longest: float) -> float:
     """First time in [0, longest] at which |F| reaches ``limit``; -1 if it does not, -2 if the search does not end."""
     m = run.flags[ROWS]
     b = run.flags[STUCK_BLOCKS]
-    limit = run.lim[MU_S]
+    limit = run.lim[MU_S_N]
     fastest = 0.0
     cap = 1e300
     for j in range(b):
