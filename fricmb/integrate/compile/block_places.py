@@ -15,7 +15,7 @@ CORE = (
     "find_open",
     "attempt",
     "finish",
-    "find_trigger",
+    "find_changing_contact",
     "locate",
     "transition",
     "record_inside",

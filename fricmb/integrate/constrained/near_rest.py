@@ -22,7 +22,7 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
     for c in range(y.mode.shape[0]):
         k.form[c] = 0
         first, d = row[c], row[c + 1] - row[c]
-        if not plane(mech, c) or y.mode[c] != SLIP or turns.near[0] + d - 1 > turns.which.shape[0]:
+        if not plane(mech, c) or y.mode[c] != SLIP or turns.near[0] + d - 1 > turns.contact.shape[0]:
             continue
         force, light = magnitude(row, c, y.F), 0.0
         for a in range(d):
@@ -43,7 +43,7 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
 def turn_row(turns: Turns, c: int, line: int, m: int, n_line: float, n_m: float) -> None:
     """Append the row of contact c in which direction ``line`` stands against direction m."""
     i = turns.near[0]
-    turns.which[i], turns.line[i] = c, line
+    turns.contact[i], turns.line[i] = c, line
     for a in range(3):
         turns.tangent[i, a] = n_line if a == m else (-n_m if a == line else 0.0)
     turns.near[0] = i + 1
@@ -57,7 +57,7 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
         for i in range(s):
             for a in range(st.R.shape[1]):
                 st.R[i, a] = 0.0
-        st.R[p % s, force_place(mech, turns.which[p // s]) + turns.line[p // s]] = 1.0
+        st.R[p % s, force_place(mech, turns.contact[p // s]) + turns.line[p // s]] = 1.0
         newton_change(mech, st, mech.address)
         for i in range(s):
             for a in range(st.R.shape[1]):

@@ -24,7 +24,7 @@ TOGETHER = 24
 
 
 class Turns(NamedTuple):
-    """Rows of contacts near rest that find a direction: ``which`` (k,) contact and ``line`` (k,) of its directions.
+    """Rows of contacts near rest that find a direction: ``contact`` (k,) and ``line`` (k,) of its directions.
 
     ``near`` (1,) how many rows, ``tangent`` (k, 3) across the slip.
 
@@ -32,7 +32,7 @@ class Turns(NamedTuple):
     among them; ``base`` (k,), ``spread`` (k s,): derivatives in the Jacobian, and what a stage's differ by.
     """
 
-    which: Ints
+    contact: Ints
     line: Ints
     near: Ints
     tangent: Floats2
@@ -86,13 +86,13 @@ def spread_of_stages(mech: Mech, turns: Turns, F: Floats2, g: Floats2) -> None:
     s = F.shape[0]
     for k in range(turns.near[0]):
         for i in range(s):
-            turns.spread[k * s + i] = by_turn(mech, turns.which[k], F[i], g[i]) - turns.base[k]
+            turns.spread[k * s + i] = by_turn(mech, turns.contact[k], F[i], g[i]) - turns.base[k]
 
 
 @kernel
 def across(mech: Mech, turns: Turns, k: int, x: Floats) -> float:
     """The turn of row k in a change x (size,) of the unknowns of a stage: force across the slip."""
-    c = turns.which[k]
+    c = turns.contact[k]
     place, turn = force_place(mech, c), 0.0
     for a in range(mech.port.row[c + 1] - mech.port.row[c]):
         turn += turns.tangent[k, a] * x[place + a]

@@ -108,20 +108,20 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
     count = 0
     for c in range(y.mode.shape[0]):
         if rubs(mech, y, c) and count < MANY:
-            out.which[count] = c
+            out.contacts[count] = c
             count += 1
     if count < 2:
         return 1.0
     for i in range(count):
-        y.mode[out.which[i]] = OPEN
+        y.mode[out.contacts[i]] = OPEN
     regular = instant_matrix(mech, k, w, y, ALL, mech.address)
     for j in range(count if regular else 0):
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
-        push(mech, y, out.which[j], w.r, n + m)
+        push(mech, y, out.contacts[j], w.r, n + m)
         solve_instant(mech, w)
         for i in range(count):
-            c = out.which[i]
+            c = out.contacts[i]
             owner = port.joint[c]
             rows = joint.row[owner + 1] - joint.row[owner]
             n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
@@ -133,7 +133,7 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
             one = 1.0 if i == j else 0.0
             out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * answer
     for i in range(count):
-        y.mode[out.which[i]] = SLIP
+        y.mode[out.contacts[i]] = SLIP
     if not regular:
         return -1.0
     least = 1.0

@@ -17,7 +17,7 @@ class Watch(NamedTuple):
     """What is watched along a run.
 
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` (1,) the least
-    principal minor of the same for several of them (``which``, ``A``, ``B``, ``sizes``, ``pivots`` space for it).
+    principal minor of the same for several of them (``contacts``, ``A``, ``B``, ``sizes``, ``pivots`` space for it).
     ``sigma`` (4,): least singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak``
     (m,) its direction.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
@@ -29,7 +29,7 @@ class Watch(NamedTuple):
 
     margin: Floats
     together: Floats
-    which: Ints
+    contacts: Ints
     A: Floats
     B: Floats
     sizes: Pivots

@@ -20,7 +20,7 @@ from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.step.event_functions import find_trigger, margin
+from fricmb.integrate.step.event_functions import find_changing_contact, margin
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 from fricmb.integrate.step.step_error import step_error
@@ -41,10 +41,10 @@ def root_along_step(
 
 @block
 def locate(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, x: float,
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, contact: int, h: float, x: float,
     found: Floats, retry: Floats, address: Ints,
 ) -> int:  # fmt: skip
-    """Find the step that ends at the first transition, by real steps from y; contact k is the first suspect.
+    """Find the step that ends at the first transition, by real steps from y; ``contact`` is the first suspect.
 
     Returns the contact, with its state in ``end``; -1 where the step has to be done again with ``retry[0]``
     (inaccurate so far: close to landing this refines geometrically); -2 where nothing converges.
@@ -58,16 +58,16 @@ def locate(
     failures = 0
     last = one.tab.c.shape[0] - 1
     if one.exact.ladder.shape[0] > 0 and step_error(packed, s, y, one, acc, h, address) <= 1.0:
-        new = root_along_step(packed, s, y, end, one, acc, k, h, step, found, address)
+        new = root_along_step(packed, s, y, end, one, acc, contact, h, step, found, address)
         if new < 0.0:
-            return k
+            return contact
         step = new if 0.0 < new < h else step
     for trial in range(60):
         if stopped():
             return -1
         if hi <= 4.0 * t_unit or step <= 2.0 * t_unit:
             copy_state(y, end)
-            return k
+            return contact
         if not attempt(packed, s, y, one, acc, step, address):
             failures += 1
             if failures > 8:
@@ -85,24 +85,24 @@ def locate(
         copy_state(y, end)
         if not finish(packed, s, end, one, acc, step, address):
             return -2
-        first = find_trigger(packed, s, y, end, one, found, address)
-        if first >= 0 and first != k and found[0] * step < step - 4.0 * t_unit:
-            k = first
+        sooner = find_changing_contact(packed, s, y, end, one, found, address)
+        if sooner >= 0 and sooner != contact and found[0] * step < step - 4.0 * t_unit:
+            contact = sooner
             hi = step
             f_lo = np.nan
             lo = 0.0
-            f_hi = margin(packed, s, y, end, one.w.r[last, k], k, found)
+            f_hi = margin(packed, s, y, end, one.w.r[last, contact], contact, found)
             if not f_hi < 0.0:
                 f_hi = np.nan
             step = found[0] * step
             continue
-        f = margin(packed, s, y, end, one.w.r[last, k], k, found)
+        f = margin(packed, s, y, end, one.w.r[last, contact], contact, found)
         new = np.nan
         if one.exact.ladder.shape[0] > 0:
-            new = root_along_step(packed, s, y, end, one, acc, k, step, step, found, address)
+            new = root_along_step(packed, s, y, end, one, acc, contact, step, step, found, address)
             if new < 0.0:
-                return k
-        slipping = y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH
+                return contact
+        slipping = y.mode[contact] == SLIP and packed.ports.law[contact] != LAW_SMOOTH
         if f < 0.0:
             if f_hi == f_hi and f_lo == f_lo and same < 0:
                 f_lo *= 0.5
@@ -111,14 +111,14 @@ def locate(
             if f_hi == f_hi and f_lo == f_lo and same > 0:
                 f_hi *= 0.5
             lo, f_lo, same = step, f, 1
-        if not lo < new < hi and slipping and one.w.r[last, k] == f:
-            rate = slip_rate(packed, end, k)
+        if not lo < new < hi and slipping and one.w.r[last, contact] == f:
+            rate = slip_rate(packed, end, contact)
             if rate < 0.0:
                 new = step - f / rate
         if not lo < new < hi and f_lo == f_lo and f_hi == f_hi:
             new = lo - f_lo * (hi - lo) / (f_hi - f_lo)
         if f == 0.0 or abs(new - step) <= 2.0 * t_unit or hi - lo <= 4.0 * t_unit:
-            return k
+            return contact
         if not lo < new < hi:
             if f >= 0.0 and trial > 3 and np.isnan(f_hi) and lo > 0.999 * hi:
                 # nothing changes sign: the suspicion came from between the stages of too large a step
@@ -126,7 +126,7 @@ def locate(
                 return -1
             new = 0.5 * (lo + hi)
         step = new
-    return k
+    return contact
 
 
 @kernel

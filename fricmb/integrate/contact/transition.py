@@ -109,9 +109,9 @@ def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool
 
 @block
 def transition(
-    packed: Packed, s: Scratch, y: State, k: int, lifted: bool, r: Rest, old: Before, out: Rows, address: Ints
+    packed: Packed, s: Scratch, y: State, contact: int, lifted: bool, r: Rest, old: Before, out: Rows, address: Ints
 ) -> int:
-    """Go through the transition that contact k has reached (k = -1: a breakpoint of prescribed motion).
+    """Go through the transition that ``contact`` has reached (-1: a breakpoint of prescribed motion).
 
     ``lifted``: it is its normal force that has come to 0.
 
@@ -119,7 +119,7 @@ def transition(
     """
     ports = packed.ports
     # an open contact has no other transition (located without a step, nothing has told which it is)
-    lifted = lifted or (k >= 0 and (y.mode[k] == OPEN or holds_nothing(packed, y, k)))
+    lifted = lifted or (contact >= 0 and (y.mode[contact] == OPEN or holds_nothing(packed, y, contact)))
     record(out, y, BEFORE)
     for c in range(y.mode.shape[0]):
         old.mode[c] = y.mode[c]
@@ -128,26 +128,26 @@ def transition(
     find_open(packed, s, y, address)
     if lifted:
         # the normal force is at its zero, up to round-off of either sign
-        y.mode[k] = SLIP if old.mode[k] == OPEN else OPEN
+        y.mode[contact] = SLIP if old.mode[contact] == OPEN else OPEN
     mark_rest(packed, s, y, r, address)
     for c in range(y.mode.shape[0]):
         row0 = ports.row[c]
         force = ports.D[row0, row0] * stick_limit(ports, packed.laws, c, s, y.N[c])
         if lands_now(packed, y, c, r.part[c]):
             r.part[c] = 1
-        if c != k and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
+        if c != contact and r.part[c] == 1 and old.mode[c] == SLIP and slip_rate(packed, y, c) >= -1e-9 * force:
             # released at this very instant: tried stuck again it would be on its cone, and so without end
             r.part[c] = 2
-    if k >= 0 and not lifted and packed.ports.law[k] != LAW_SMOOTH:
-        if old.mode[k] == STICK and ports.soft[0] > 0.0 and give_way(packed, s, y, r, old):
+    if contact >= 0 and not lifted and packed.ports.law[contact] != LAW_SMOOTH:
+        if old.mode[contact] == STICK and ports.soft[0] > 0.0 and give_way(packed, s, y, r, old):
             pass
-        elif old.mode[k] == STICK:
-            r.part[k] = 2
-            size = magnitude(ports.row, k, y.F)
-            for a in range(ports.row[k], ports.row[k + 1]):
+        elif old.mode[contact] == STICK:
+            r.part[contact] = 2
+            size = magnitude(ports.row, contact, y.F)
+            for a in range(ports.row[contact], ports.row[contact + 1]):
                 y.n[a] = -y.F[a] / size
         else:
-            r.part[k] = 1
+            r.part[contact] = 1
     code = settle(packed, s, y, r, address)
     if code != 0:
         return code

@@ -30,7 +30,7 @@ from fricmb.integrate.run.outcomes import (
     FAIL_STEP,
     REJECTED,
 )
-from fricmb.integrate.step.event_functions import find_trigger
+from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import CAP, rung_below
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, update_scales
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
@@ -106,11 +106,11 @@ def advance(
     copy_state(y, end)
     if not finish(packed, s, end, one, acc, h, address):
         return incomplete(end)
-    k = find_trigger(packed, s, y, end, one, clock.found, address)
+    contact = find_changing_contact(packed, s, y, end, one, clock.found, address)
     wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
     if one.exact.ladder.shape[0] > 0:
         wanted = min(wanted, one.exact.par[CAP])
-    if k < 0 and error <= 1.0:
+    if contact < 0 and error <= 1.0:
         if end.fault[0] > 0.0:
             return FAIL_LAW
         record_inside(packed, s, y, end, one, acc, out, address)
@@ -122,26 +122,26 @@ def advance(
             clock.usual[0] = max(h, 0.8 * clock.usual[0])
         clock.h[0] = wanted
         return ACCEPTED
-    if k < 0 or (error > 1.0 and clock.found[0] * h > wanted):
+    if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):
         one.counts[1] += 1
         clock.h[0] = wanted
         return REJECTED
-    if clock.found[0] < 1e-9 and y.mode[k] == SLIP and h > 1e-6 * clock.usual[0]:
+    if clock.found[0] < 1e-9 and y.mode[contact] == SLIP and h > 1e-6 * clock.usual[0]:
         # slip that has only begun and seems to end at once: a wrong solution of too large a step, not to start from
         one.counts[1] += 1
         clock.h[0] = 0.2 * h
         one.last[1] = 0.0
         return REJECTED
     clock.retry[0] = wanted
-    k = locate(packed, s, y, end, one, acc, k, h, clock.found[0], clock.found, clock.retry, address)
-    if k == -2:
+    contact = locate(packed, s, y, end, one, acc, contact, h, clock.found[0], clock.found, clock.retry, address)
+    if contact == -2:
         return end_round_off(packed, s, y, r, old, out, clock, address)
-    if k == -1:
+    if contact == -1:
         one.counts[1] += 1
         clock.h[0] = clock.retry[0]
         return REJECTED
     lifted = clock.found[1] == 1.0
-    if not lifted and end.t[0] - t > 1e-6 * clock.usual[0] and passes_by(packed, s, y, end, acc, k):
+    if not lifted and end.t[0] - t > 1e-6 * clock.usual[0] and passes_by(packed, s, y, end, acc, contact):
         one.counts[1] += 1
         clock.h[0] = 0.5 * (end.t[0] - t)
         one.last[1] = 0.0
@@ -159,7 +159,7 @@ def advance(
     copy_state(end, y)
     clock.h[0] = clock.usual[0]
     one.last[1] = 0.0
-    return settled(transition(packed, s, y, k, lifted, r, old, out, address))
+    return settled(transition(packed, s, y, contact, lifted, r, old, out, address))
 
 
 @kernel

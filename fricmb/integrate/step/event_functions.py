@@ -26,7 +26,9 @@ BEGINS = 1e-13
 
 
 @block
-def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, found: Floats, address: Ints) -> int:
+def find_changing_contact(
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, found: Floats, address: Ints
+) -> int:
     """Contact that changes its mode first within the step just solved, or -1; ``found`` (1,) about where, in (0, 1].
 
     Slip ends where r passes 0 (also between two stages), stick where |F| leaves the cone, contact where N passes 0.
@@ -34,7 +36,7 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
     """
     tab, w = one.tab, one.w
     n_s = tab.c.shape[0]
-    first = -1
+    contact = -1
     found[0] = 2.0
     if packed.ports.soft[0] > 0.0:
         for j in range(n_s):
@@ -49,8 +51,8 @@ def find_trigger(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
             x = min(x, normal_crossing(packed, s, y, one, k))
         if x < found[0]:
             found[0] = x
-            first = k
-    return first if n_s > 0 else -1
+            contact = k
+    return contact if n_s > 0 else -1
 
 
 @kernel
