@@ -73,6 +73,14 @@ def incomplete(y: State) -> int:
     return FAIL_INFINITE if y.fault[0] == INFINITE else FAIL_REDUNDANT
 
 
+@kernel
+def reject(clock: Clock, one: OneStep, h: float) -> int:
+    """Leave y where it is; the next step is h."""
+    one.counts[1] += 1
+    clock.h[0] = h
+    return REJECTED
+
+
 @block
 def advance(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, r: Rest, old: Before, out: Rows,
@@ -100,9 +108,7 @@ def advance(
     if attempt(packed, s, y, one, acc, h, address):
         error = step_error(packed, s, y, one, acc, h, address)
     if not error < np.inf:
-        one.counts[1] += 1
-        clock.h[0] = 0.25 * h
-        return REJECTED
+        return reject(clock, one, 0.25 * h)
     copy_state(y, end)
     if not finish(packed, s, end, one, acc, h, address):
         return incomplete(end)
@@ -123,29 +129,21 @@ def advance(
         clock.h[0] = wanted
         return ACCEPTED
     if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):
-        one.counts[1] += 1
-        clock.h[0] = wanted
-        return REJECTED
+        return reject(clock, one, wanted)
     if clock.found[0] < 1e-9 and y.mode[contact] == SLIP and h > 1e-6 * clock.usual[0]:
         # slip that has only begun and seems to end at once: a wrong solution of too large a step, not to start from
-        one.counts[1] += 1
-        clock.h[0] = 0.2 * h
         one.last[1] = 0.0
-        return REJECTED
+        return reject(clock, one, 0.2 * h)
     clock.retry[0] = wanted
     contact = locate(packed, s, y, end, one, acc, contact, h, clock.found[0], clock.found, clock.retry, address)
     if contact == -2:
         return end_round_off(packed, s, y, r, old, out, clock, address)
     if contact == -1:
-        one.counts[1] += 1
-        clock.h[0] = clock.retry[0]
-        return REJECTED
+        return reject(clock, one, clock.retry[0])
     lifted = clock.found[1] == 1.0
     if not lifted and end.t[0] - t > 1e-6 * clock.usual[0] and passes_by(packed, s, y, end, acc, contact):
-        one.counts[1] += 1
-        clock.h[0] = 0.5 * (end.t[0] - t)
         one.last[1] = 0.0
-        return REJECTED
+        return reject(clock, one, 0.5 * (end.t[0] - t))
     if end.t[0] > t:
         record_inside(packed, s, y, end, one, acc, out, address)
         one.counts[0] += 1
