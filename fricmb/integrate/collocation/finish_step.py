@@ -25,7 +25,7 @@ from fricmb.integrate.step.exact_structure import CAP, FASTEST_BLOCK, INPUTS, LE
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
-from fricmb.integrate.step.slip_growth import too_long
+from fricmb.integrate.step.slip_growth import growth, too_long
 
 #: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
 SMOOTH = 0.03
@@ -159,7 +159,7 @@ def exact_error(
     tol = one.exact.par[SAFETY] * acc.rtol[0]
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
     off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
-    error = max(error, off / acc.rtol[0], too_long(packed, s, y, one, h, one.tab.c.shape[0]))
+    error = max(error, off / acc.rtol[0], too_long(growth(packed, s, y, one, h), one.tab.c.shape[0]))
     end = one.exact.end
     error = max(error, jump_error(packed, s, y, y.t[0] + h, y.q + end[0], y.v + end[1], acc, h))
     return float(max(error, search_error(packed, y, one, acc, h)))

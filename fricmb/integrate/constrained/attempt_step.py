@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import dips, near_singular, nears_singular, step_to_singular
-from fricmb.integrate.constrained.slip_growth import too_long
+from fricmb.integrate.constrained.slip_growth import growth
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
@@ -22,6 +22,7 @@ from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes, Ints
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
+from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
 #: A step ends a try at this part of the span.
@@ -99,7 +100,7 @@ def radau_step(
         c.h[0] = 0.4 * h
         return REJECTED
     error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol[0])
-    error = max(error, too_long(mech, k, y, st, h, s + 1))
+    error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
         c.counts[1] += 1
         c.h[0] = 0.4 * h

@@ -21,7 +21,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
-from fricmb.integrate.constrained.slip_growth import too_long
+from fricmb.integrate.constrained.slip_growth import growth
 from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State
@@ -44,6 +44,7 @@ from fricmb.integrate.methods.backward_differences import (
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
+from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
 
 #: Newton stops at this part of the error that a step may make.
@@ -206,7 +207,7 @@ def multistep(
     for i in range(past.d.shape[0]):
         past.d[i] = past.new[i] - past.guess[i]
     error = scaled(y, c, past, formula, past.d, 1.0 / (order + 1))
-    error = max(error, too_long(mech, k, y, one, h, order))
+    error = max(error, too_long(growth(mech, k, y, one, h), order))
     if not error <= 1.0:
         past.status[REJECTIONS] += 1
         c.counts[1] += 1

@@ -50,10 +50,3 @@ def growth(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> float:
             light = max(light, lightness(mech, k, p, a, y.lam, mech.mass, mech.address))
         worst = max(worst, h * fall * light / LONGEST)
     return float(worst)
-
-
-@kernel
-def too_long(mech: Mech, k: Moving, y: State, st: Stages, h: float, order: int) -> float:
-    """The error of a step that is too long to see slip grow, such that control by ``order`` shortens it; else 0."""
-    ratio = growth(mech, k, y, st, h)
-    return float(ratio**order) if ratio > 1.0 else 0.0

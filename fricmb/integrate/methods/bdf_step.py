@@ -38,7 +38,7 @@ from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_LAW, HANDOVER, REJECTED
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_to_position, newton_tolerances, state_noise, widest
-from fricmb.integrate.step.slip_growth import too_long
+from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.stages import solve_stages
 from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
 from fricmb.integrate.step.step_error import grain
@@ -179,7 +179,7 @@ def bdf_step(
         past.d[i] = past.new[i] - past.guess[i]
     state_noise(packed, one, acc, past.h[0])
     error = scaled(packed, y, one, acc, past, past.d, 1.0 / (k + 1))
-    error = max(error, too_long(packed, s, y, one, past.h[0], k))
+    error = max(error, too_long(growth(packed, s, y, one, past.h[0]), k))
     error = max(error, jump_error(packed, s, y, y.t[0] + past.h[0], end.q, end.v, acc, past.h[0]))
     if not error <= 1.0:
         past.status[REJECTIONS] += 1

@@ -111,7 +111,9 @@ def growth(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> floa
 
 
 @kernel
-def too_long(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, order: int) -> float:
-    """The error of a step that is too long to see slip grow, such that control by ``order`` shortens it; else 0."""
-    ratio = growth(packed, s, y, one, h)
+def too_long(ratio: float, order: int) -> float:
+    """The error of a step that is too long to see slip grow, such that control by ``order`` shortens it; else 0.
+
+    ``ratio``: its ``growth``.
+    """
     return float(ratio**order) if ratio > 1.0 else 0.0

@@ -16,7 +16,7 @@ from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
-from fricmb.integrate.step.slip_growth import too_long
+from fricmb.integrate.step.slip_growth import growth, too_long
 
 #: Relative round-off of a number.
 ROUND_OFF = 2.3e-16
@@ -87,7 +87,7 @@ def step_error(
             size_z = max(size_z, abs(one.w.z[j, a]))
         worst = max(worst, abs(e_z) / size_z)
     worst = max(worst, law_defect(packed, s, y, one, acc, h))
-    worst = max(worst / acc.rtol[0], too_long(packed, s, y, one, h, n_s))
+    worst = max(worst / acc.rtol[0], too_long(growth(packed, s, y, one, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     return float(max(worst, unseen_force(packed, y, one, acc, h)))
 
