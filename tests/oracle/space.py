@@ -17,7 +17,7 @@ import fricmb as fm
 
 from .judge import Case
 from .laws import parts_of
-from .problem import Contact, OracleError, Problem
+from .problem import Contact, Problem
 from .turning import EZ, Body, Pose, Tree, about, axle, ball_joint, floor, wheel
 
 G = 9.81
