@@ -32,6 +32,7 @@ FOUND = {
     ("line", 3006): "exact structure: no step without a scale where springs alone are held by a varying normal force",
     ("modes", 31027): "slip that begins without a jump of its acceleration ended, and began again, 2e-12 later",
     ("modes", 31387): "the same where two contacts rub",
+    ("roller", 206): "a load passed through 0, and round-off of its friction was taken for slip that turns round",
     ("roller", 120004): "slip that sets out under falling friction: growth that was over within one step",
     ("stack", 3005): "Taylor steps: plates went with a belt whose velocity jumps",
     ("stack", 2026): "time stepping: contacts broke away on lines through the jumps of what holds them",

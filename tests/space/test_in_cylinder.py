@@ -69,6 +69,46 @@ def test_it_slides():
     assert sol.audit().ok
 
 
+BRISTLES = {"sigma0": 200.0, "mu_s": 0.3, "mu_k": 0.2, "v_s": 0.1}
+BENT = {
+    "LuGre": (
+        fm.laws.LuGre(sigma1=0.5, sigma2=0.1, **BRISTLES),
+        lambda r: 200.0 * r / (0.2 + 0.1 * np.exp(-((r / 0.1) ** 2))), 0.5, 0.1,
+    ),
+    "Dahl": (fm.laws.Dahl(sigma0=200.0, mu=0.3), lambda r: 200.0 * r / 0.3, 0.0, 0.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("law", BENT)
+@pytest.mark.parametrize("rise", [0.1, 1.0])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_it_rolls_on_bristles(law, rise, method):
+    """Round the wall nothing bends the bristles but round-off at first: they have no size of their own there."""
+    friction, torn, damped, viscous = BENT[law]
+    sol = fm.simulate(fm.models.ball_in_cylinder(law=friction, rise=rise), t_end=0.5, rtol=1e-8, method=method)
+    m, own, off, J = 0.05, 0.02, 0.13, 0.4 * 0.05 * 0.02**2
+
+    def rates(t, y):
+        r, v, w, z = y[:3], y[3:6], y[6:9], y[9:]
+        out = np.array([r[0], r[1], 0.0]) / off
+        around = np.array([-out[1], out[0], 0.0])
+        slip = v + np.cross(w, own * out)
+        slip = np.array([slip @ around, slip[2]])
+        bent = slip - torn(np.linalg.norm(slip)) * z
+        N = m * (v[0] ** 2 + v[1] ** 2) / off
+        along = -N * (200.0 * z + damped * bent + viscous * slip)
+        F = along[0] * around + [0.0, 0.0, along[1]]
+        return np.concatenate([v, (F - N * out) / m - [0, 0, G], np.cross(own * out, F) / J, bent])
+
+    speed = off * 9.0
+    start = np.concatenate([[off, 0, 0], [0, speed, rise], [0.0, rise / own, -speed / own], [0.0, 0.0]])
+    exact = solve_ivp(rates, (0, 0.5), start, method="DOP853", rtol=1e-11, atol=1e-14).y[:, -1]
+    there = sol.at([0.5])
+    np.testing.assert_allclose(vector(there, "ball", 0), exact[:3], atol=1e-9)
+    np.testing.assert_allclose(there["ball.omega"][:, 0], exact[6:9], atol=1e-6)
+    assert sol.audit().ok
+
+
 def test_it_falls_from_the_roof_of_a_level_tube():
     """Round a level tube without friction: contact is lost where v^2/r falls to g cos."""
     _, _, scene = tube(mu=0.0, axis=(0, 1, 0), when_lost="open")

@@ -18,7 +18,7 @@ from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle
+from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle, state_noise
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
 from fricmb.integrate.constrained.slip_growth import growth
@@ -109,6 +109,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         if used == 0 or one.found[0] > SLOW:
             formula.made[0] = 0.0
         if used > 0:
+            state_noise(mech, k, y, one, c, h, NEWTON)
             return True
         if fresh:
             return False
@@ -128,7 +129,7 @@ def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Flo
         size = max(formula.reach[i], abs(past.new[i] - formula.origin[i]), past.h[0] * formula.one.scale[i], 1e-290)
         worst = max(worst, abs(error[n + i]) / formula.one.scale[i], abs(error[i]) / size)
     for i in range(y.z.shape[0]):
-        worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), 1e-290))
+        worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), c.noise_z[i], 1e-290))
     return float(weight * worst / share)
 
 

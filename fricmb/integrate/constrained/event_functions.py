@@ -8,10 +8,11 @@ from fricmb.integrate.constrained.forces import call_joint, is_open, move
 from fricmb.integrate.constrained.load_kinks import BEFORE, BEHIND, law_side
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import lack, slip_speed, spare
+from fricmb.integrate.constrained.slip_rows import lack, plane, slip_speed, spare
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate.step.crossing import first_below
 
@@ -51,7 +52,10 @@ def triggers(
         if mode[c] == STICK:
             out.trigger[2 * c] = spare(mech, k, c, F, N, k.borne[0])
         else:
-            out.trigger[2 * c] = slip_speed(port.row, c, direction, F, g) + out.size[0] * lack(N[c], k.borne[0])
+            # away from rest slip has a direction of its own, and a force that passes through 0 none but round-off's
+            away = plane(mech, c) and k.form[c] == 0
+            speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
+            out.trigger[2 * c] = speed + out.size[0] * lack(N[c], k.borne[0])
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if is_open(mech, j):

@@ -109,7 +109,7 @@ def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float
             for a in range(d if y.mode[p] != OPEN else 0):
                 worst = max(worst, gap * force_off(k, y, st, row0, d, nz, j, a, gap, h) * st.x[2 * a + 1])
             for a in range(nz):
-                size = max(c.z[z0 + a], largest_in_step(y.z[z0 + a], st.Z, z0 + a), 1e-290)
+                size = max(c.z[z0 + a], largest_in_step(y.z[z0 + a], st.Z, z0 + a), c.noise_z[z0 + a], 1e-290)
                 worst = max(worst, rate_off(k, st, c, z0, d, nz, j, a, gap) / size)
     return worst
 

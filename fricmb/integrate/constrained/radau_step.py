@@ -14,9 +14,10 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
-from fricmb.integrate.constrained.slip_rows import aim, keep_held
+from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State
+from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.stage_predictor import lagrange
 
@@ -29,7 +30,7 @@ class Control(NamedTuple):
     for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts`` work done; ``longest`` (1,) step of all;
     ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
     time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s+1, n_z) space of
-    ``law_defect``.
+    ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter.
     """
 
     rtol: Floats
@@ -50,6 +51,7 @@ class Control(NamedTuple):
     weight: Floats2
     inertia: Floats
     rates: Floats2
+    noise_z: Floats
 
 
 def control_of(problem: Problem, st: Stages) -> Control:
@@ -59,7 +61,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         np.zeros(1), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), np.array([1.0, 0.0, 0.0]),
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), np.zeros(1), np.zeros(stops), np.zeros(n),
         np.zeros(2), np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros((s + 1, problem.n_z)),
+        np.zeros(n), np.zeros((s + 1, problem.n_z)), np.zeros(problem.n_z),
     )  # fmt: skip
 
 
@@ -73,6 +75,28 @@ def measure(c: Control, y: State, h: float, scale: Floats) -> None:
     for i in range(scale.shape[0]):
         here = max(c.v[i], abs(y.v[i]) + h * abs(y.a[i]), c.floor_v[i])
         scale[i] = max(here, 1e-4 * np.sqrt(energy / c.mass[i]), 1e-290)
+
+
+@kernel
+def state_noise(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, part: float) -> None:
+    """Sizes of internal states that are noise: ``part`` of what the slip of a step would bring them by.
+
+    Newton leaves slip velocities unknown by so much of the tolerance.  A bristle in a direction in which nothing moves
+    holds nothing else, and has no size of its own.
+    """
+    port = mech.port
+    for i in range(y.v.shape[0] if y.z.shape[0] > 0 else 0):
+        c.inertia[i] = 1.0 / st.scale[i] / st.scale[i]
+    for p in range(y.mode.shape[0]):
+        row0, z0 = port.row[p], port.z_start[p]
+        d, nz = port.row[p + 1] - row0, port.z_start[p + 1] - z0
+        for i in range(nz):
+            c.noise_z[z0 + i] = 0.0
+        for a in range(d if nz > 0 else 0):
+            slip = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia, mech.address))
+            smooth_force(port.laws, p, k.s, y.g, row0, d, y.N[p], y.z, z0, nz)
+            for i in range(nz):
+                c.noise_z[z0 + i] += part * h * abs(k.s.out[d + nz + (d + i) * (d + 1 + nz) + a]) * slip
 
 
 @kernel
@@ -134,6 +158,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
         keep_held(mech, y.mode, y.F, st.F[i])
     used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), y.mode, mech.address)
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
+    state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
 
 
@@ -145,7 +170,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
     last = before = 0.0
     for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.Z)):
         for a in range(start.shape[0]):
-            scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), 1e-290)
+            scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), c.noise_z[a], 1e-290)
             high, low = tab.top[0, 0] * start[a], tab.top[1, 0] * start[a]
             for j in range(s):
                 high += tab.top[0, j + 1] * part[j, a]
