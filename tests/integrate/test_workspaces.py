@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import fricmb as fm
+from fricmb._simulate._mechanics import prepare
+from fricmb.integrate import Tolerance
+from fricmb.integrate.methods import run_setup
+from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.named import integrators
 
 SCENES = {
     "lugre": lambda: fm.models.belt_oscillator(
@@ -40,6 +47,40 @@ def test_a_run_inside_another_changes_nothing(name, method):
     assert all(np.array_equal(one, alone) for one in inner)
     np.testing.assert_allclose(chunks.q[:, -1], fm.simulate(scene, **how).q[:, -1], rtol=1e-4, atol=1e-6)
     assert np.array_equal(motion(fm.simulate(scene, **how)), alone)
+
+
+def arrays(held):
+    """All numbers of nested tuples of arrays, one after another."""
+    return b"".join(a.tobytes() if isinstance(a, np.ndarray) else arrays(a) for a in (getattr(held, "_tuple", held)))
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_that_another_comes_between_is_the_same(name, method, monkeypatch):
+    """Between two calls of its kernels, as of another thread, the same problem is run from afar and looked at."""
+    monkeypatch.setattr(run_setup, "CHUNK", 64)
+    scene, tolerance = SCENES[name](), Tolerance(rtol=1e-6)
+    mechanics = prepare(scene, None, None)
+    start, problem = mechanics.start, mechanics.members[0].system.problem
+    shared = arrays(packed_of(problem))
+    integrator, other = integrators[method](), integrators["radau" if method == "collocation" else method]()
+    earlier = integrator.integrate(problem, start, 2.0, tolerance=tolerance)
+    called = []
+
+    def between(t):
+        called.append(t)
+        earlier.motion(np.linspace(0.0, 2.0, 9))
+        far = replace(start, q=start.q + 1e14, v=start.v + 1.0)
+        other.integrate(problem, far, 0.5, tolerance=Tolerance(rtol=1e-3))
+
+    def bits(progress):
+        run = integrator.integrate(problem, start, 20.0, tolerance=tolerance, progress=progress)
+        motion = run.motion(np.linspace(0.0, 20.0, 40))
+        return [np.asarray(x).tobytes() for x in (run.t, motion.q, motion.v, motion.F, run.transitions.t)]
+
+    assert bits(between) == bits(lambda t: None)
+    assert len(called) > 1
+    assert arrays(packed_of(problem)) == shared
 
 
 def test_without_prescribed_loads_a_run_takes_few_steps():

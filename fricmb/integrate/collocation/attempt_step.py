@@ -190,7 +190,7 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     if one.last[0] == y.t[0] and h <= one.last[1]:
         guess_forces(packed, y, one, h / one.last[1])
     weigh_inputs(packed, y, one, acc, h)
-    newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
+    newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     if ex.flags[OUTPUTS] > y.g.shape[0]:
         solved = exact_ports(packed, s, y, one, acc, slot, address)

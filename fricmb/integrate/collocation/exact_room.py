@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -128,11 +130,17 @@ def _exact(problem: Problem, s: int) -> Exact:
     }))  # fmt: skip
 
 
-def exact_of(problem: Problem, s: int, safety: float, exact_up_to: float | None) -> Exact:
-    """The room of a problem with s nodes, its tables kept for the next run."""
-    found = once_per_problem(problem, ("exact", s, exact_up_to), lambda: _exact(problem, s))
+@contextmanager
+def exact_lent(problem: Problem, s: int, safety: float, exact_up_to: float | None) -> Iterator[Exact]:
+    """A room of the problem with s nodes, its tables kept for the next run; nobody else has it meanwhile."""
+    free: list[Exact] = once_per_problem(problem, ("exact", s, exact_up_to), list)
+    try:
+        found = free.pop()  # of several threads one gets it
+    except IndexError:
+        found = _exact(problem, s)
     found.par[0] = safety
     found.par[1] = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
     found.par[2] = np.inf
     found.low[:] = 0.0
-    return found
+    yield found
+    free.append(found)

@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from fricmb.integrate.collocation.attempt_step import exact_attempt
-from fricmb.integrate.collocation.exact_room import exact_of
+from fricmb.integrate.collocation.exact_room import exact_lent
 from fricmb.integrate.collocation.finish_step import exact_error, exact_finish, exact_record
 from fricmb.integrate.collocation.root_along_step import exact_root
 from fricmb.integrate.collocation.sample import sample_exact
@@ -96,12 +96,12 @@ class ExactRun(RowTrajectory):
         energies: bool,
     ) -> None:
         packed, problem = packed_of(self.problem), self.problem
-        exact = exact_of(problem, self._nodes, 1.0, self._exact_up_to)
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
-        sample_exact(
-            packed, workspace.s, workspace.y, exact, self._values, self._mode, packed.breakpoints, index, t, side, out,
-            modes, sizes, pivots, addresses("complete"),
-        )  # fmt: skip
+        with exact_lent(problem, self._nodes, 1.0, self._exact_up_to) as exact:
+            sample_exact(
+                packed, workspace.s, workspace.y, exact, self._values, self._mode, packed.breakpoints, index, t, side,
+                out, modes, sizes, pivots, addresses("complete"),
+            )  # fmt: skip
 
 
 def run_general(
@@ -113,10 +113,12 @@ def run_general(
     varies = bool(np.any(contacts.normal != 0))
     plain = not varies and not np.any(contacts.law != LAW_CONSTANT)
     nonlinear = len(problem.elements.table.address) > 0 or varies
-    exact = exact_of(problem, s, safety, exact_up_to)
-    columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
-    steps = exact_step_workspace(problem, exact, lambda: exact_step(problem, exact))
-    with run_workspace(problem) as workspace, steps as (one,):
+    with (
+        exact_lent(problem, s, safety, exact_up_to) as exact,
+        exact_step_workspace(problem, exact, lambda: exact_step(problem, exact)) as (one,),
+        run_workspace(problem) as workspace,
+    ):
+        columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
         run = Collector(problem, start, t_end, workspace, one, places=places(bool(plain), nonlinear), columns=columns)
         set_accuracy(run, tolerance)
         run.made = partial(ExactRun, exact=(s, exact_up_to))

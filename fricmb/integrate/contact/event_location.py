@@ -85,7 +85,7 @@ def locate(
         copy_state(y, end)
         if not finish(packed, s, end, one, acc, step, address):
             return -2
-        sooner = find_changing_contact(packed, s, y, end, one, found, address)
+        sooner = find_changing_contact(packed, s, y, end, one, acc, found, address)
         if sooner >= 0 and sooner != contact and found[0] * step < step - 4.0 * t_unit:
             contact = sooner
             hi = step

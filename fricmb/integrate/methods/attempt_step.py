@@ -112,7 +112,7 @@ def advance(
     copy_state(y, end)
     if not finish(packed, s, end, one, acc, h, address):
         return incomplete(end)
-    contact = find_changing_contact(packed, s, y, end, one, clock.found, address)
+    contact = find_changing_contact(packed, s, y, end, one, acc, clock.found, address)
     wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
     if one.exact.ladder.shape[0] > 0:
         wanted = min(wanted, one.exact.par[CAP])

@@ -72,7 +72,7 @@ class Collector:
         self.natural_v, self.natural_q = natural_scales(
             problem, self.packed, self.scratch, start.t, t_end - start.t, start.q
         )
-        self.packed.ports.noise[:] = NOISE * np.max(self.natural_v, initial=0.0)
+        self.acc.noise[0] = NOISE * np.max(self.natural_v, initial=0.0)
         fill_rest(self.rest, self.packed)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
         self.chunks = Chunks(self.rows, "values", "kind", "mode")

@@ -69,7 +69,7 @@ def implicit_step(problem: Problem, tableau: Tableau) -> OneStep:
 def made(problem: Problem) -> RunWorkspace:
     """Empty arrays for a run."""
     n, nc, nz = problem.n, problem.n_c, problem.n_z
-    floats = [np.zeros(size) for size in (1, n, n, nz, nc, n, n, n)]
+    floats = [np.zeros(size) for size in (1, n, n, nz, nc, n, n, n, 1)]
     stops = np.zeros(problem.signals.breakpoints.size)
     h, usual, longest = (np.zeros(1) for _ in range(3))
     clock = Clock(h, usual, np.zeros(2), longest, stops, np.zeros(2, np.int64), np.zeros(2), np.zeros(2))

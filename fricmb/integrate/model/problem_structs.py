@@ -30,8 +30,7 @@ class Ports(NamedTuple):
     """Contacts.
 
     ``var`` (n_c,) numbers those with a varying normal force, -1 for the others; ``acts``: both bodies feel it;
-    D = W^T M^-1 W; ``soft`` (1,) relative softening of stuck contacts whose forces would not be determined;
-    ``noise`` (n_c,) relative velocities that are nothing beside what the scene's forces bring (set at the start).
+    D = W^T M^-1 W; ``soft`` (1,) relative softening of stuck contacts whose forces would not be determined.
     """
 
     row: Ints
@@ -49,7 +48,6 @@ class Ports(NamedTuple):
     var: Ints
     acts: Codes
     soft: Floats
-    noise: Floats
 
 
 class Spread(NamedTuple):
@@ -124,7 +122,6 @@ def _pack(problem: Problem) -> Packed:
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
         (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([softness(problem)]),
-        np.zeros(problem.n_c),
     )  # fmt: skip
     spread = Spread(
         problem.elements.f_start, problem.elements.spread_start, problem.elements.spread_dof,

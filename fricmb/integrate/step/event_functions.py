@@ -18,7 +18,7 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.radau_step import Accuracy, OneStep
 
 #: A slip speed below this part of the velocities that it is the difference of is round-off: the slip begins; so does a
 #: normal force below this part of what it reaches in the step.
@@ -27,7 +27,7 @@ BEGINS = 1e-13
 
 @block
 def find_changing_contact(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, found: Floats, address: Ints
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, found: Floats, address: Ints
 ) -> int:
     """Contact that changes its mode first within the step just solved, or -1; ``found`` (1,) about where, in (0, 1].
 
@@ -44,7 +44,7 @@ def find_changing_contact(
     for k in range(y.mode.shape[0]):
         x = 2.0
         if packed.ports.law[k] != LAW_SMOOTH and y.mode[k] == SLIP:
-            x = slip_crossing(packed, y, one, k)
+            x = slip_crossing(packed, y, one, acc, k)
         elif y.mode[k] == STICK:
             x = cone_crossing(packed, s, y, end, one, k)
         if packed.ports.var[k] >= 0:
@@ -56,7 +56,7 @@ def find_changing_contact(
 
 
 @kernel
-def slip_crossing(packed: Packed, y: State, one: OneStep, k: int) -> float:
+def slip_crossing(packed: Packed, y: State, one: OneStep, acc: Accuracy, k: int) -> float:
     """Where the speed of a contact that slips first passes 0; 2 where it does not.
 
     Slip that only begins, at 0 up to round-off, rises from there, whatever the polynomial makes of its first moment:
@@ -64,7 +64,7 @@ def slip_crossing(packed: Packed, y: State, one: OneStep, k: int) -> float:
     """
     row0 = packed.ports.row[k]
     first = magnitude(packed.ports.row, k, y.g)
-    grain = BEGINS * y.size[row0] + 1e-4 * packed.ports.noise[k]
+    grain = BEGINS * y.size[row0] + 1e-4 * acc.noise[0]
     begins = first <= grain
     for j in range(one.tab.c.shape[0]):
         one.margin[j] = one.w.r[j, k] + (grain if begins else 0.0)

@@ -11,7 +11,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_state, set_time
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.model.problem_structs import Packed, Ports
+from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.contact_unknowns import PortState, port_state
@@ -26,7 +26,8 @@ from fricmb.integrate.step.tableau import Tableau
 class Accuracy(NamedTuple):
     """Tolerance and running scales: ``rtol`` (1,), maxima of |q|, |v| (n,), |z| (n_z,), slip speed (n_c,), floors.
 
-    ``grain`` (n,) round-off of velocities.
+    ``grain`` (n,) round-off of velocities; ``noise`` (1,) relative velocity that is nothing beside what the scene's
+    forces bring in this run.
     """
 
     rtol: Floats
@@ -37,6 +38,7 @@ class Accuracy(NamedTuple):
     floor_q: Floats
     floor_v: Floats
     grain: Floats
+    noise: Floats
 
 
 class OneStep(NamedTuple):
@@ -84,7 +86,7 @@ def widest(x: Floats) -> float:
 
 
 @kernel
-def newton_tolerances(ports: Ports, acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
+def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
     """Accuracy to which a step is solved: of velocities (n,), of relative ones and states ``tol`` (n_c + n_z,)."""
     top = widest(acc.v)
     relative = max(part * acc.rtol[0], 1e-14)
@@ -96,7 +98,7 @@ def newton_tolerances(ports: Ports, acc: Accuracy, h: float, y: State, tol: Floa
         scale[i] = relative * here
     n_c = acc.r.shape[0]
     for k in range(n_c):
-        tol[k] = relative * max(acc.r[k], 1e-8 * moving, ports.noise[k], 1e-290)
+        tol[k] = relative * max(acc.r[k], 1e-8 * moving, acc.noise[0], 1e-290)
     for a in range(y.z.shape[0]):
         tol[n_c + a] = relative * max(acc.z[a], abs(y.z[a]) + h * abs(y.zd[a]))
 
@@ -121,7 +123,7 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
         st.t[i] = y.t[0] + tab.c[i] * h
         for j in range(tab.c.shape[0]):
             st.hA[i, j] = h * tab.A[i, j]
-    newton_tolerances(packed.ports, acc, h, y, one.tol, one.scale, 1e-3)
+    newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
     found = start_on_last(packed, y, tab, st, w, one.last, h) and solve(packed, s, y, one, address)
     if not found:
         start_at_rest(packed, y, tab, st, w, h)
@@ -158,7 +160,7 @@ def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
             for a in range(d):
                 slope = abs(w.L[w.F.shape[0] - 1, k, a, d + 1 + i])
                 moved = max(moved, h * ports.D[row0 + a, row0 + a] * slope)
-            one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, packed.ports.noise[k]) / moved, 1e290)
+            one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, acc.noise[0]) / moved, 1e290)
 
 
 @block
