@@ -56,7 +56,8 @@ def reasons():
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
-    for function in (failure_text.failure_text, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
+    mechanisms = failure_text.failure_text, failure_text._none_found
+    for function in (*mechanisms, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
             text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
             if text and text.strip("."):

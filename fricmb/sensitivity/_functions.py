@@ -165,6 +165,9 @@ def _chained(expression: Any, slopes: dict[Any, dict[int, Any]]) -> dict[int, An
     for symbol in sorted(expression.free_symbols & slopes.keys(), key=str):
         # a jump is a transition of its own, not a slope
         slope = sympy.diff(expression, symbol).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
+        # what SymPy's printer would simplify first, for seconds
+        slope = slope.rewrite(sympy.Heaviside, sympy.Piecewise)
+        slope = slope.replace(sympy.ITE, lambda a, b, c: sympy.Or(sympy.And(a, b), sympy.And(sympy.Not(a), c)))
         if slope != 0:
             for j, inner in slopes[symbol].items():
                 terms.setdefault(j, []).append(slope * inner)

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import SLIP, STICK, Floats, Ints
+from fricmb.integrate.problem import STICK, Floats, Ints
 from fricmb.sensitivity._collocation import Formula, radau, step_maps
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._found import whole
 from fricmb.sensitivity._landings import at_rest, left_out
 from fricmb.sensitivity._phases import BEFORE, Phases
+from fricmb.sensitivity._poles import Poles
 
 #: Stages of the steps, and of the two formulas whose difference tells how fine they have to be.
 STAGES, COARSE = 7, (2, 3)
@@ -27,8 +28,8 @@ _LOST, _BEGIN = 0.5, 1e-7
 #: Parts of a step whose directions of slip tell, by a polynomial, that at the begin; weights for that.
 _AFTER = np.array([0.25, 0.5, 0.75, 1.0])
 _TO_BEGIN = np.array([4.0, -6.0, 4.0, -1.0])
-#: Slip speeds that change by more in a step may be near a pole of friction.
-_DOUBLES = 2.0
+#: Ellipses of poles that may lie before the first node of the coarse formulas and be seen by none.
+_UNSEEN = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +62,7 @@ class Stepper:
         self.sets_out = np.zeros(phases.t.size - 1, dtype=bool)
         self.rests = at_rest(equations, phases, sample)
         self.turning = [(k, begins) for k, begins, _ in self.rests if equations.contacts[k].d > 1]
+        self.poles = Poles(equations, phases, sample, self.rests)
         for k, begins, _ in self.rests:
             if k in self.varying and equations.contacts[k].d == 1:
                 self.sets_out |= begins
@@ -80,12 +82,12 @@ class Stepper:
         for own in self._parts(STAGES, mesh.t.size):
             yield from self.maps(formula, mesh.t[own], mesh.h[own], mesh.phase[own])
 
-    def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> tuple[Floats, Any]:
+    def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats, near: Any) -> tuple[Floats, Any]:
         """How far the maps of two coarse formulas are apart (n_t,), and where steps are so long that this says nothing.
 
         What vibrates many times in a step both damp out, and agree: there the volume of states is lost, which changes
         like the exponential of the trace of the slopes (Liouville).  Where slip sets out, friction may fall within a
-        slip speed that is passed before the first node: see :meth:`_layers`.
+        slip speed that is passed before the first node, and a pole that is ``near`` (n_t,) may be: see :meth:`_layers`.
         """
         low, high = (radau(s) for s in COARSE)
         e, c = self.equations, np.concatenate([low.c[:-1], high.c])
@@ -101,23 +103,10 @@ class Stepper:
             traces = traces + np.trace(rates[..., 2 * e.n : e.n_y], axis1=2, axis2=3)
             blind.append(kept < h[own] * (traces[:, low.c.size - 1 :] @ high.A[-1]) - _LOST)
         off = np.concatenate(found)
-        first = np.flatnonzero(self.sets_out[phase] & (t == self.phases.t[phase]))
+        first = np.flatnonzero((self.sets_out[phase] & (t == self.phases.t[phase])) | near)
         if first.size:
             off[first] = np.maximum(off[first], self._layers(t[first], h[first], phase[first], scale))
         return off, np.concatenate(blind)
-
-    def steep(self, t: Floats, h: Floats, phase: Ints) -> Any:
-        """Steps (n_t,) in which a slip speed that friction depends on more than doubles or halves.
-
-        Friction may have a pole at a slip speed of little less than 0.
-        """
-        found = np.zeros(t.size, dtype=bool)
-        if self.varying:
-            g = self.sample(np.concatenate([t, t + h])).g
-            for k in self.varying:
-                r = np.linalg.norm(g[self.equations.rows(k)], axis=0).reshape(2, -1)
-                found |= (self.phases.mode[k, phase] == SLIP) & (r.max(axis=0) > _DOUBLES * r.min(axis=0))
-        return found
 
     def _along(self, off: Floats, t: Floats, h: Floats, phase: Ints) -> Floats:
         """Differences of maps (n_t, n_y, n_y + n_p) for what derivatives there may be at the begin of each step.
@@ -192,9 +181,12 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     for number in range(_ROUNDS):
         if not t.size:
             break
-        off, blind = stepper.misses(t, h, phase, scale)
-        steep = stepper.steep(t, h, phase)
-        limit = np.where(steep, near_pole, entire)
+        rho = stepper.poles.ellipses(t, h, phase, small)
+        off, blind = stepper.misses(t, h, phase, scale, rho < _UNSEEN)
+        steep = stepper.poles.doubling(t, h, phase, stepper.varying)
+        by_pole = small * rho ** (fine.order - coarse.order)
+        limit = np.minimum(np.where(steep, near_pole, entire), by_pole)
+        steep |= by_pole < entire
         # what does not fall when steps are divided is round-off of the dense output, which no mesh removes
         bad = (((off > limit) & (off < _FALLS * before)) | blind) & (number < _ROUNDS - 1)
         kept.append((t[~bad], h[~bad], phase[~bad]))

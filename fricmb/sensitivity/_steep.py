@@ -23,7 +23,9 @@ def steep(e: Equations, stepper: Stepper, mesh: Mesh) -> Iterator[tuple[int, flo
     tolerance of the largest, and so late or early by that over r', makes the map of states off by d times that time.
     """
     varying = [k for k in stepper.varying if e.contacts[k].d == 1]
-    at = np.flatnonzero(stepper.steep(mesh.t, mesh.h, mesh.phase)) if varying else np.zeros(0, dtype=np.int64)
+    if not varying:
+        return
+    at = np.flatnonzero(stepper.poles.doubling(mesh.t, mesh.h, mesh.phase, stepper.varying))
     if not at.size:
         return
     edges, phase = np.concatenate([mesh.t[at], mesh.t[at] + mesh.h[at]]), np.tile(mesh.phase[at], 2)

@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import time
 from dataclasses import replace
 from types import SimpleNamespace
@@ -12,7 +13,9 @@ from numba import njit
 from numba.core import event
 
 from tests.oracle.campaign import make
-from tests.oracle.judge import CompileClock, Worker, judge, truth
+from tests.oracle.judge import CompileClock, Worker, attempt, judge, truth
+from tests.oracle.motion import Field
+from tests.oracle.problem import SLIP
 from tests.oracle.random_scenes import KINDS, generate
 from tests.oracle.shrink import BAD, smaller
 from tests.oracle.space import Bodies, Link
@@ -149,3 +152,30 @@ def test_friction_without_a_load_is_not_one_that_drives():
     verdict = judge(truth(make({}, generate("tree", 61007))), "auto")
     assert verdict.kind != "stopped"
     assert verdict.ratio < 100.0
+
+
+@pytest.mark.parametrize("seed", [106, 120, 203])
+def test_sleeve_that_jams_says_how_much_friction_it_bears(seed):
+    """Its load N = f(mu N) is convex: there is a solution for the largest x / f(x) of its friction, and for less."""
+    case = make({}, generate("tree", seed))
+    p = case.problem
+    field = Field(p, [SLIP], [1.0], (0.0, p.t_end))
+    state = np.concatenate([p.q, p.v])
+
+    def share(x):
+        return x / field.loads(0.0, p.q, p.v, field.under(0.0, state, [x])[0])[0]
+
+    most = max(share(x) for x in np.geomspace(1e-3, 1e8, 4000))
+    assert most < 0.9
+    found = attempt(case.scene, "radau", 1e-6, np.array([0.0, 0.01]), 0.01, case.signals)
+    assert found.kind == "stopped"
+    said = re.search(r"friction of 'j0' has no solution.* up to some (0\.\d\d) of", found.why)
+    assert float(said[1]) == pytest.approx(most, abs=0.01)
+
+
+def test_jammed_whatever_a_contact_at_rest_does():
+    """A dry hinge at rest on a guide that jams: held, or let go to either side, there is no solution."""
+    case = make({}, generate("tree", 136))
+    found = attempt(case.scene, "radau", 1e-6, np.array([0.0, 0.01]), 0.01, case.signals)
+    assert "no combination of stick and slip" in found.why
+    assert "(at rest: 'j1'); for 3 of them no forces of friction were found" in found.why

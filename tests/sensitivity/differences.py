@@ -54,11 +54,8 @@ def derived(sol: Any, name: str) -> np.ndarray:
     return np.array([*(sol.sensitivity(s, name)[-1] for s in signals), *(e.sensitivity(name) for e in sol.events)])
 
 
-def surest(
-    scene: Any, name: str, *, steps: Sequence[float] = (2e-3, 2e-4), **options: Any
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """A difference of runs and how sure it is: of two steps the better, and no surer than the two agree."""
-    found = [difference(scene, name, step=step, **options) for step in steps]
+def agreed(found: Sequence[tuple[np.ndarray, np.ndarray] | None]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Of differences of two steps the better, and no surer than the two agree."""
     sure = sorted((one for one in found if one is not None), key=lambda one: one[1].max())
     if len(sure) < 2:
         return sure[0] if sure else None
@@ -66,18 +63,27 @@ def surest(
     return value, np.maximum(unsure, np.maximum(np.abs(value - other) - less, 0.0))
 
 
-def shares_off(sol: Any, names: Sequence[str], **options: Any) -> dict[str, float]:
-    """Of derivatives of a run how far they are from the surest differences, less what these are unsure by.
+def shares_off(
+    sol: Any, names: Sequence[str], *, steps: Sequence[float] = (2e-3, 2e-4), enough: float = 0.0, **options: Any
+) -> dict[str, float]:
+    """Of derivatives of a run how far they are from differences of runs, less what these are unsure by.
 
-    In shares of the largest; by parameters whose differences mean anything.
+    In shares of the largest; by parameters whose differences mean anything.  Of the steps of differences the second is
+    taken where the first leaves open whether derivatives are within ``enough``.
     """
     found = {}
     for name in names:
-        best = surest(sol.scene, name, **options)
-        if best is not None:
+        own, differences = derived(sol, name), []
+        for step in steps:
+            differences.append(difference(sol.scene, name, step=step, **options))
+            best = agreed(differences)
+            if best is None:
+                continue
             value, unsure = best
-            error = np.maximum(np.abs(derived(sol, name) - value) - 3.0 * unsure, 0.0).max()
-            found[name] = float(error / max(np.abs(value).max(), 1e-2))
+            off, size = np.abs(own - value), max(float(np.abs(value).max()), 1e-2)
+            found[name] = float(np.maximum(off - 3.0 * unsure, 0.0).max() / size)
+            if (off + 3.0 * unsure).max() < enough * size:
+                break
     return found
 
 

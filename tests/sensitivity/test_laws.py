@@ -30,7 +30,7 @@ def test_law(name, situation):
     scene, names = _of(name, situation)
     t_end = SITUATIONS[situation].t_end
     sol = fm.simulate(scene, t_end=t_end, rtol=_RTOL, sensitivities=names)
-    off = shares_off(sol, names, t_end=t_end)
+    off = shares_off(sol, names, enough=1e3 * _RTOL, t_end=t_end)
     assert off
     assert max(off.values()) < max(said(sol), default=1e3 * _RTOL), (off, sol.stats.notes)
 

@@ -109,3 +109,26 @@ def test_what_a_sleeve_does_not_take():
     ):
         with pytest.raises(fm.FricmbError, match="must be a finite number"):
             make()
+
+
+@pytest.mark.parametrize(("mu", "share"), [(0.8, 0.5), (1.6, 0.25), (0.5, 0.8)])
+def test_guide_that_jams_says_how_much_friction_it_bears(mu, share):
+    """Friction at a guide, d off the centre: N = max(m g, 2 d/length mu N) has no solution once 2 d mu > length."""
+    box = SPACE.RigidBody(
+        "box", mass=2.0, inertia=(0.1, 0.1, 0.1), points={"rail": (0.0, 0.0, -0.5)}, position=(0.0, 0.0, 0.5),
+        velocity=(1.0, 0.0, 0.0),
+    )  # fmt: skip
+
+    def scene(part):
+        rail = SPACE.Prismatic(
+            "rail", box.point("rail"), SPACE.ground_point(0, 0, 0), axis=(1, 0, 0), length=0.4,
+            friction=fm.laws.Coulomb(mu_s=part * mu),
+        )  # fmt: skip
+        return fm.Scene("jammed", [box, rail, fm.Gravity("g", acceleration={"z": -9.81})])
+
+    said = f"friction of 'rail' has no solution.* up to some {share:.2f} of"
+    for method in ("bdf", "radau"):
+        with pytest.raises(fm.IntegrationError, match=said):
+            fm.simulate(scene(1.0), t_end=0.01, method=method)
+        sol = fm.simulate(scene(0.99 * share), t_end=0.01, method=method)
+        assert sol.normal_force("rail")[0] == pytest.approx(2.0 * 9.81)

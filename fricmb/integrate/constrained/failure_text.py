@@ -21,8 +21,10 @@ from fricmb.integrate.run.outcomes import (
 )
 
 
-def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
+def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     """The reason for a code of failure."""
+    if code in (FAIL_MODES, FAIL_MARGIN) and k.search[1] > 0.0:
+        return _none_found(problem, k, y, out)
     names, joints = problem.contact_names, mechanism_of(problem).joints
     port = int(np.argmin(out.margin)) if problem.n_c else -1
     least = float(out.margin.min(initial=1.0))
@@ -62,6 +64,26 @@ def failure_text(code: int, problem: Problem, y: Any, out: Any) -> str:
     if code == FAIL_PROJECT:
         return "velocities could not be brought onto the constraints of what sticks"
     return f"the step size fell to round-off: the solution is not smooth here, or grows without bound{stuck}"
+
+
+def _none_found(problem: Problem, k: Any, y: Any, out: Any) -> str:
+    """What a decision has found of combinations of stick and slip that have no solution, not even by shares."""
+    share, combinations = float(k.search[0]), int(k.search[1])
+    at_rest = _at_rest(problem, y, out)
+    if at_rest:
+        return (
+            f"no combination of stick and slip satisfies friction and reactions together{at_rest}; for"
+            f" {combinations} of them no forces of friction were found at all (Painleve, jamming)"
+        )
+    of_joints = np.isin(np.arange(problem.n_c), mechanism_of(problem).joints.port)
+    slips = (np.asarray(y.mode) == SLIP) & of_joints
+    jammed = slips & (out.margin <= 0.0)
+    names = ", ".join(repr(problem.contact_names[c]) for c in np.flatnonzero(jammed if jammed.any() else slips))
+    return (
+        f"the friction of {names} has no solution in slip as it is: the reaction grows with the friction that it causes"
+        f" faster than friction sheds it (Painleve, jamming); with up to some {share:.2f} of the coefficient there is"
+        " one, or with springs in place of the joint"
+    )
 
 
 def _stuck(problem: Problem, y: Any) -> str:

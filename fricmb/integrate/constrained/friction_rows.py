@@ -8,8 +8,8 @@ from fricmb.integrate.constrained.jacobian_layers import Layers, add
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.plane_slip import add_along, add_found, plane_residual
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick
-from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick, friction_coefficient
+from fricmb.integrate.model.law_values import magnitude, smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats, Ints
 
 
@@ -38,7 +38,7 @@ def friction_residual(
             a0, a1 = port.z_start[c], port.z_start[c + 1]
             smooth_force(port.laws, c, k.s, g, first, d, load, z, a0, a1 - a0)
             for a in range(d):
-                r[r0 + first + a] = F[first + a] - (0.0 if mode[c] == OPEN else k.s.out[a])
+                r[r0 + first + a] = F[first + a] - (0.0 if mode[c] == OPEN else k.share[0] * k.s.out[a])
             for i in range(a1 - a0):
                 zd[a0 + i] = k.s.out[d + i]
         elif mode[c] == STICK:
@@ -48,7 +48,7 @@ def friction_residual(
             for a in range(first, first + d):
                 r[r0 + a] = F[a]
         elif d == 1:
-            mu, _, _ = coefficient(port, port.laws, c, k.s, n[first] * g[first], load)
+            mu, _, _ = friction_coefficient(mech, k, c, n[first] * g[first], load)
             r[r0 + first] = F[first] + n[first] * mu * load
         else:
             plane_residual(mech, k, c, mode, n, F, g, rate, load, r, r0, full)
@@ -75,7 +75,7 @@ def add_friction(
                 add(order, L.A1, row + a, row + a, 1.0)
         elif last - first == 1:
             add(order, L.A1, row, row, 1.0)
-            mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, n[first] * g[first], load)
+            mu, by_speed, by_load = friction_coefficient(mech, k, c, n[first] * g[first], load)
             if full and by_speed != 0.0:
                 add_slip(mech, k, c, 0, lam, L, row, by_speed * load, full, mech.address)
             if N[c] > 0.0 or port.joint[c] >= 0:
@@ -106,7 +106,7 @@ def add_smooth(
         for j in range(width):
             # add_slip and add_load call templates: evaluated anew for every entry
             smooth_force(port.laws, c, k.s, g, first, d, load, z, a0, nz)
-            slope = k.s.out[d + nz + i * width + j]
+            slope = k.s.out[d + nz + i * width + j] * (k.share[0] if i < d else 1.0)
             if slope == 0.0:
                 continue
             if j < d and full:

@@ -20,6 +20,8 @@ class Moving(NamedTuple):
     ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
     their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``friction_rows``);
     ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
+    ``share`` (1,) of friction that acts, less than 1 only on the way there (``friction_share``); ``search`` (2,) of a
+    decision that has found nothing: the largest share reached, and how many combinations have no solution;
     ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached;
     ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
     matrices for slip of 0, which leaves forces along directions that joints block open.
@@ -39,6 +41,8 @@ class Moving(NamedTuple):
     form: Codes
     held: Floats
     part: Floats
+    share: Floats
+    search: Floats
     borne: Floats
     slight: Floats
 
@@ -93,5 +97,5 @@ def moving_of(problem: Problem) -> Moving:
         scratch, np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
-        np.zeros(problem.n_c), np.ones(1), np.zeros(2), np.zeros(problem.n_c),
+        np.zeros(problem.n_c), np.ones(1), np.ones(1), np.zeros(2), np.zeros(2), np.zeros(problem.n_c),
     )  # fmt: skip

@@ -15,8 +15,8 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.jacobian_layers import Layers, add
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, slip_speed
-from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, friction_coefficient, slip_speed
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import Codes, Floats, Ints
 
 
@@ -42,14 +42,14 @@ def plane_residual(
     if found and load > 0.0 and size > 0.0:
         # rate: slip velocity in a stage, its derivative where the port sets out
         along = slip_speed(port.row, c, n, F, rate) if full else 0.0
-        mu, _, _ = coefficient(port, port.laws, c, k.s, along, load)
+        mu, _, _ = friction_coefficient(mech, k, c, along, load)
         m = largest_part(port.row, c, n)
         for a in range(first, last):
             r[r0 + a] = (F[m] * rate[a] - F[a] * rate[m]) / size
         r[r0 + m] = size - (mu * load if full else eased(k, c, mu * load))
         return
     speed = magnitude(port.row, c, g)
-    mu, _, _ = coefficient(port, port.laws, c, k.s, speed, load)
+    mu, _, _ = friction_coefficient(mech, k, c, speed, load)
     for a in range(first, last):
         r[r0 + a] = F[a] + mu * load * (g[a] / speed if full and speed > 0.0 else n[a])
 
@@ -86,7 +86,7 @@ def add_found(
     along = 0.0
     for a in range(first, first + d):
         along -= F[a] / size * x[a]
-    mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, along if full else 0.0, load)
+    mu, by_speed, by_load = friction_coefficient(mech, k, c, along if full else 0.0, load)
     m = largest_part(port.row, c, n) - first
     n_m = -F[first + m] / size
     apart = along if abs(along) > k.slight[c] else k.slight[c]
@@ -113,7 +113,7 @@ def add_along(
     port = mech.port
     first, d = port.row[c], port.row[c + 1] - port.row[c]
     speed = magnitude(port.row, c, g)
-    mu, by_speed, by_load = coefficient(port, port.laws, c, k.s, speed, load)
+    mu, by_speed, by_load = friction_coefficient(mech, k, c, speed, load)
     turns = full and speed > 0.0
     for a in range(d):
         add(mech.order, L.A1, row + a, row + a, 1.0)

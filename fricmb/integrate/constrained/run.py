@@ -69,7 +69,8 @@ def run_mechanism(
             _settle(workspace, problem, start, t_end, reach)
             code = chunks.fill(go_on, y.t, memory, progress)
         chunks.take()
-        failure = None if code == DONE else ended() or (None if code == FULL else failure_text(code, problem, y, out))
+        failure = None if code == DONE else ended()
+        failure = failure or (failure_text(code, problem, k, y, out) if code not in (DONE, FULL) else None)
         last, counts = end_of(y), control.counts.copy()
     values, span, force, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
     if chunks.broken:

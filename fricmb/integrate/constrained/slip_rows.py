@@ -11,7 +11,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.model.friction_cone import cone_margin
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
@@ -24,6 +24,13 @@ SLIGHT = 1e-7
 def plane(mech: Mech, c: int) -> bool:
     """Whether port c slips in two or three directions under a set-valued law."""
     return bool(mech.port.row[c + 1] - mech.port.row[c] >= 2 and mech.port.law[c] != LAW_SMOOTH)
+
+
+@kernel
+def friction_coefficient(mech: Mech, k: Moving, c: int, speed: float, load: float) -> tuple[float, float, float]:
+    """mu, dmu/dr, dmu/dN of port c, as far as friction acts (``friction_share``)."""
+    mu, by_speed, by_load = coefficient(mech.port, mech.port.laws, c, k.s, speed, load)
+    return k.share[0] * mu, k.share[0] * by_speed, k.share[0] * by_load
 
 
 @kernel

@@ -8,7 +8,9 @@ from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
 from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
-from fricmb.integrate.constrained.mode_decision import FOUND, SEVERAL, SLIPS_ON, decide, mark_rest
+from fricmb.integrate.constrained.mode_decision import decide, mark_rest
+from fricmb.integrate.constrained.mode_enumeration import FOUND, SEVERAL
+from fricmb.integrate.constrained.mode_trial import SLIPS_ON
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities

@@ -6,7 +6,9 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, react
 from fricmb.integrate.constrained.forces import move
-from fricmb.integrate.constrained.mode_decision import ARRIVES, FOUND, LENT, RESTED, SEVERAL, SLIPS_ON, decide
+from fricmb.integrate.constrained.mode_decision import decide
+from fricmb.integrate.constrained.mode_enumeration import FOUND, SEVERAL
+from fricmb.integrate.constrained.mode_trial import ARRIVES, LENT, RESTED, SLIPS_ON
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
@@ -130,6 +132,7 @@ def change_modes(
             y.n[row[port]] = -y.n[row[port]]
     code = decide(mech, k, w, y, part, forced, mech.address)
     if code != FOUND:
+        margins(mech, k, w, y, out, True, mech.address)
         return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     record_changes(mech.port, y.t[0], y, before, rec)
     if not bring_to_rest(mech, k, w, y, part):

@@ -1,0 +1,90 @@
+"""All combinations of stick and slip at an instant, one after the other, where a search by release has found none."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.friction_share import react_by_shares
+from fricmb.integrate.constrained.mode_trial import at_rest, ease, hold, largest_acceleration, release, set_out, wrong
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.slip_rows import plane
+from fricmb.integrate.constrained.state import Instant, State
+from fricmb.integrate.problem import SLIP, Codes, Ints
+
+#: Outcomes of a decision.
+FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
+#: Up to this many ports at rest every combination is tried where the search by release fails.
+ENUMERATED = 6
+
+
+@kernel
+def moves_alike(w: Instant, y: State, scale: float) -> bool:
+    """Whether accelerations are those of the combination found before."""
+    apart = 0.0
+    for i in range(y.a.shape[0]):
+        apart = max(apart, abs(y.a[i] - w.other[i]))
+    return bool(apart <= 1e-7 * scale)
+
+
+@kernel
+def solved_by_shares(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
+    """Whether friction that grows from nothing comes to all of it; counted in ``k.search`` where it does not."""
+    reached = react_by_shares(mech, k, w, y)
+    if reached < 1.0:
+        k.search[0] = max(k.search[0], reached)
+        k.search[1] += 1.0
+    return reached == 1.0
+
+
+@block
+def enumerate_modes(
+    mech: Mech, k: Moving, w: Instant, y: State, part: Codes, count: int, patient: bool, address: Ints
+) -> int:  # fmt: skip
+    """Try every combination of stick and the two directions of slip; the state is left at the first that holds.
+
+    Combinations that give the same accelerations are one solution: of joints that hold more than there is to hold,
+    forces alone are not determined.  ``patient``: where Newton's method does not converge, friction is let grow; counts
+    of these tries are left in ``k.search``.
+    """
+    k.search[:] = 0.0
+    if count > ENUMERATED:
+        return NO_SOLUTION
+    n_c = y.mode.shape[0]
+    found, kept = 0, -1
+    for number in range(3**count + 1):
+        # the last round returns to what was found
+        code, twice = number, False
+        if number == 3**count:
+            if found != 1:
+                break
+            code = kept
+        for c in range(n_c):
+            if at_rest(mech, y, c, part):
+                digit = code % 3
+                code //= 3
+                twice = twice or (digit == 2 and plane(mech, c))
+                if digit == 0:
+                    hold(mech, y, c, True)
+                elif plane(mech, c):
+                    release(mech, k, y, c)
+                else:
+                    y.mode[c] = SLIP
+                    y.n[mech.port.row[c]] = 1.0 if digit == 1 else -1.0
+        if twice or not (ease(mech, k, w, y) or (patient and solved_by_shares(mech, k, w, y))):
+            continue
+        scale = largest_acceleration(mech, k, y)
+        holds = True
+        for c in range(n_c):
+            if at_rest(mech, y, c, part) and wrong(mech, k, y, c, scale) > 0.0:
+                holds = False
+        if holds and number < 3**count and not (found > 0 and moves_alike(w, y, scale)):
+            found += 1
+            kept = number
+            for i in range(y.a.shape[0]):
+                w.other[i] = y.a[i]
+    set_out(mech, y)
+    if found == 0:
+        return NO_SOLUTION
+    k.search[:] = 0.0
+    return FOUND if found == 1 else SEVERAL

@@ -1,0 +1,117 @@
+"""One combination of stick and slip at an instant: put to the contacts, solved for, and what contradicts it."""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.accelerations import react
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, SLIGHT, aim, lack, lightness, plane, slip_speed, spare
+from fricmb.integrate.constrained.state import Instant, State
+from fricmb.integrate.model.friction_cone import stick_limit
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
+
+#: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT to rest while
+#: round-off of its slip is taken away (``transition``).
+SLIPS_ON, ARRIVES, RESTED, LENT = 0, 1, 2, 3
+#: Round-off of forces beside the limit of sticking.
+SLACK = 1e-10
+#: Round-off of slip accelerations beside the largest: in trees, and in loops, whose Jacobians are softened.
+CREEP, CREEP_IN_LOOPS = 1e-12, 1e-9
+#: Steps from the forces that hold to those of slip, where directions of slip are to be found.
+STEPS_OUT = 6
+
+
+@kernel
+def at_rest(mech: Mech, y: State, c: int, part: Codes) -> bool:
+    """Whether port c takes part in the decision."""
+    return bool(part[c] != SLIPS_ON and mech.port.law[c] != LAW_SMOOTH and y.mode[c] != OPEN)
+
+
+@kernel
+def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
+    """By how much port c contradicts its mode (0: not at all); y is complete."""
+    if y.mode[c] == STICK:
+        limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
+        force = magnitude(mech.port.row, c, y.F)
+        over = -spare(mech, k, c, y.F, y.N, k.borne[0])
+        return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
+    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne[0])
+    return against if against > (CREEP_IN_LOOPS if mech.port.soft[c] > 0.0 else CREEP) else 0.0
+
+
+@kernel
+def release(mech: Mech, k: Moving, y: State, c: int) -> None:
+    """Let port c slip, against the force that has held it."""
+    row = mech.port.row
+    if not plane(mech, c):
+        y.mode[c] = SLIP
+        y.n[row[c]] = -1.0 if y.F[row[c]] > 0.0 else 1.0
+        return
+    y.mode[c] = SETTING_OUT
+    force = magnitude(row, c, y.F)
+    k.held[c] = force
+    k.slight[c] = 0.0
+    for a in range(row[c + 1] - row[c]):
+        k.slight[c] += SLIGHT * force * lightness(mech, k, c, a, y.lam, mech.mass, mech.address)
+    for a in range(row[c], row[c + 1]):
+        y.n[a] = -y.F[a] / force if force > 0.0 else (1.0 if a == row[c] else 0.0)
+
+
+@kernel
+def hold(mech: Mech, y: State, c: int, anew: bool) -> None:
+    """Let port c stick; ``anew``: by no force yet.
+
+    Of ports that hold more than there is to hold Newton's changes are of least norm, so forces are, too, if they come
+    from 0; what they were before says nothing.
+    """
+    y.mode[c] = STICK
+    for a in range(mech.port.row[c], mech.port.row[c + 1] if anew else mech.port.row[c]):
+        y.F[a] = 0.0
+
+
+@kernel
+def ease(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
+    """As ``react``; where ports set out in a plane, along a path from the forces that held them.
+
+    Along it slip accelerations grow from 0 on the side where friction brakes; a root on the other is not met.
+    """
+    some = False
+    for c in range(y.mode.shape[0]):
+        some = some or y.mode[c] == SETTING_OUT
+    for part in range(1, STEPS_OUT if some else 1):
+        k.part[0] = part / STEPS_OUT
+        if not react(mech, k, w, y, False, mech.address):
+            k.part[0] = 1.0
+            return False
+    k.part[0] = 1.0
+    return bool(react(mech, k, w, y, False, mech.address))
+
+
+@kernel
+def set_out(mech: Mech, y: State) -> None:
+    """Ports that set out slip from now on, in the direction found; one without load follows its acceleration."""
+    row = mech.port.row
+    for c in range(y.mode.shape[0]):
+        if y.mode[c] == SETTING_OUT:
+            y.mode[c] = SLIP
+            aim(mech, y.mode, y.F, y.n)
+            if magnitude(row, c, y.F) == 0.0:
+                size = magnitude(row, c, y.ga)
+                for a in range(row[c], row[c + 1]):
+                    y.n[a] = y.ga[a] / size if size > 0.0 else y.n[a]
+
+
+@kernel
+def largest_acceleration(mech: Mech, k: Moving, y: State) -> float:
+    """Scale of slip accelerations: those there are, and those that friction could bring."""
+    value = 1e-290
+    for i in range(y.a.shape[0]):
+        value = max(value, abs(y.a[i]))
+    row = mech.port.row
+    for c in range(y.mode.shape[0]):
+        for a in range(row[c], row[c + 1]):
+            light = lightness(mech, k, c, a - row[c], y.lam, mech.mass, mech.address)
+            value = max(value, abs(y.ga[a]), abs(y.F[a]) * light)
+    return value
