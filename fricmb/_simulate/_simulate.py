@@ -97,7 +97,7 @@ def simulate(
     """
     begin = time.perf_counter()
     from fricmb._simulate._blas import blas_threads
-    from fricmb._simulate._watch import CompileWatch
+    from fricmb._simulate._compile_watch import CompileWatch
 
     with CompileWatch() as compiling, blas_threads(scene):
         from fricmb._simulate._arguments import (

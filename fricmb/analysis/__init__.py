@@ -3,7 +3,7 @@
 from fricmb.analysis._crossings import Crossing
 from fricmb.analysis._eigenvalues import Eigenvalues, StabilityMap, complex_eigenvalues, stability_map
 from fricmb.analysis._errors import AliasingWarning, AnalysisError
-from fricmb.analysis._ledger import EnergyLedger, Phase, energy_ledger
+from fricmb.analysis._losses import EnergyLedger, Phase, energy_ledger
 from fricmb.analysis._modes import ModalEnergy, modal_energy
 from fricmb.analysis._orders import OrderMap, order_map, sliding_speed
 from fricmb.analysis._paths import Path, compiled_force, cycle, path, pull, settling_distance

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.linalg import eigh
 
 from fricmb.analysis._errors import AnalysisError, Floats
-from fricmb.analysis._ledger import EnergyLedger, energy_ledger, motion_of, whole_system
 from fricmb.analysis._linearise import stiffness_without_friction
+from fricmb.analysis._losses import EnergyLedger, energy_ledger, motion_of, whole_system
 from fricmb.analysis._steady import SteadySliding
 from fricmb.system import System
 

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from fricmb._simulate._watch import CompileWatch
+from fricmb._simulate._compile_watch import CompileWatch
 from fricmb.bench._case import SceneCase
 from fricmb.bench._method import Method
 from fricmb.bench._metrics import Metrics, measure

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import fricmb as fm
-from fricmb._simulate._watch import CompileWatch
+from fricmb._simulate._compile_watch import CompileWatch
 from fricmb.bench._cell import Outcome, one_line
 from fricmb.bench._daes import DaeCase
 from fricmb.bench._metrics import Metrics

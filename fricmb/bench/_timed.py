@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-from fricmb._simulate._watch import CompileWatch
+from fricmb._simulate._compile_watch import CompileWatch
 
 _T = TypeVar("_T")
 

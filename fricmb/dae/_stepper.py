@@ -17,9 +17,9 @@ import math
 from typing import Any
 
 from fricmb.dae import _layout as L
-from fricmb.dae._choice import allowed, choose, norm_of_sum, test_factor
 from fricmb.dae._compile import kernel
 from fricmb.dae._predict import coefficients, predict, remember, weighted_norm
+from fricmb.dae._step_control import allowed, choose, norm_of_sum, test_factor
 
 _NEWTON_TOLERANCE = 0.03  # of the error test's 1
 _MAX_ITERATIONS = 4

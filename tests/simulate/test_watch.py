@@ -7,7 +7,7 @@ import pytest
 SCRIPT = """
 import numba
 from numba import cfunc, njit, types
-from fricmb._simulate._watch import CompileWatch
+from fricmb._simulate._compile_watch import CompileWatch
 
 with CompileWatch() as watch:
     @njit(types.float64(types.float64), cache=True)

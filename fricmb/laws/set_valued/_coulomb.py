@@ -61,13 +61,13 @@ class Coulomb(FrictionLaw):
 
     def coefficient(self, r: Any, normal_force: Any = 1.0) -> Any:
         """mu_k at every slip speed."""
-        from fricmb.laws._direct import constant
+        from fricmb.laws._without_sympy import constant
 
         return constant(self, r, self.slip_limit())
 
     def derivative(self, r: Any, normal_force: Any = 1.0) -> Any:
         """0 at every slip speed."""
-        from fricmb.laws._direct import constant
+        from fricmb.laws._without_sympy import constant
 
         return constant(self, r, 0.0)
 

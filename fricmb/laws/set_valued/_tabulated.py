@@ -81,8 +81,8 @@ class Tabulated(FrictionLaw):
         return self._curve(r, 1)
 
     def _curve(self, r: Any, which: int) -> Any:
-        from fricmb.laws._direct import speeds
         from fricmb.laws._pchip import pchip_evaluate
+        from fricmb.laws._without_sympy import speeds
 
         value = pchip_evaluate(self.parameter_block(), speeds(self, r))[which]
         return value if value.ndim else float(value)
