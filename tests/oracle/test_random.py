@@ -13,10 +13,11 @@ from numba import njit
 from numba.core import event
 
 from tests.oracle.campaign import make
-from tests.oracle.judge import CompileClock, Worker, attempt, judge, truth
+from tests.oracle.judge import CompileClock, Worker, attempt, judge, seen, truth
 from tests.oracle.motion import Field
 from tests.oracle.problem import SLIP
 from tests.oracle.random_scenes import KINDS, generate
+from tests.oracle.run import solve
 from tests.oracle.shrink import BAD, smaller
 from tests.oracle.space import Bodies, Link
 from tests.oracle.spec import case_of, from_data
@@ -179,3 +180,33 @@ def test_jammed_whatever_a_contact_at_rest_does():
     found = attempt(case.scene, "radau", 1e-6, np.array([0.0, 0.01]), 0.01, case.signals)
     assert "no combination of stick and slip" in found.why
     assert "(at rest: 'j1'); for 3 of them no forces of friction were found" in found.why
+
+
+def test_what_sticks_slips_no_more_where_a_step_has_ended():
+    """A dry hinge holds while what hangs on it swings: positions are moved onto joints, and velocities would slip."""
+    spec = generate("tree", 213)
+    spec.t_end = 0.32
+    true = truth(make({}, spec))
+    assert not true.marginal
+    assert {method: judge(true, method).kind for method in ("bdf", "radau")} == {"bdf": "right", "radau": "right"}
+
+
+def test_two_ball_joints_set_out_at_once():
+    """Against friction that is almost the same for any slip: it comes nearer as the slip needed for all of it falls."""
+    case = make({}, generate("tree", 168))
+    t = np.array([0.05, 0.1])
+    runs = [attempt(case.scene, method, 1e-9, t, 0.1, case.signals) for method in ("bdf", "radau")]
+
+    def smooth(contact, least):
+        def force(g, N, z):
+            r = math.sqrt(g @ g + least**2)
+            return -contact.mu(r, N) * N * g / r
+
+        return replace(contact, force=force)
+
+    for least in (1e-3, 1e-4):
+        contacts = tuple(smooth(c, least) for c in case.problem.contacts)
+        q, v = seen(case, t, solve(replace(case.problem, contacts=contacts, t_end=0.1), 1e-8)(t))
+        for run in runs:
+            assert np.abs(run.q - q).max() < 0.2 * least
+            assert np.abs(run.v - v).max() < 2.0 * least

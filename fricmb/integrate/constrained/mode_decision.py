@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.mode_enumeration import FOUND, NO_SOLUTION, enumerate_modes
 from fricmb.integrate.constrained.mode_trial import (
@@ -104,7 +105,8 @@ def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool
             y.F[:], y.lam[:], y.n[:] = forces, reactions, directions
         else:
             count -= 1
-    return not changed or ease(mech, k, w, y)
+    # back at a solution there is: on the way that has led there once, another may be met
+    return not changed or react(mech, k, w, y, False, mech.address)
 
 
 @kernel

@@ -18,7 +18,7 @@ from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
-from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.stage_predictor import lagrange
 
 
@@ -182,10 +182,16 @@ def error_of(c: Control, y: State, st: Stages) -> float:
 
 @kernel
 def settle(mech: Mech, k: Moving, w: Instant, end: State) -> bool:
-    """Move the end of a step onto the constraints; accelerations, reactions and friction forces that hold there."""
+    """Move the end of a step onto the constraints; accelerations, reactions and friction forces that hold there.
+
+    Where positions have moved, what sticks would slip, and each next step begin with a jump to where it does not.
+    """
+    held = False
+    for c in range(end.mode.shape[0]):
+        held = held or end.mode[c] == STICK
     return bool(
         project_positions(mech, k, w, end, mech.address)
-        and project_velocities(mech, k, w, end, True, False, mech.address)
+        and project_velocities(mech, k, w, end, True, held, mech.address)
         and react(mech, k, w, end, True, mech.address)
     )
 
