@@ -210,3 +210,12 @@ def test_two_ball_joints_set_out_at_once():
         for run in runs:
             assert np.abs(run.q - q).max() < 0.2 * least
             assert np.abs(run.v - v).max() < 2.0 * least
+
+
+def test_margin_that_jumps_because_another_one_goes():
+    """Of two joints that slip one alone loses its single solution: what has fallen to 0 is said, not 0.19."""
+    case = make({}, generate("tree", 377))
+    found = attempt(case.scene, "radau", 1e-6, np.array([0.0, 0.17]), 0.17, case.signals)
+    words = r"friction of 'j0', 'j1' together has no single solution: a principal minor .* is (\S+), and"
+    said = re.search(words, found.why)
+    assert abs(float(said[1])) < 1e-6

@@ -101,5 +101,5 @@ def last_unique(
             break
     if low > 0.0 and try_step(mech, k, y, st, c, low, mech.address):
         end_step(mech, k, w, y, end, st, c, low, mech.address)
-        margins(mech, k, w, end, out, False, mech.address)
+        margins(mech, k, w, end, out, True, mech.address)
     return low

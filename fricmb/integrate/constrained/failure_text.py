@@ -20,6 +20,9 @@ from fricmb.integrate.run.outcomes import (
     FAIL_STEP,
 )
 
+#: A margin of uniqueness that is as good as gone.
+NEAR = 0.02
+
 
 def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     """The reason for a code of failure."""
@@ -28,13 +31,15 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     names, joints = problem.contact_names, mechanism_of(problem).joints
     port = int(np.argmin(out.margin)) if problem.n_c else -1
     least = float(out.margin.min(initial=1.0))
-    if code == FAIL_MARGIN and float(out.together[0]) <= 0.0 < least:
+    minor = float(out.together[0])
+    # a margin is a minor over a smaller one: where that one goes through 0, it jumps
+    if code == FAIL_MARGIN and (minor <= 0.0 < least or minor < NEAR <= least):
         together = ", ".join(repr(names[c]) for c in np.flatnonzero(np.asarray(y.mode) == SLIP))
         return (
             f"the friction of {together} together has no single solution: a principal minor of 1 + mu dN/dF over them"
-            f" is {float(out.together[0]):.3g}, and all have to be positive (jamming: each presses on the other)"
+            f" is {minor:.3g}, and all have to be positive (jamming: each presses on the other)"
         )
-    if code == FAIL_MARGIN or (code in (FAIL_STEP, FAIL_MODES) and least < 0.02):
+    if code == FAIL_MARGIN or (code in (FAIL_STEP, FAIL_MODES) and least < NEAR):
         return (
             f"the friction of {names[port]!r} has no single solution: 1 + mu dN/dF has fallen to {least:.3g} and has"
             " to be positive (the reaction grows with the friction that it causes faster than friction sheds it:"
