@@ -66,7 +66,8 @@ class Tangent:
         self.switches = formula_switches(e, self.phases, sample, bends)
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
-        self.mesh = mesh_of(self.stepper, sizes(sample(self.phases.t), np.diagonal(e.weights)), self.rtol)
+        scale = sizes(sample(self.phases.t), np.diagonal(e.weights), [len(own) for own in e.names.states])
+        self.mesh = mesh_of(self.stepper, scale, self.rtol)
         passed = passes(e, self.stepper.rests)
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)

@@ -8,6 +8,7 @@ import numpy as np
 
 from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.sensitivity._equations import Equations
+from fricmb.sensitivity._found import whole
 from fricmb.sensitivity._landings import Rests
 from fricmb.sensitivity._phases import Phases
 
@@ -38,8 +39,14 @@ class Poles:
         self.graded = {k: begins | ends for k, begins, ends in rests}
         several = [(k, one) for k, one in equations.contacts.items() if one.d > 1]
         self.wide = [k for k, one in several if not one.smooth or one.law.n_states(one.d) > 0]
-        g = np.abs(sample(phases.t).g).max(axis=1) if self.wide else np.zeros(0)
-        self.largest = {k: float(g[equations.rows(k)].max()) for k in self.wide}
+        self.speed = self._speeds() if self.wide else {}
+
+    def _speeds(self) -> dict[int, float]:
+        """What slip is the difference of, by contact: errors of the run count by that, where a ball rolls as well."""
+        e, phases, t = self.equations, self.phases, self.phases.t[:-1]
+        found = e.said(self.sample(t), phases.mode, phases.sign)
+        rows = {k: whole(found.g[k], t.size, e.columns)[1][..., e.n : 2 * e.n] for k in self.wide}
+        return {k: float((np.abs(row) @ phases.speed).max()) for k, row in rows.items()}
 
     def doubling(self, t: Floats, h: Floats, phase: Ints, contacts: list[int]) -> Any:
         """Steps (n_t,) in which a slip speed of contacts more than doubles or halves.
@@ -57,7 +64,7 @@ class Poles:
     def ellipses(self, t: Floats, h: Floats, phase: Ints, share: float) -> Floats:
         """Sums (n_t,) of half axes of Bernstein's ellipse of a step through the nearest pole, inf where there is none.
 
-        ``share``: of its largest slip speed, what is as good as rest: directions of less are errors of the run.
+        ``share``: of the speeds that slip is the difference of, what is as good as rest: directions of less are errors.
         """
         found, e = np.full(t.size, np.inf), self.equations
         if not self.wide:
@@ -66,7 +73,7 @@ class Poles:
         g = self.sample((t + h * shares[:, None]).ravel()).g.reshape(-1, shares.size, t.size)
         for k in self.wide:
             own = g[e.rows(k)]
-            slides = np.linalg.norm(own, axis=0).max(axis=0) > share * self.largest[k]
+            slides = np.linalg.norm(own, axis=0).max(axis=0) > share * self.speed[k]
             if k in self.graded:
                 slides &= (self.phases.mode[k, phase] == SLIP) & ~self.graded[k][phase]
             found = np.where(slides, np.minimum(found, _through_zeros(own)), found)

@@ -152,3 +152,10 @@ def test_coordinates_that_hardly_move_do_not_set_the_steps():
     sol = fm.simulate(scene, t_end=0.1, rtol=1e-8, sensitivities=("conicity",))
     (tangent,) = sol.run.__dict__["_tangents"].values()
     assert tangent.mesh.t.size < 20 * sol.t.size
+
+
+def test_states_that_hardly_move_do_not_set_the_steps():
+    """A ball in a tube: its bristle bends along the tube's axis, across it by round-off alone."""
+    sol = fm.simulate(models.ball_in_cylinder(law=LAWS["LuGre"], rise=1.0), t_end=0.6, sensitivities=("ball.mass",))
+    (tangent,) = sol.run.__dict__["_tangents"].values()
+    assert tangent.mesh.t.size < 50 * sol.t.size
