@@ -34,14 +34,14 @@ def look(statements: Statements, units: Units, gathered: Gathered, rows: Samples
         for t in begins[:: max(1, -(-begins.size // _ONSETS))].tolist():
             later = own[own > t]
             end = float(later[0]) if later.size else float(rows.t[-1])
-            _one(k, law, t, end, statements, units, gathered, rows, sample)
+            _one(k, law, t, end, statements, units, gathered, rows, sample, np.asarray(events.t))
 
 
 def _one(
     k: int, law: Rubs, t: float, t_end: float, s: Statements, units: Units, gathered: Gathered, rows: Samples,
-    sample: Any,
+    sample: Any, kinks: Floats,
 ) -> None:  # fmt: skip
-    """One slip from t to t_end, where it ends or turns round."""
+    """One slip from t to t_end, where it ends or turns round; ``kinks``: transitions of all contacts."""
     within = slice(int(np.searchsorted(rows.t, t, side="right")), int(np.searchsorted(rows.t, t_end, side="right")))
     if within.stop <= within.start:
         return
@@ -55,16 +55,18 @@ def _one(
     if rate <= 0.0 or rate * (t_end - t) < 4.0:
         return
     at = t + np.array(_TIMES) / rate
+    # the formula does not see what another contact's transition makes of forces within it
+    cuts = np.unique(np.concatenate([at, kinks[(kinks > at[0]) & (kinks < at[-1])]]))
     x, w = np.polynomial.legendre.leggauss(_NODES)
-    half = 0.5 * np.diff(at)
-    nodes = (at[:-1] + half)[:, None] + half[:, None] * x
+    half = 0.5 * np.diff(cuts)
+    nodes = (cuts[:-1] + half)[:, None] + half[:, None] * x
     moment = s.moment(sample(nodes.ravel()))
     seen = s.found(moment)
     force = seen.force / s.mass[:, None]
     pull = (W @ force)[0].reshape(nodes.shape)
     drift = _belt(s, k, at, sample)
     change = s.found(s.moment(sample(at))).g[k][0]
-    stated = half * (pull @ w) + drift
+    stated = np.add.reduceat(half * (pull @ w), np.searchsorted(cuts, at[:-1])) + drift
     unit = float(row_unit(found.rows[k][0], units.v, (1,))[0])
     size = np.maximum(np.abs(change[1:]), np.abs(np.cumsum(stated)))
     relative = np.abs(np.diff(change) - stated) / (size + 1e-300)

@@ -12,7 +12,20 @@ from fricmb.integrate.taylor.correction import add_correction, correct, plain_fo
 from fricmb.integrate.taylor.event_heap import push_due
 from fricmb.integrate.taylor.event_search import taylor_search
 from fricmb.integrate.taylor.group_correction import relative_change
-from fricmb.integrate.taylor.layout import AT_END, BEFORE, INPUT, N_TOUCHED, STEP, TIME, UNTIL, WATCH
+from fricmb.integrate.taylor.landing import turn_planar
+from fricmb.integrate.taylor.layout import (
+    AT_END,
+    BEFORE,
+    EPS,
+    INPUT,
+    LONGEST,
+    N_TOUCHED,
+    NEXT,
+    STEP,
+    TIME,
+    UNTIL,
+    WATCH,
+)  # fmt: skip
 from fricmb.integrate.taylor.ledger import count_local, shorten_account
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import polynomial
@@ -108,9 +121,52 @@ def apply_correction(net: Net, count: int, c: int, tau: float, h: float) -> None
     count_local(net, count, tau, 1.0)
 
 
+@kernel
+def end_step(net: Net, c: int, until: float, was: int, before: float) -> None:
+    """Let the step end at ``until``, unless it ends before; what was counted behind was so under the mode before."""
+    if until < net.x[UNTIL]:
+        now, direction = net.mode[c], net.sigma[c]
+        net.mode[c], net.sigma[c] = was, before
+        shorten_account(net, until)
+        net.mode[c], net.sigma[c] = now, direction
+
+
+@kernel
+def change_at_end(net: Net, c: int, tau: float) -> None:
+    """Contact c changes its mode at tau in a scene with contacts in two directions: there the step ends.
+
+    A correction of the direction of slip is as much work as a step.
+    """
+    h, was, before = net.x[STEP], net.mode[c], net.sigma[c]
+    net.due[c] = math.inf
+    if net.groups.planar[c] >= 0:
+        pay(net, c, tau)
+        pay(net, c + 1, tau)
+        kind = turn_planar(net, c, tau)
+    elif net.plain[c] == 1:
+        lose_sliding(net, c, polynomial(net.Q, net.first_dof[c], tau), tau)
+        kind = turn(net, c, tau, h)
+    else:
+        pay(net, c, tau)
+        kind = turn(net, c, tau, h)
+    if net.groups.planar[c] == -1:
+        net.since[c] = AT_END if kind == EVENT_SLIP else -1.0
+    if kind >= 0:
+        keep_event(net, net.x[TIME] + tau * h, c, kind)
+        # what made steps short ends here; a step that is too long costs little, a short one at the beginning of slip
+        # leaves so small a speed that the direction can turn at once, and many steps to follow that
+        net.x[NEXT] = net.x[LONGEST]
+    # a step of no length is none: it begins anew under the new modes
+    at_once = tau * h <= 4.0 * EPS * abs(net.x[TIME])
+    end_step(net, c, 0.0 if at_once else tau, was, before)
+
+
 @block
 def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     """Contact c changes its mode at tau; returns 0, or 1 where the correction would touch too many dofs."""
+    if net.groups.landing.shape[0] > 0:
+        change_at_end(net, c, tau)
+        return 0
     h = net.x[STEP]
     plain = net.plain[c] == 1
     was, before = net.mode[c], net.sigma[c]
@@ -140,13 +196,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     brief = until - tau < BRIEF * (1.0 - tau) and tau > BRIEF
     if net.i[N_TOUCHED] > 0 and correction_noise(net, count, tau, until, h) > 1.0:
         brief = True
-    if brief:
-        until = tau
-    if until < net.x[UNTIL]:
-        now, direction = net.mode[c], net.sigma[c]
-        net.mode[c], net.sigma[c] = was, before
-        shorten_account(net, until)
-        net.mode[c], net.sigma[c] = now, direction
+    end_step(net, c, tau if brief else until, was, before)
     if brief:
         net.due[c] = math.inf
         net.since[c] = AT_END if kind == EVENT_SLIP else -1.0

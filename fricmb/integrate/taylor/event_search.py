@@ -1,7 +1,8 @@
 """When a contact's present mode ends: bounds that rule most of them out, and roots of the others' polynomials.
 
 Watched is, of a contact that slips, ``y = sigma g`` (it lands at y = 0), of one that sticks ``y = F`` (it breaks away
-at ``|y| = mu_s N``).
+at ``|y| = mu_s N``).  In two directions sigma is the direction of slip where the step begins, and stick ends where
+``y = (mu_s N)^2 - |F|^2`` is 0.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from fricmb.integrate.problem import STICK, Floats, Ints
 from fricmb.integrate.step.crossing import lowest_between, root_between
 from fricmb.integrate.taylor.layout import N_SEARCHES, NOISE, SHIFTED, STEP, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.plane_series import lands
 from fricmb.integrate.taylor.polynomials import force_row, relative_row, shift_one
 
 #: Intervals in which a root is looked for (a step is at most about half a period of the fastest mode).
@@ -26,6 +28,8 @@ EXACT, DIP = 1e-15, 1e-9
 AT_LIMIT = 2e-11
 #: Part of the limit by which a force that grows does so in a step.
 GROWS = 1e-9
+#: A step that is as long as a landing is so to that part of it.
+LANDED = 1e-9
 
 
 @kernel
@@ -33,7 +37,10 @@ def watch_row(net: Net, c: int, k: int, h: float) -> float:
     """Coefficient k of what is watched of contact c."""
     if net.mode[c] == STICK:
         return force_row(net, c, k) if k < net.R.shape[0] else 0.0
-    return float(relative_row(net, c, k, h) * net.sigma[c])
+    value = relative_row(net, c, k, h) * net.sigma[c]
+    if net.groups.planar[c] >= 0:
+        value += relative_row(net, c + 1, k, h) * net.sigma[c + 1]
+    return float(value)
 
 
 @kernel
@@ -55,6 +62,21 @@ def sum_magnitudes(net: Net, held: Floats, moved: Floats) -> None:
 
 
 @kernel
+def planar_slack(net: Net, c: int, h: float) -> float:
+    """What contact c in two directions keeps from its end, from the magnitudes of all terms but the first."""
+    rest = 0.0
+    if net.mode[c] == STICK:
+        for k in range(net.groups.F.shape[0]):
+            rest += math.hypot(net.groups.F[k, c], net.groups.F[k, c + 1])
+        return float(net.stick[c] - rest)
+    if lands(net, c):
+        return -1.0
+    for k in range(1, net.Q.shape[0] - 1):
+        rest += math.hypot(relative_row(net, c, k, h), relative_row(net, c + 1, k, h))
+    return float(watch_row(net, c, 0, h) - rest)
+
+
+@kernel
 def bounds(net: Net) -> None:
     """Distance ``slack`` (m,) that every contact keeps from its end in the whole step at least.
 
@@ -67,6 +89,9 @@ def bounds(net: Net) -> None:
     q1, q2, q3, r0, r1, r2 = net.Q[1], net.Q[2], net.Q[3], net.R[0], net.R[1], net.R[2]
     for c in range(net.mode.shape[0]):
         e, j = net.row_start[c], net.first_dof[c]
+        if net.groups.planar[c] != -1:
+            net.slack[c] = planar_slack(net, c, h) if net.groups.planar[c] >= 0 else math.inf
+            continue
         if net.plain[c] == 0:
             rest = 0.0
             for k in range(3, last + 1):
@@ -131,6 +156,26 @@ def first_root(y: Floats, limit: float, low: float, high: float) -> float:
     return math.inf
 
 
+@kernel
+def end_of_hold(net: Net, c: int, low: float) -> float:
+    """When, from ``low`` on, contact c in two directions breaks away (s), or inf."""
+    F, y = net.groups.F, net.groups.square
+    last = F.shape[0] - 1
+    limit = net.stick[c]
+    for k in range(2 * last + 1):
+        y[k] = 0.0
+        for i in range(max(0, k - last), min(k, last) + 1):
+            y[k] -= F[i, c] * F[k - i, c] + F[i, c + 1] * F[k - i, c + 1]
+    here, rise = 0.0, 0.0
+    for k in range(2 * last, -1, -1):
+        rise = rise * low + here
+        here = here * low + y[k]
+    if -here >= limit * limit * (1.0 - 2.0 * AT_LIMIT) and -rise <= 2.0 * GROWS * limit * limit:
+        limit *= 1.0 + AT_LIMIT
+    y[0] += limit * limit
+    return first_root(y[: 2 * last + 1], -1.0, low, 1.0)
+
+
 @block
 def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
     """When, from ``low`` on, the present mode of contact c ends in this step (s), or inf."""
@@ -138,6 +183,13 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
     net.i[N_SEARCHES] += 1
     y = net.old[WATCH]
     last = net.Q.shape[0] - 2
+    planar = net.groups.planar[c]
+    if planar >= 0 and net.mode[c] == STICK:
+        return end_of_hold(net, c, low)
+    if planar >= 0 and lands(net, c):
+        # rest comes where the landing ends: behind this step, or where it ends
+        part = net.groups.landing[planar, 0] / h
+        return min(part, 1.0) if part < 1.0 + LANDED else math.inf
     if net.mode[c] == STICK:
         last -= 1
         for k in range(last + 1):
@@ -156,7 +208,8 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         y[k] = watch_row(net, c, k, h)
         size += abs(y[k])
     since = net.since[c]
-    if since < 0.0 and y[0] <= net.x[NOISE] and y[1] > 0.0:
+    begins = planar >= 0 and net.groups.begins[planar] == 1
+    if since < 0.0 and (begins or (y[0] <= net.x[NOISE] and y[1] > 0.0)):
         # it began to slip at the end of the step before
         net.since[c] = since = 0.0
     if since < 0.0:

@@ -11,13 +11,15 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import SLIP, Floats, Floats2
-from fricmb.integrate.taylor.layout import TOL
+from fricmb.integrate.taylor.layout import FASTEST, TOL
 from fricmb.integrate.taylor.network import Net
 
 #: Parts of the tolerance that may be missing in a coefficient of friction.
 SHARE = 0.1
 #: Less than that is round-off of an interpolant, relative to the coefficient.
 SEEN = 2e-14
+#: Speeds below this part of what friction may bring in the step are those of slip that begins.
+UNMOVED = 1e-3
 
 
 @kernel
@@ -123,3 +125,27 @@ def compose(curve: Floats, terms: int, x: Floats, b: Floats2, k: int) -> float:
         value -= b[j + 2, k]
         b[j, k] = value + curve[j] if k == 0 else value
     return float(b[0, k])
+
+
+@kernel
+def friction_row(net: Net, c: int, k: int, speed: float, h: float) -> float:
+    """Coefficient k of mu N of contact c, which slips, from that of its slip speed; orders before it are known."""
+    at = net.groups.lawful[c]
+    if at < 0:
+        return float(net.slip[c]) if k == 0 else 0.0
+    b = net.groups.b[at]
+    x = b[b.shape[0] - 1]
+    x[k] = speed
+    if k == 0:
+        return float(net.groups.N[c] * coefficient_at(net, c, x[0]))
+    if k == 1:
+        pad = 0.3 * abs(x[1]) + 0.05 * abs(x[0]) + 0.01 * net.x[FASTEST]
+        reach = net.compliance[c] * net.groups.N[c] * coefficient_at(net, c, x[0]) * h
+        if pad < UNMOVED * reach:
+            # slip that begins does not tell yet where it goes: as far as friction may bring it
+            pad = reach
+        fit_around(net, c, x[0], pad - min(0.0, x[1]), pad + max(0.0, x[1]))
+        x[0] = (x[0] - net.groups.middle[at]) / net.groups.half[at]
+        compose(net.groups.curve[at], net.groups.terms[at], x, b, 0)
+    x[k] /= net.groups.half[at]
+    return float(net.groups.N[c] * compose(net.groups.curve[at], net.groups.terms[at], x, b, k))

@@ -15,6 +15,9 @@ from typing import NamedTuple
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 
+#: In place of a number: the second row of a contact in two directions.
+SECOND = -2
+
 
 class Groups(NamedTuple):
     """All contacts that are not plain, those on common dofs together; most of it is empty where all are plain.
@@ -32,6 +35,10 @@ class Groups(NamedTuple):
     Corrections: ``slot`` (m,) of a contact or -1; ``here``: contact of a slot; ``reached``: groups touched; ``touched``
     (.): whether one is; ``was``: forces before; ``dF``; ``local_b``: as b; ``first``: order from which its argument
     changes; ``along`` (2, .): points of a step, and an argument there.
+    Two directions: ``planar`` (m,): number of a contact in two directions by its first row, ``SECOND`` for its second
+    row, -1 for a contact in one; by that number powers of s of d = u/|u| in ``unit`` (., 2, .), of |u| in ``speed``, of
+    mu N in ``rubbing``; ``begins``: slip begins with the step, so that ``speed`` is of |u|/s; ``landing`` (., 5): how
+    long it takes to come to rest (0: it does not), and what its velocity follows (see ``landing``); ``square``: |F|^2.
     """
 
     F: Floats2
@@ -74,3 +81,10 @@ class Groups(NamedTuple):
     local_b: Floats3
     first: Ints
     along: Floats2
+    planar: Ints
+    unit: Floats3
+    speed: Floats2
+    rubbing: Floats2
+    begins: Codes
+    landing: Floats2
+    square: Floats

@@ -33,6 +33,7 @@ from fricmb.integrate.taylor.layout import (
 )  # fmt: skip
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare import fastest, net_of, no_samples, refusal
+from fricmb.integrate.taylor.prepare_groups import has_planar, row_owner
 from fricmb.integrate.taylor.starting_modes import settle_start
 from fricmb.integrate.taylor.step_loop import (
     CROWDED,
@@ -70,8 +71,9 @@ def degree_for(rtol: float) -> int:
 class Taylor(Integrator):
     """Taylor steps of all degrees of freedom at once, with polynomial corrections around every transition.
 
-    For many contacts along one direction each under constant coefficients, in structures with a diagonal mass matrix
-    and few neighbours a degree of freedom (chains, grids).  Explicit: the step is limited by the fastest mode.
+    For many contacts, along a line or in a plane, under constant coefficients or formulas of slip speed, in structures
+    with a diagonal mass matrix and few neighbours a degree of freedom (chains, grids).  Explicit: the fastest mode
+    limits the step.
 
     Attributes
     ----------
@@ -114,8 +116,8 @@ class Taylor(Integrator):
             net = net_of(problem, degree)
             net = set_start(problem, net, start, t_end, tolerance, self.reach, self.crowd)
             if t_eval is not None:
-                room = no_samples(problem.n, problem.n_c, len(t_eval))
-                net = with_arrays(net, **{**room, "times": np.ascontiguousarray(t_eval, dtype=float)})
+                empty = no_samples(problem.n, problem.m, len(t_eval))
+                net = with_arrays(net, **{**empty, "times": np.ascontiguousarray(t_eval, dtype=float)})
             watched(settle_start, net)
             marks = Checkpoints(problem.n)
             code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
@@ -146,7 +148,8 @@ def set_start(
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
     net.x[:] = 0.0
     net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest
-    net.x[TOL] = 0.1 * tolerance.rtol
+    # the direction of slip turns faster than all else where slip is slow: stick and slip lose their phase by that
+    net.x[TOL] = (0.01 if has_planar(problem) else 0.1) * tolerance.rtol
     net.x[STEP] = longest
     net.x[NOISE] = 1e-13 * speed
     net.i[:] = 0
@@ -156,9 +159,9 @@ def set_start(
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
     if start.mode is not None:
-        net.mode[:] = start.mode
+        net.mode[:] = start.mode[row_owner(problem)]
         if start.direction is not None:
-            net.sigma[:] = np.where(start.direction == 0.0, 1.0, np.sign(start.direction))
+            net.sigma[:] = np.where(start.direction == 0.0, 1.0, start.direction)
     return net
 
 
@@ -185,7 +188,8 @@ def failure_text(problem: Problem, net: Net, code: int) -> str:
     narrow = np.where(net.groups.half > 0.0, net.groups.half, math.inf)
     if code in (CROWDED, TOO_SHORT) and narrow.min(initial=math.inf) < NARROW * net.x[FASTEST]:
         at = int(narrow.argmin())
-        contact = problem.contact_names[int(np.flatnonzero(net.groups.lawful == at)[0])]
+        row = np.flatnonzero(net.groups.lawful == at)[0]
+        contact = problem.contact_names[row_owner(problem)[row]]
         return FAILURES[TOO_STEEP].format(contact=contact, range=2.0 * narrow[at])
     return FAILURES[code].format(limit=int(net.i[LIMIT]))
 
@@ -202,12 +206,14 @@ def _trajectory(
     problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
 ) -> TaylorRun:
     events = net.events[: net.i[N_EVENTS]].copy()
+    events[:, 1] = row_owner(problem)[events[:, 1].astype(int)]
     steps = int(net.i[N_STEPS])
     counters = Counters(
         n_steps=steps, n_rejected=int(net.i[N_SHORTER]), n_rhs=steps * degree, n_jac=int(net.i[N_SEARCHES])
     )
     end = Start(
-        t=float(net.x[TIME]), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0), mode=net.mode.copy(),
+        t=float(net.x[TIME]), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0),
+        mode=net.mode[problem.contacts.row[:-1]],
         direction=net.sigma.copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or failure_text(problem, net, code)

@@ -1,6 +1,7 @@
 """Arrays of a run: the structure by rows and diagonals, the contacts, the step's polynomials, what is kept.
 
-With n dofs, m contacts of one row each, polynomials of degree P in s = (t - t0)/h, 0 <= s <= 1:
+With n dofs, m rows of contacts (one each, two of a contact that slides in a plane), polynomials of degree P in
+s = (t - t0)/h, 0 <= s <= 1:
 
     q_j(s) = sum_k Q[k, j] s^k           displacement
     R_j(s) = sum_k R[k, j] s^k           M^-1 (f - K q - C v): acceleration but for the contact's own force
@@ -8,7 +9,8 @@ With n dofs, m contacts of one row each, polynomials of degree P in s = (t - t0)
 
 A *plain* contact is of one dof that no other contact is of, against a belt of constant velocity, under a constant
 coefficient: with its row W and compliance D = W^T M^-1 W, slip has F constant and stick ``F = -W^T R/D``, which is not
-kept.  All other contacts are in groups (see groups).
+kept.  All other contacts are in groups (see groups).  What is said of a contact c is said of its first row; both rows
+of one in two directions have its mode, and in ``sigma`` the direction of its slip.
 """
 
 from __future__ import annotations

@@ -83,6 +83,16 @@ def relative(net: Net, c: int, s: float, h: float) -> float:
 
 
 @kernel
+def drop_slip(net: Net, row: int) -> None:
+    """Take the relative velocity of a row, which shares its dofs with no other, out of the state."""
+    value = belt_value(net, row, 0.0)
+    for e in range(net.row_start[row], net.row_start[row + 1]):
+        value -= net.row_coef[e] * net.v[net.row_dof[e]]
+    for e in range(net.row_start[row], net.row_start[row + 1]):
+        net.v[net.row_dof[e]] += net.push[e] * value / net.compliance[row]
+
+
+@kernel
 def relative_row(net: Net, c: int, k: int, h: float) -> float:
     """Coefficient k of the relative velocity of contact c."""
     value = -belt_at(net, c, k)

@@ -21,6 +21,7 @@ from fricmb.integrate.taylor.prepare_groups import (
     group_statics,
     legendre_rule,
     plain_contacts,
+    row_owner,
     solid,
 )
 from fricmb.integrate.taylor.signals import POINTS
@@ -47,8 +48,6 @@ def _refusal(problem: Problem) -> str | None:
         return "every contact needs a coefficient of friction and a constant normal force"
     if (contacts.piecewise & (contacts.law != LAW_CONSTANT)).any():
         return "coefficients of friction that depend on slip speed must be formulas"
-    if problem.m != problem.n_c:
-        return "every contact must slide along one direction"
     if not linear.csr("M").is_diagonal():
         return "the mass matrix must be diagonal"
     if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
@@ -144,7 +143,7 @@ def _rectangular(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
 
 
 def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
-    contacts, n, m = problem.contacts, problem.n, problem.n_c
+    contacts, n, m = problem.contacts, problem.n, problem.m
     rows = contacts.csr("W").transposed()
     Wu = contacts.csr("Wu")
     push = inverse[rows.index] * rows.value
@@ -152,18 +151,18 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     plain = plain_contacts(problem)
     owner = np.full(n, -1, dtype=np.int64)
     owner[rows.index] = np.where(plain, np.arange(m), -1)[rows.rows]
-    N = contacts.N
+    of = row_owner(problem)
     return {
         "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
-        "compliance": compliance, "belt": contacts.w, "stick": stick_limits(contacts), "slip": contacts.mu_0 * N,
-        "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "owner": owner,
-        "plain": plain.astype(np.int8), "grouped": np.flatnonzero(~plain),
+        "compliance": compliance, "belt": contacts.w, "stick": stick_limits(contacts)[of],
+        "slip": (contacts.mu_0 * contacts.N)[of], "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value,
+        "owner": owner, "plain": plain.astype(np.int8), "grouped": np.flatnonzero(~plain),
         "first_dof": rows.index[rows.start[:-1]],
     }  # fmt: skip
 
 
 def _fit() -> Floats:
-    """Powers of s of a polynomial from its values at points of a step; the last row is room."""
+    """Powers of s of a polynomial from its values at points of a step; the last row is workspace."""
     powers = np.arange(POINTS)
     return np.vstack([np.linalg.inv((powers[:, None] / (POINTS - 1)) ** powers), np.zeros((1, POINTS))])
 
@@ -174,7 +173,7 @@ def net_of(problem: Problem, degree: int) -> Net:
 
 
 def _net(problem: Problem, P: int) -> Net:
-    n, m, n_u = problem.n, problem.n_c, problem.n_u
+    n, m, n_u = problem.n, problem.m, problem.n_u
     statics = once_per_problem(problem, "taylor statics", lambda: _statics(problem))
     # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
     wide = 8 * ((n + 7) // 8 | 1)
@@ -216,7 +215,7 @@ def _widest(statics: dict[str, Any], n: int, degree: int) -> int:
 
 
 def no_samples(n: int, m: int, count: int = 0) -> dict[str, Any]:
-    """Room for so many samples."""
+    """Empty arrays for so many samples."""
     z = np.zeros
     return {
         "times": z(count), "left": z(count, np.int8), "out_q": z((count, n)), "out_v": z((count, n)),

@@ -14,18 +14,36 @@ from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.problem_cache import once_per_problem
-from fricmb.integrate.taylor.groups import Groups
+from fricmb.integrate.taylor.groups import SECOND, Groups
 
 #: Most contacts of a group: its matrix is factorised as a full one whenever one of them changes its mode.
 LARGEST = 200
+#: Round-off of what a contact in two directions answers in one and in the other.
+ISOTROPIC = 1e-12
 #: A group's contacts that share their forces in more than one way: least pivot relative to the diagonal.
 INDEPENDENT = 1e-9
 
 
+def row_owner(problem: Problem) -> Ints:
+    """The contact of every row."""
+    return np.repeat(np.arange(problem.n_c), np.diff(problem.contacts.row))
+
+
+def has_planar(problem: Problem) -> bool:
+    """Whether a contact has two directions."""
+    return problem.m > problem.n_c
+
+
 def _labels(problem: Problem) -> tuple[int, Ints]:
-    """Number of sets of contacts on common dofs, and the set of every contact."""
+    """Number of sets of rows on common dofs, or of one contact, and the set of every row."""
     W = problem.contacts.csr("W")
-    return _labels_of(W.rows, W.index, problem.n, problem.n_c)
+    rows, columns, n = W.rows, W.index, problem.n
+    if has_planar(problem):
+        # a contact holds its rows together as a dof would
+        rows = np.concatenate([rows, n + row_owner(problem)])
+        columns = np.concatenate([columns, np.arange(problem.m)])
+        n += problem.n_c
+    return _labels_of(rows, columns, n, problem.m)
 
 
 @cached_by_content
@@ -44,10 +62,10 @@ def plain_contacts(problem: Problem) -> NDArray[np.bool_]:
 
 
 def _plain_contacts(problem: Problem) -> NDArray[np.bool_]:
-    contacts, m = problem.contacts, problem.n_c
-    W, Wu = contacts.csr("W"), contacts.csr("Wu")
+    contacts, m = problem.contacts, problem.m
+    W, Wu, law = contacts.csr("W"), contacts.csr("Wu"), contacts.law[row_owner(problem)]
     _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
-    plain = (np.bincount(W.index, minlength=m) == 1) & (np.diff(Wu.start) == 0) & (contacts.law == LAW_CONSTANT)
+    plain = (np.bincount(W.index, minlength=m) == 1) & (np.diff(Wu.start) == 0) & (law == LAW_CONSTANT)
     return np.asarray(plain & (np.bincount(label)[label] == 1))
 
 
@@ -69,6 +87,21 @@ def against_groups(problem: Problem) -> str | None:
         scale = 1.0 / np.sqrt(np.diag(G))
         if np.linalg.eigvalsh(G * scale * scale[:, None])[0] < INDEPENDENT:
             return "contacts between the same bodies share their forces in more than one way"
+    return _against_planes(problem, parts)
+
+
+def _against_planes(problem: Problem, parts: dict[str, Any]) -> str | None:
+    """What stands against the contacts in two directions, or None."""
+    width = np.diff(problem.contacts.row)
+    if (width > 2).any():
+        return "every contact must slide along one direction or two"
+    for k in np.flatnonzero(width == 2):
+        name, gi = problem.contact_names[k], parts["group"][problem.contacts.row[k]]
+        if parts["group_start"][gi + 1] - parts["group_start"][gi] > 2:
+            return f"contact {name!r}, which slides in two directions, shares a body with another contact"
+        G = parts["G"][parts["at"][gi] : parts["at"][gi] + 4]
+        if max(abs(G[1]), abs(G[0] - G[3])) > ISOTROPIC * G[0]:
+            return f"contact {name!r} does not answer to a force alike in all directions"
     return None
 
 
@@ -86,8 +119,8 @@ def group_statics(problem: Problem) -> dict[str, Any]:
 
 
 def _groups(problem: Problem) -> tuple[int, Ints]:
-    """Number of groups, and the group of every contact, -1 of plain ones."""
-    group = np.full(problem.n_c, -1, dtype=np.int64)
+    """Number of groups, and the group of every row, -1 of plain contacts."""
+    group = np.full(problem.m, -1, dtype=np.int64)
     others = ~plain_contacts(problem)
     _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
     found, group[others] = np.unique(label[others], return_inverse=True)
@@ -95,7 +128,7 @@ def _groups(problem: Problem) -> tuple[int, Ints]:
 
 
 def _group_statics(problem: Problem) -> dict[str, Any]:
-    contacts, n, m = problem.contacts, problem.n, problem.n_c
+    contacts, n, m = problem.contacts, problem.n, problem.m
     inverse = 1.0 / problem.linear.csr("M").diagonal()
     count, group = _groups(problem)
     W = contacts.csr("W")
@@ -116,12 +149,17 @@ def _group_statics(problem: Problem) -> dict[str, Any]:
         size = np.diff(group_start)[group[one]]
         G[at[group[one]] + place[one] * size + place[other]] = product.data[both]
     lawful = np.full(m, -1, dtype=np.int64)
-    chosen = np.flatnonzero(contacts.law == LAW_COEFFICIENT)
+    chosen = contacts.row[:-1][contacts.law == LAW_COEFFICIENT]
     lawful[chosen] = np.arange(len(chosen))
+    owner, laws = row_owner(problem), _table(contacts.law_table)
+    planar = np.full(m, -1, dtype=np.int64)
+    first = contacts.row[:-1][np.diff(contacts.row) == 2]
+    planar[first], planar[first + 1] = np.arange(len(first)), SECOND
     return {
         "group": group, "group_start": group_start, "group_contact": group_contact, "dof_start": dof_start,
         "group_dof": group_dof, "dof_group": dof_group, "at": at, "G": G, "lawful": lawful,
-        "laws": _table(contacts.law_table), "N": np.asarray(contacts.N, dtype=float),
+        "laws": laws._replace(address=laws.address[owner], p_start=laws.p_start[owner]),
+        "N": np.asarray(contacts.N, dtype=float)[owner], "planar": planar,
     }  # fmt: skip
 
 
@@ -144,12 +182,13 @@ def _interpolation(degree: int) -> tuple[Floats, Floats]:
 def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
     """All of it for polynomials of degree P and corrections of at most ``widest`` dofs."""
     statics = group_statics(problem)
-    i, z, m = np.int64, np.zeros, problem.n_c
+    i, z, m = np.int64, np.zeros, problem.m
     at, weights = legendre_rule(P)
     nodes, fit = _interpolation(P)
     lawful = int(np.count_nonzero(statics["lawful"] >= 0))
     count, grouped = len(statics["group_start"]) - 1, len(statics["group_contact"])
     most = min(grouped, 4 * widest)
+    planes = int(np.count_nonzero(statics["planar"] >= 0))
     sums = (P + 3, P + 1)
     arrays: dict[str, Any] = {
         **statics, "F": z((P - 1, m if grouped else 0)), "L": z(len(statics["G"])), "stuck": z(grouped, i),
@@ -160,6 +199,8 @@ def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
         "before": z(m, np.int8), "slot": np.full(m, -1, i), "here": z(most, i), "reached": z(count, i),
         "touched": z(count, np.int8), "was": z((most, P + 1)), "dF": z((P + 1, most)),
         "local_b": z((most if lawful else 0, *sums)), "first": z(most, i), "along": z((2, 12)),
+        "unit": z((planes, 2, P + 1)), "speed": z((planes, P + 1)), "rubbing": z((planes, P + 1)),
+        "begins": z(planes, np.int8), "landing": z((planes, 5)), "square": z(2 * P + 3),
     }  # fmt: skip
     return Groups(**{name: solid(array) for name, array in arrays.items()})
 

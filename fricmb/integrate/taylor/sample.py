@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.account import displacement, pay_groups
+from fricmb.integrate.taylor.landing import friction_at
 from fricmb.integrate.taylor.layout import DAMPING, INPUT, N_SAMPLES, STEP, WORK
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
 from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.plane_series import lands
 from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate
 from fricmb.integrate.taylor.signals import belt_value
 
@@ -35,12 +39,25 @@ def sample(net: Net, s: float) -> None:
             net.out_loss[at, c] += net.slip[c] * abs(displacement(net, c, q[j], s) - net.mark[c])
         else:
             net.out_F[at, c] = -net.row_coef[e] * response[j] / net.compliance[c]
+    for c in range(net.mode.shape[0]):
+        if lands(net, c):
+            rub_along_landing(net, c, at)
     brought, lost = net.x[INPUT], net.x[DAMPING]
     count_rest(net, s, -1.0)
     net.out_x[at, 0] = net.x[INPUT] - belt_work(net, s)
     net.out_x[at, 1] = net.x[DAMPING]
     net.x[INPUT], net.x[DAMPING] = brought, lost
     net.i[N_SAMPLES] = at + 1
+
+
+@kernel
+def rub_along_landing(net: Net, c: int, at: int) -> None:
+    """Friction of contact c in two directions at sample ``at``: what leads along a landing has the mean of it alone."""
+    x, y = net.out_g[at, c], net.out_g[at, c + 1]
+    speed = math.hypot(x, y)
+    if speed > 0.0:
+        rubs = friction_at(net, c, speed)
+        net.out_F[at, c], net.out_F[at, c + 1] = -rubs * x / speed, -rubs * y / speed
 
 
 @kernel

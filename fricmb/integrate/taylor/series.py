@@ -6,15 +6,14 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.integrate.taylor.curve_check import curve_part
-from fricmb.integrate.taylor.friction_curve import coefficient_at, compose, fit_around, slip_law
+from fricmb.integrate.taylor.friction_curve import friction_row, slip_law
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
+from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.layout import ALLOWED, FASTEST
 from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.plane_series import lands, push_planar, start_from_belts
 from fricmb.integrate.taylor.polynomials import relative_row
 from fricmb.integrate.taylor.signals import add_signals, belt_rate, belt_value
-
-#: Speeds below this part of what friction may bring in the step are those of slip that begins.
-UNMOVED = 1e-3
 
 
 @kernel
@@ -75,27 +74,9 @@ def structure_row(net: Net, k: int, h: float, out: Floats) -> None:
 @kernel
 def slip_force(net: Net, c: int, k: int, h: float) -> float:
     """Coefficient k of the force of contact c of a group, which slips; its motion is known up to order k + 1."""
-    at = net.groups.lawful[c]
-    if at < 0:
+    if net.groups.lawful[c] < 0:
         return float(-net.slip[c] * net.sigma[c]) if k == 0 else 0.0
-    b = net.groups.b[at]
-    x = b[b.shape[0] - 1]
-    x[k] = net.sigma[c] * relative_row(net, c, k, h)
-    if k == 0:
-        mu = coefficient_at(net, c, x[0])
-    else:
-        if k == 1:
-            pad = 0.3 * abs(x[1]) + 0.05 * abs(x[0]) + 0.01 * net.x[FASTEST]
-            reach = net.compliance[c] * net.groups.N[c] * coefficient_at(net, c, x[0]) * h
-            if pad < UNMOVED * reach:
-                # slip that begins does not tell yet where it goes: as far as friction may bring it
-                pad = reach
-            fit_around(net, c, x[0], pad - min(0.0, x[1]), pad + max(0.0, x[1]))
-            x[0] = (x[0] - net.groups.middle[at]) / net.groups.half[at]
-            compose(net.groups.curve[at], net.groups.terms[at], x, b, 0)
-        x[k] /= net.groups.half[at]
-        mu = compose(net.groups.curve[at], net.groups.terms[at], x, b, k)
-    return float(-net.sigma[c] * net.groups.N[c] * mu)
+    return float(-net.sigma[c] * friction_row(net, c, k, net.sigma[c] * relative_row(net, c, k, h), h))
 
 
 @kernel
@@ -109,7 +90,10 @@ def push_slipping(net: Net, k: int, h: float, factor: float) -> None:
                 target[net.row_dof[e]] += factor * net.push[e] * (-net.slip[c] * net.sigma[c])
     for i in range(net.grouped.shape[0]):
         c = net.grouped[i]
-        if net.mode[c] != SLIP:
+        if net.mode[c] != SLIP or net.groups.planar[c] == SECOND:
+            continue
+        if net.groups.planar[c] >= 0:
+            push_planar(net, c, k, h, factor)
             continue
         force = slip_force(net, c, k, h)
         net.groups.F[k, c] = force
@@ -169,6 +153,8 @@ def begin_groups(net: Net) -> None:
     for gi in range(net.groups.n_stuck.shape[0]):
         factor_group(net, gi)
     hold_velocities(net)
+    if net.groups.landing.shape[0] > 0:
+        start_from_belts(net)
     for i in range(net.grouped.shape[0]):
         net.groups.paid[net.grouped[i]] = 0.0
 
@@ -190,7 +176,7 @@ def curves_hold(net: Net) -> float:
     for i in range(net.grouped.shape[0]):
         c = net.grouped[i]
         at = slip_law(net, c)
-        if at < 0:
+        if at < 0 or lands(net, c):
             continue
         allowed = min(allowed, curve_part(net, c, net.groups.b[at], 1.0))
     return float(allowed)

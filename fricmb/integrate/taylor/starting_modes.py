@@ -7,7 +7,9 @@ import math
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.account import displacement, lose_sliding
-from fricmb.integrate.taylor.layout import EPS, LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.groups import SECOND
+from fricmb.integrate.taylor.landing import set_planar
+from fricmb.integrate.taylor.layout import AT_END, EPS, LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row
 from fricmb.integrate.taylor.series import taylor_series
@@ -26,22 +28,52 @@ def set_window(net: Net) -> None:
 
 
 @kernel
+def first_speed(net: Net, row: int) -> float:
+    """Relative velocity of a row at the start."""
+    g = -belt_value(net, row, 0.0)
+    for e in range(net.row_start[row], net.row_start[row + 1]):
+        g += net.row_coef[e] * net.v[net.row_dof[e]]
+    return float(g)
+
+
+@kernel
+def speed_noise(net: Net, row: int, given: bool, before_it: float) -> float:
+    """Relative velocities of a row that are none; ``before_it``: length of the step before."""
+    # a belt that starts from rest does so at a time that is round-off away
+    noise = net.x[NOISE] + 1e-12 * (abs(belt_value(net, row, 0.5)) + abs(belt_value(net, row, 1.0)))
+    if given and net.mode[row] == STICK:
+        # it has moved with the belt as powers of s have
+        noise += belt_grain(net, row, before_it)
+    return float(noise)
+
+
+@kernel
+def direction_of(net: Net, c: int) -> int:
+    """STICK, or the direction of slip; of a contact in two directions 1 for any."""
+    if net.mode[c] == STICK:
+        return int(STICK)
+    return 1 if net.groups.planar[c] >= 0 else int(net.sigma[c])
+
+
+@kernel
 def look_at_speeds(net: Net, given: bool, before_it: float) -> None:
     """Modes from velocities alone: what moves slips, what has no slip speed rests for now.
 
     ``before_it``: length of the step before.
     """
     for c in range(net.mode.shape[0]):
-        g = -belt_value(net, c, 0.0)
-        for e in range(net.row_start[c], net.row_start[c + 1]):
-            g += net.row_coef[e] * net.v[net.row_dof[e]]
-        # a belt that starts from rest does so at a time that is round-off away
-        noise = net.x[NOISE] + 1e-12 * (abs(belt_value(net, c, 0.5)) + abs(belt_value(net, c, 1.0)))
-        stuck = net.mode[c] == STICK
-        if given and stuck:
-            # it has moved with the belt as powers of s have
-            noise += belt_grain(net, c, before_it)
-        net.groups.before[c] = STICK if stuck else int(net.sigma[c])
+        planar = net.groups.planar[c]
+        if planar == SECOND:
+            continue
+        g, noise = first_speed(net, c), speed_noise(net, c, given, before_it)
+        net.groups.before[c] = direction_of(net, c)
+        if planar >= 0:
+            across = first_speed(net, c + 1)
+            noise = max(noise, speed_noise(net, c + 1, given, before_it))
+            rests = math.hypot(g, across) <= noise
+            net.groups.rests[c] = 1 if rests else 0
+            set_planar(net, c, STICK if rests else SLIP)
+            continue
         rests = abs(g) <= noise
         net.groups.rests[c] = 1 if rests else 0
         set_mode(net, c, STICK if rests else SLIP, net.sigma[c] if rests else math.copysign(1.0, g))
@@ -58,6 +90,19 @@ def release_plain(net: Net) -> None:
 
 
 @kernel
+def release_planar(net: Net, c: int) -> bool:
+    """Let go contact c in two directions where it holds more than it can; whether it did."""
+    x, y = net.groups.F[0, c], net.groups.F[0, c + 1]
+    size = math.hypot(x, y)
+    if net.mode[c] != STICK or size <= net.stick[c] * (1.0 + MARGIN):
+        return False
+    set_planar(net, c, SLIP)
+    net.since[c] = AT_END
+    net.sigma[c], net.sigma[c + 1] = -x / size, -y / size
+    return True
+
+
+@kernel
 def release_worst(net: Net, gi: int, again: bool) -> bool:
     """Let go the contact of a group that rests and exceeds its cone most; whether any contact changed its mode.
 
@@ -68,7 +113,10 @@ def release_worst(net: Net, gi: int, again: bool) -> bool:
     worst, excess = -1, 1.0 + MARGIN
     for a in range(groups.group_start[gi], groups.group_start[gi + 1]):
         c = groups.group_contact[a]
-        if groups.rests[c] == 0:
+        if groups.rests[c] == 0 or groups.planar[c] == SECOND:
+            continue
+        if groups.planar[c] >= 0:
+            changed = release_planar(net, c) or changed
             continue
         if net.mode[c] == SLIP and again:
             if net.sigma[c] * relative_row(net, c, 1, net.x[STEP]) < 0.0:
@@ -120,7 +168,9 @@ def settle(net: Net, given: bool) -> None:
     release_plain(net)
     release_groups(net)
     for c in range(net.mode.shape[0]):
-        now, before = STICK if net.mode[c] == STICK else int(net.sigma[c]), net.groups.before[c]
+        now, before = direction_of(net, c), net.groups.before[c]
+        if net.groups.planar[c] == SECOND:
+            continue
         if given and now != before:
             kind = EVENT_STICK if now == STICK else (EVENT_SLIP if before == STICK else EVENT_REVERSAL)
             keep_event(net, net.x[TIME], c, kind)

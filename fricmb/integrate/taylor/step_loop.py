@@ -12,37 +12,32 @@ from fricmb.integrate.taylor.change import taylor_change
 from fricmb.integrate.taylor.event_heap import pop_due, push_due
 from fricmb.integrate.taylor.event_search import bounds, taylor_search
 from fricmb.integrate.taylor.layout import (
-    ALLOWED,
     AT_END,
     END,
     EPS,
-    FASTEST,
     INPUT,
     LIMIT,
-    LONGEST,
     N_EVENTS,
     N_HEAP,
     N_HERE,
+    N_ONCE,
     N_SAMPLES,
     N_SHORTER,
     N_STEPS,
     N_STOP,
-    NEXT,
     PHASE,
     STALLED,
     STEP,
     TIME,
-    TOL,
     UNTIL,
-    WORK,
 )  # fmt: skip
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate, rescale
+from fricmb.integrate.taylor.polynomials import horner, horner_rate, rescale
 from fricmb.integrate.taylor.sample import sample
-from fricmb.integrate.taylor.series import taylor_series
-from fricmb.integrate.taylor.signals import ROUNDING, belt_value, signal_series
+from fricmb.integrate.taylor.signals import belt_value
 from fricmb.integrate.taylor.starting_modes import set_window, settle
+from fricmb.integrate.taylor.step_start import begin_step
 
 #: Why a run came back.
 DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP = range(9)
@@ -50,102 +45,6 @@ DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP = ra
 PATIENCE = 100
 #: Phases of a step.
 BEGIN, INSIDE, FINISH, SETTLE = range(4)
-
-
-#: Errors in units of the tolerance from which on, and parts of the step down to which, its polynomials say nothing.
-BEYOND, BRIEF = 1e12, 0.02
-#: Round-off of a prescribed function is less than that, relative to its largest value.
-NO_ROUNDING = 1e-7
-
-
-@kernel
-def tail_error(net: Net, h: float) -> float:
-    """Last coefficients of the velocities relative to the tolerance."""
-    P = net.Q.shape[0] - 1
-    n = net.q.shape[0]
-    last = net.Q[P]
-    before = net.Q[P - 1]
-    work = net.flat[WORK]
-    floor = 0.01 * net.x[FASTEST]
-    for j in range(n):
-        work[j] = (P * abs(last[j]) + (P - 1) * abs(before[j])) / (net.top[j] + floor)
-    worst, sound = 0.0, 0.0
-    for j in range(n):
-        worst = max(worst, work[j])
-        sound += 0.0 * work[j]
-    # comparisons pass over what is no number
-    return float(worst / (h * net.x[TOL])) if sound == 0.0 else math.inf
-
-
-@kernel
-def idle_step(net: Net, left: float) -> float:
-    """Where nothing accelerates: how long until the first contact breaks away, at most ``left``."""
-    h = net.x[STEP]
-    found = left
-    for c in range(net.mode.shape[0]):
-        force = hold_force(net, c, 0.0)
-        rate = (hold_force(net, c, 1.0) - force) / h
-        if rate != 0.0:
-            found = min(found, max(0.0, (math.copysign(net.stick[c], rate) - force) / rate))
-    return float(found)
-
-
-@kernel
-def follow_signals(net: Net, t: float, h: float) -> float:
-    """A step of at most h over which prescribed functions are polynomials; 0 where they have no value."""
-    fine = max(0.1 * net.x[TOL], ROUNDING)
-    last = math.inf
-    for _ in range(60):
-        error = signal_series(net, t, h)
-        # what a shorter step does not make smaller is round-off of the function's values
-        if error <= fine or 0.5 * last < error < NO_ROUNDING:
-            break
-        last = error
-        # where a function has no value its error is no number
-        h *= max(0.3, 0.9 * (fine / error) ** 0.125) if error < math.inf else 0.3
-        if not error < math.inf and h <= EPS * max(abs(t), net.x[LONGEST]):
-            return 0.0
-    return h
-
-
-@kernel
-def begin_step(net: Net) -> bool:
-    """Choose the step and make its polynomials; False for an idle one, which has no transitions inside."""
-    t = net.x[TIME]
-    stop = net.stops[net.i[N_STOP]]
-    left = stop - t
-    h = min(net.x[NEXT], net.x[LONGEST])
-    if h > left * (1.0 - 1e-9):
-        h = left
-    elif h > 0.5 * left:
-        h = 0.5 * left
-    for _ in range(60):
-        h = follow_signals(net, t, h)
-        net.x[STEP] = h
-        net.x[UNTIL] = net.x[ALLOWED] = 1.0
-        if h == 0.0:
-            return False
-        busy = taylor_series(net, h, net.places)
-        if not busy and net.series.shape[0] == 0:
-            idle = idle_step(net, left)
-            if idle > h:
-                rescale(net, idle / h)
-                net.x[STEP] = idle
-                return False
-        error = tail_error(net, h)
-        if error < BEYOND and net.x[ALLOWED] > BRIEF:
-            break
-        # a part of such a step is no good either: its polynomials are made again for a shorter one
-        net.i[N_SHORTER] += 1
-        h *= 0.1
-    order = net.Q.shape[0] - 2.0
-    factor = min(1.5, 0.95 * (error + 1e-30) ** (-1.0 / order))
-    if error > 1.0 or net.x[ALLOWED] < 1.0:
-        net.i[N_SHORTER] += 1
-        rescale(net, min(factor, net.x[ALLOWED]))
-        factor = 1.0
-    net.x[NEXT] = net.x[STEP] * factor
-    return True
 
 
 @kernel
@@ -224,6 +123,11 @@ def end_account(net: Net) -> None:
 @kernel
 def finish_step(net: Net) -> int:
     """The state at the end of the step."""
+    if net.x[UNTIL] == 0.0:
+        net.x[UNTIL] = 1.0
+        net.i[PHASE] = BEGIN
+        net.i[N_ONCE] += 1
+        return DONE if net.i[N_ONCE] <= PATIENCE + net.mode.shape[0] else TOO_SHORT
     n = net.q.shape[0]
     end_account(net)
     h = net.x[STEP]
@@ -238,6 +142,7 @@ def finish_step(net: Net) -> int:
         if net.mode[c] == STICK and net.plain[c] == 1:
             e = net.row_start[c]
             net.v[net.row_dof[e]] = belt_value(net, c, 1.0) / net.row_coef[e]
+    net.i[N_ONCE] = 0
     at = net.i[N_STEPS]
     net.steps[at, 0] = net.x[TIME]
     net.steps[at, 1] = h
@@ -254,9 +159,15 @@ def finish_step(net: Net) -> int:
     return DONE if sound == 0.0 else NOT_FINITE
 
 
+@kernel
+def list_may_be_full(net: Net) -> bool:
+    """Whether the list of transitions might not hold those with which a step begins."""
+    return bool(net.groups.landing.shape[0] > 0 and net.i[N_EVENTS] + net.mode.shape[0] > net.events.shape[0])
+
+
 @entry
 def drive_taylor(net: Net, t_pause: float, most: int) -> int:
-    """Step until the end, until there is no room, until t_pause, or until ``most`` steps are done."""
+    """Step until the end, until an array is full, until t_pause, or until ``most`` steps are done."""
     until = net.i[N_STEPS] + most
     while True:
         if net.i[PHASE] == SETTLE:
@@ -269,7 +180,7 @@ def drive_taylor(net: Net, t_pause: float, most: int) -> int:
                 settle(net, True)
             net.i[PHASE] = BEGIN
         if net.i[PHASE] == BEGIN:
-            if net.i[N_STEPS] >= net.steps.shape[0]:
+            if net.i[N_STEPS] >= net.steps.shape[0] or list_may_be_full(net):
                 return FULL
             if net.i[N_STEPS] >= until or net.x[TIME] > t_pause:
                 return PAUSE

@@ -13,6 +13,7 @@ from fricmb.integrate.run.stop import watched
 from fricmb.integrate.taylor.layout import END, N_SAMPLES
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare import net_of, no_samples
+from fricmb.integrate.taylor.prepare_groups import has_planar
 from fricmb.integrate.taylor.step_loop import PAUSE, drive_taylor
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
 
@@ -21,7 +22,7 @@ NUMBERS, ROWS = 3_000_000, 20_000_000
 #: Steps at a time on the way to samples.
 STRIDE = 16
 #: Arrays of the state.
-STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "large", "free", "x", "i", "stops", "window")
+STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "x", "i", "stops", "window")
 
 
 class Checkpoints:
@@ -119,7 +120,7 @@ class TaylorRun(Trajectory):
         problem = self.problem
         net = net_of(problem, self._degree)
         if len(t) == 0:
-            return _samples(problem, with_arrays(net, **no_samples(problem.n, problem.n_c)), slice(0, 0))
+            return _samples(problem, with_arrays(net, **no_samples(problem.n, problem.m)), slice(0, 0))
         from fricmb.integrate.taylor.integrator import _running
 
         with _running:
@@ -129,9 +130,9 @@ class TaylorRun(Trajectory):
                     getattr(net, name)[:] = state[name]
             last = len(self.transitions.t)
             net = with_arrays(
-                net, stops=state["stops"], events=np.zeros((last + problem.n_c + 1, 3)),
+                net, stops=state["stops"], events=np.zeros((last + problem.m + 1, 3)),
                 steps=np.zeros((2 * len(self._steps) + STRIDE, 2)),  # pauses at marks may end steps, too
-                **{**no_samples(problem.n, problem.n_c, len(t)), "times": np.ascontiguousarray(t), "left": left},
+                **{**no_samples(problem.n, problem.m, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip
             net.i[N_SAMPLES] = 0
             if self.failure is not None:
@@ -150,9 +151,14 @@ class TaylorRun(Trajectory):
 
 def _samples(problem: Problem, net: Net, part: slice) -> Samples:
     t = net.times[part]
-    N = np.broadcast_to(np.asarray(problem.contacts.N, float)[:, None], (problem.n_c, len(t)))
+    # islands joined write their rows into it
+    N = np.repeat(np.asarray(problem.contacts.N, float)[:, None], len(t), axis=1)
+    first = problem.contacts.row[:-1]
+    mode, loss = net.out_mode[part].T, net.out_loss[part].T
+    if has_planar(problem):
+        mode, loss = mode[first], np.add.reduceat(loss, first, axis=0)
     return Samples(
         t=t, q=net.out_q[part].T, v=net.out_v[part].T, z=np.empty((0, len(t))), F=net.out_F[part].T,
-        g=net.out_g[part].T, N=N, mode=net.out_mode[part].T, friction_loss=net.out_loss[part].T,
+        g=net.out_g[part].T, N=N, mode=mode, friction_loss=loss,
         damping_loss=net.out_x[part, 1].copy(), input=net.out_x[part, 0].copy(),
     )  # fmt: skip

@@ -1,6 +1,7 @@
 """What a contact whose mode ends goes over to, and the transition that is reported.
 
-One direction and one limit, ``net.stick``: the friction cone is a comparison (see ``model/friction_cone``).
+One direction and one limit, ``net.stick``: the friction cone is a comparison (see ``model/friction_cone``).  Contacts
+in two directions turn in ``landing``.
 """
 
 from __future__ import annotations

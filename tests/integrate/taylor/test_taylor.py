@@ -160,7 +160,6 @@ TABLE = fm.laws.Tabulated(speed=[0.0, 1.0], mu=[1.2, 1.0])
 @pytest.mark.parametrize(
     ("scene", "why"),
     [
-        (fm.models.puck_on_belt(), "one direction"),
         (fm.models.block_stack(201, mu_s=0.5), "201 contacts hold each other"),
         (fm.models.stick_slip_chain(2, laws=[TABLE] * 2), "must be formulas"),
         (fm.models.stick_slip_chain(2, laws=[fm.laws.TanhRegularised(mu=1.0, v_reg=1e-2)] * 2), "a coefficient"),

@@ -1,0 +1,117 @@
+"""The beginning of a step: how long it is, its polynomials, and whether a contact comes to rest with it."""
+
+from __future__ import annotations
+
+import math
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.taylor.idle import idle_step
+from fricmb.integrate.taylor.landing import land_all, take_off
+from fricmb.integrate.taylor.layout import (
+    ALLOWED,
+    EPS,
+    FASTEST,
+    LONGEST,
+    N_SHORTER,
+    N_STOP,
+    NEXT,
+    STEP,
+    TIME,
+    TOL,
+    UNTIL,
+    WORK,
+)  # fmt: skip
+from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.polynomials import rescale
+from fricmb.integrate.taylor.series import taylor_series
+from fricmb.integrate.taylor.signals import ROUNDING, signal_series
+
+#: Errors in units of the tolerance from which on, and parts of the step down to which, its polynomials say nothing.
+BEYOND, BRIEF = 1e12, 0.02
+#: Round-off of a prescribed function is less than that, relative to its largest value.
+NO_ROUNDING = 1e-7
+
+
+@kernel
+def tail_error(net: Net, h: float) -> float:
+    """Last coefficients of the velocities relative to the tolerance."""
+    P = net.Q.shape[0] - 1
+    n = net.q.shape[0]
+    last = net.Q[P]
+    before = net.Q[P - 1]
+    work = net.flat[WORK]
+    floor = 0.01 * net.x[FASTEST]
+    for j in range(n):
+        work[j] = (P * abs(last[j]) + (P - 1) * abs(before[j])) / (net.top[j] + floor)
+    worst, sound = 0.0, 0.0
+    for j in range(n):
+        worst = max(worst, work[j])
+        sound += 0.0 * work[j]
+    # comparisons pass over what is no number
+    return float(worst / (h * net.x[TOL])) if sound == 0.0 else math.inf
+
+
+@kernel
+def follow_signals(net: Net, t: float, h: float) -> float:
+    """A step of at most h over which prescribed functions are polynomials; 0 where they have no value."""
+    fine = max(0.1 * net.x[TOL], ROUNDING)
+    last = math.inf
+    for _ in range(60):
+        error = signal_series(net, t, h)
+        # what a shorter step does not make smaller is round-off of the function's values
+        if error <= fine or 0.5 * last < error < NO_ROUNDING:
+            break
+        last = error
+        # where a function has no value its error is no number
+        h *= max(0.3, 0.9 * (fine / error) ** 0.125) if error < math.inf else 0.3
+        if not error < math.inf and h <= EPS * max(abs(t), net.x[LONGEST]):
+            return 0.0
+    return h
+
+
+@kernel
+def begin_step(net: Net) -> bool:
+    """Choose the step and make its polynomials; False for an idle one, which has no transitions inside."""
+    t = net.x[TIME]
+    stop = net.stops[net.i[N_STOP]]
+    left = stop - t
+    take_off(net)
+    h = min(net.x[NEXT], net.x[LONGEST])
+    if h > left * (1.0 - 1e-9):
+        h = left
+    elif h > 0.5 * left:
+        h = 0.5 * left
+    for _ in range(60):
+        h = follow_signals(net, t, h)
+        net.x[STEP] = h
+        net.x[UNTIL] = net.x[ALLOWED] = 1.0
+        if h == 0.0:
+            return False
+        busy = taylor_series(net, h, net.places)
+        rest = land_all(net, h) if net.groups.landing.shape[0] > 0 else math.inf
+        if rest < math.inf:
+            h = follow_signals(net, t, min(h, rest))
+            net.x[STEP] = h
+            busy = taylor_series(net, h, net.places)
+        if not busy and net.series.shape[0] == 0:
+            idle = idle_step(net, left)
+            if idle > h:
+                rescale(net, idle / h)
+                net.x[STEP] = idle
+                return False
+        error = tail_error(net, h)
+        if error < BEYOND and net.x[ALLOWED] > BRIEF:
+            break
+        # a part of such a step is no good either: its polynomials are made again for a shorter one
+        net.i[N_SHORTER] += 1
+        h *= 0.1
+    order = net.Q.shape[0] - 2.0
+    factor = min(1.5, 0.95 * (error + 1e-30) ** (-1.0 / order))
+    if error > 1.0 or net.x[ALLOWED] < 1.0:
+        net.i[N_SHORTER] += 1
+        rescale(net, min(factor, net.x[ALLOWED]))
+        factor = 1.0
+    net.x[NEXT] = net.x[STEP] * factor
+    if rest < math.inf:
+        net.x[NEXT] = net.x[LONGEST]
+    return True
