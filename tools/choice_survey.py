@@ -1,4 +1,4 @@
-"""Measure what ``auto`` chooses by: collocation of any ports, BDF and Radau on many scenes, time and error.
+"""Measure what ``auto`` chooses by: its methods, and itself, on many scenes: time and error.
 
 ``python tools/choice_survey.py [out.json] [name ...]`` writes one row per scene, method and tolerance.  Times are
 processor time of the second call or later, the best of three.  Errors are scaled by each signal's largest value and
@@ -27,9 +27,10 @@ from fricmb.integrate.collocation.suits import port_rows
 from fricmb.system import build
 
 models, laws = fm.models, fm.laws
-TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
+TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 METHODS: dict[str, Callable[[], Any]] = {
     "collocation": partial(Collocation, general=True), "bdf": integrators["bdf"], "radau": integrators["radau"],
+    "taylor": integrators["taylor"], "auto": lambda: "auto",
 }  # fmt: skip
 
 
@@ -149,10 +150,11 @@ def main() -> None:
     rows: list[dict[str, Any]] = []
     for name, (make, t_end) in scenes().items():
         if not wanted or name in wanted:
-            rows += measure(name, make, t_end)
+            found = measure(name, make, t_end)
+            rows += found
             print(
                 name,
-                *(f"{r['method']} {r['rtol']:.0e} {r.get('ms')} ms {r.get('error')}" for r in rows[-12:]),
+                *(f"{r['method']} {r['rtol']:.0e} {r.get('ms')} ms {r.get('error')}" for r in found),
                 sep="\n  ",
             )
             out.write_text("[\n" + ",\n".join(json.dumps(row) for row in rows) + "\n]\n")

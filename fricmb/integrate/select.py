@@ -35,11 +35,17 @@ BEARABLE, WIDE = 1024, 100
 LOOSE = 1e-4
 
 
-#: Degrees of freedom to a contact from which on exact structure is faster than Taylor steps where contacts are coupled
+#: Degrees of freedom to a contact up to which Taylor steps are faster than exact structure where contacts are coupled
 #: or friction depends on slip speed: on two to fifty contacts under Stribeck laws, and on stacks, bdf took 1.3 to 2
 #: times as long as Taylor steps with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty;
-#: collocation 1.3 to 2.2 times with two and three.
+#: collocation 1.3 to 2.2 times with two and three, and with one on a single mass.
 DEEP = 5
+#: Where there are more, Taylor steps, whose work goes with n times the highest frequency, are faster again from LONG
+#: degrees of freedom on and up to SPREAD n between the highest and the lowest frequency (exact structure: n squared):
+#: beams of 60 and 150 masses under a Stribeck law took collocation 1.7 to 2.9 and bdf 3.4 to 8 times as long; with 20
+#: masses both took as long, with 60 and frequencies 4000 apart Taylor steps lost.  Plates of 120 and 600 modes on three
+#: pads: bdf took 1.8 to 3.7 times as long.  One contact on few masses: up to CLOSE.
+LONG, SPREAD, CLOSE = 30, 8.0, 3.0
 #: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
 FEW = 4
 #: Damping ratio of a mode that is calm before a slower one has moved, and how many times as fast it is where explicit
@@ -64,8 +70,8 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
-    if problem.n_c > 1 and (many := _taylor_where_fastest(problem)) is not None:
-        return many
+    if (series := _taylor_where_fastest(problem)) is not None:
+        return series
     contact_rows = problem.m + problem.n_v
     if problem.n >= WIDE and 0 < contact_rows <= many_rows(rtol) and is_banded(problem):
         why = f"{problem.n} degrees of freedom in a narrow band, {contact_rows} rows of contacts"
@@ -94,19 +100,34 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
 
 
 def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
-    """Taylor steps and why, where they are the fastest of several contacts."""
+    """Taylor steps and why, where they are the fastest."""
+    if problem.n_c == 0 or (problem.n < WIDE and is_single(problem)):
+        # kernels of its own
+        return None
     from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
     from fricmb.integrate.taylor.prepare_groups import coupled_or_rate_dependent
 
-    contacts = f"{problem.n_c} contacts"
+    contacts = f"{problem.n_c} contacts" if problem.n_c > 1 else "one contact"
     many = GuardedFewTaylor() if problem.n_c < FEW else GuardedTaylor()
     if many.refuses(problem) is not None or (problem.n_c < FEW and _held_by_calm_modes(problem)):
         return None
-    if not coupled_or_rate_dependent(problem):
+    if problem.n_c > 1 and not coupled_or_rate_dependent(problem):
         return many, f"{contacts} under constant friction, none sharing a body: Taylor steps, local corrections"
-    if problem.n < DEEP * problem.n_c:
+    if problem.n < DEEP * problem.n_c and (problem.n_c > 1 or _spread(problem) <= CLOSE):
         return many, f"{contacts} with friction of slip speed, or sharing bodies: Taylor steps, local corrections"
+    if problem.n >= LONG and _spread(problem) <= SPREAD * problem.n:
+        return many, f"{contacts} on {problem.n} degrees of freedom, frequencies not far apart: Taylor steps"
     return None
+
+
+def _spread(problem: Problem) -> float:
+    """Highest frequency over the lowest that is not 0; infinite where they are not known."""
+    from fricmb.integrate.taylor.prepare import fastest
+
+    slow = problem.omega[problem.omega > 0.0].min(initial=math.inf)
+    if problem.omega.size < problem.n:
+        return math.inf
+    return float(fastest(problem) / slow) if slow < math.inf else 1.0
 
 
 def _held_by_calm_modes(problem: Problem) -> bool:
