@@ -36,6 +36,7 @@ from fricmb.integrate.taylor.prepare import fastest, net_of, no_samples, refusal
 from fricmb.integrate.taylor.prepare_groups import has_planar, row_owner
 from fricmb.integrate.taylor.starting_modes import settle_start
 from fricmb.integrate.taylor.step_loop import (
+    CREEPS,
     CROWDED,
     DONE,
     FULL,
@@ -55,6 +56,7 @@ FAILURES = {
     WIDE: "a transition is felt by too many degrees of freedom within one step (timestepping or bdf take this)",
     NOT_FINITE: "the state grew beyond what numbers hold",
     TOO_SHORT: "the step size fell below round-off: a function of time cannot be followed",
+    CREEPS: "the direction of slip turns so fast that steps are next to nothing (take radau or bdf)",
     TOO_STEEP: "the coefficient of friction of contact {contact!r} is followed over slip speeds of {range:.1e} alone: "
     "it falls without bound there (give its law a finite slope at rest, or take radau or bdf)",
 }

@@ -170,6 +170,15 @@ def fastest_speed(net: Net, h: float) -> float:
 
 
 @kernel
+def speed_from_rest(net: Net, h: float) -> float:
+    """The same, or the speed to which rates of accelerations lead: all there is where slip begins from rest."""
+    fastest = net.x[FASTEST]
+    for j in range(net.top.shape[0]):
+        fastest = max(fastest, 3.0 * abs(net.Q[3, j]) / h)
+    return float(fastest)
+
+
+@kernel
 def curves_hold(net: Net) -> float:
     """The part of the step in which all slip speeds stay where their curves hold, and these are good enough."""
     allowed = 1.0
@@ -202,6 +211,8 @@ def taylor_series(net: Net, h: float, places: Ints) -> bool:
         hold_groups(net, k, h, factor)
         if k == 0:
             net.x[FASTEST] = fastest_speed(net, h)
+        if k == 1:
+            net.x[FASTEST] = speed_from_rest(net, h)
         if not busy:
             for j in range(n):
                 if target[j] != 0.0:

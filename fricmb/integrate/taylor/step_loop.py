@@ -17,6 +17,8 @@ from fricmb.integrate.taylor.layout import (
     EPS,
     INPUT,
     LIMIT,
+    LONGEST,
+    N_CREEP,
     N_EVENTS,
     N_HEAP,
     N_HERE,
@@ -40,9 +42,11 @@ from fricmb.integrate.taylor.starting_modes import set_window, settle
 from fricmb.integrate.taylor.step_start import begin_step
 
 #: Why a run came back.
-DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP = range(9)
+DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP, CREEPS = range(10)
 #: Steps in a row that do not move the time.
 PATIENCE = 100
+#: Steps in a row below that part of the longest step, which series are no way to take.
+MANY, SLIGHT = 3000, 1e-4
 #: Phases of a step.
 BEGIN, INSIDE, FINISH, SETTLE = range(4)
 
@@ -156,6 +160,9 @@ def finish_step(net: Net) -> int:
     else:
         net.i[PHASE] = BEGIN
     net.x[TIME] = t
+    net.i[N_CREEP] = net.i[N_CREEP] + 1 if h < SLIGHT * net.x[LONGEST] else 0
+    if net.i[N_CREEP] > MANY and net.groups.landing.shape[0] > 0:
+        return CREEPS
     return DONE if sound == 0.0 else NOT_FINITE
 
 

@@ -168,3 +168,19 @@ def test_what_is_left_to_others():
     with pytest.raises(fm.SceneError, match="'sole' does not answer to a force alike in all directions"):
         fm.simulate(scene, t_end=1.0, method="taylor")
     assert fm.simulate(stacked(LAWS["Coulomb"]), t_end=1.0).stats.method != "taylor"
+
+
+def test_slip_that_sets_out_from_rest_takes_few_steps():
+    """Nothing moves yet: what counts as little is what the force that grows brings in the step."""
+    pulls = [("x", 0.7 * fm.t), ("y", 0.3 * fm.t + 0.1 * fm.t**2)]
+    block = fm.Body("block", mass=1.0, axes="xy")
+    parts = [fm.Force(f"f{axis}", block, axis=axis, value=F) for axis, F in pulls]
+    law = fm.laws.Lorentzian(mu_s=0.2, mu_k=0.08, v_s=0.05, viscous=0.02)
+    scene = fm.Scene("out", [block, *parts, fm.Contact("sole", block, law=law, normal_force=11.0)])
+    true = fm.simulate(scene, t_end=5.0, rtol=1e-10, method="radau")
+    for rtol in (1e-4, 1e-8):
+        sol = fm.simulate(scene, t_end=5.0, rtol=rtol)
+        assert sol.stats.method == "taylor"
+        assert sol.stats.n_steps < 250
+        assert [e.kind for e in sol.events] == ["slip"]
+        np.testing.assert_allclose(sol.q[:, -1], true.q[:, -1], atol=rtol)
