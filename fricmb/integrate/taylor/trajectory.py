@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
@@ -19,6 +20,8 @@ from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitio
 
 #: Numbers that checkpoints and rows may hold altogether.
 NUMBERS, ROWS = 3_000_000, 20_000_000
+#: Round-off of a time that is a step's beginning and its length times a part of it.
+GRAIN = 1e-14
 #: Steps at a time on the way to samples.
 STRIDE = 16
 #: Arrays of the state.
@@ -76,7 +79,7 @@ class TaylorRun(Trajectory):
         width = 2 * self.problem.n + 4 * max(self.problem.n_c, 1)
         events = self.transitions.t
         if (len(starts) + 2 * len(events)) * width <= ROWS:
-            inner = starts[~np.isin(starts, events)]
+            inner = starts[~_beside(starts, np.sort(events))]
             t = np.concatenate([inner, events, events])
             left = np.concatenate([np.zeros(len(inner)), np.ones(len(events)), np.zeros(len(events))])
             order = np.lexsort((-left, t))
@@ -147,6 +150,20 @@ class TaylorRun(Trajectory):
         times = [float(state["x"][0]) for state in self._marks]
         # a left-hand value at the start of a step belongs to the step before
         return self._marks[max(0, int(np.searchsorted(times, t, side="left")) - 1)]
+
+
+def _beside(t: Floats, events: Floats) -> NDArray[np.bool_]:
+    """Whether times (n_t,) are those of transitions (rising), but for round-off.
+
+    A step in which nothing accelerates ends at a break-away, which the next one finds at its beginning: a value there
+    belongs to one side or the other, and a row of its own would be taken for the left one.
+    """
+    found = np.zeros(len(t), dtype=bool)
+    for k in (-1, 0):
+        at = np.clip(np.searchsorted(events, t) + k, 0, max(len(events) - 1, 0))
+        if len(events):
+            found |= np.abs(events[at] - t) <= GRAIN * np.maximum(np.abs(t), 1e-300)
+    return found
 
 
 def _samples(problem: Problem, net: Net, part: slice) -> Samples:

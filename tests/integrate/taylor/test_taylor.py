@@ -191,3 +191,17 @@ def test_stick_that_is_only_grazed_is_met(rtol):
     sol = fm.simulate(scene, t_end=breaks[-1] + 0.5, rtol=rtol, method="taylor")
     assert [event.kind for event in sol.events] == ["slip", "stick"] * 2 + ["slip"]
     assert sol.events.of(kind="slip").t == pytest.approx(breaks, abs=1e3 * rtol)
+
+
+def test_a_break_away_from_rest_has_a_row_on_each_side():
+    """The step before it ends there, but for round-off, and has no row of its own."""
+    scene = fm.models.belt_oscillator(law=fm.laws.CoulombViscous(mu_s=1.5, mu_k=1.0, viscous=0.1))
+    sol = fm.simulate(scene, t_end=60.0, rtol=1e-8, method="taylor")
+    slips = [event.t for event in sol.events if event.kind == "slip"]
+    assert len(slips) > 2
+    contact = sol.contact_names[0]
+    for t in slips:
+        beside = np.abs(sol.t - t) < 1e-9
+        np.testing.assert_array_equal(sol.mode(contact)[beside], [0, 1])
+        # what it holds, and friction behind: mu_s and mu_k times the load of 1
+        np.testing.assert_allclose(np.abs(sol.force(contact)[..., beside]).ravel(), [1.5, 1.0], rtol=1e-7)
