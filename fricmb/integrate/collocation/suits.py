@@ -12,12 +12,12 @@ from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant
 #: friction, where all of them are friction's, and under constant friction at tight tolerances or where there are far
-#: more degrees of freedom.  With six rows of friction collocation took 0.42 to 0.91 of the time of the others at 1e-3
-#: to 1e-6 (pads on rotors, masses in the plane that slide or have others beside them; 0.97 to 1.19 where all three
-#: stick and slip); with eight rows that stick and slip 0.5 to 3.7, with eight that slide 0.6 to 1.2.
-VARYING_ROWS, FEW_ROWS, FRICTION_ROWS, MOST_ROWS = 2, 4, 6, 12
+#: more degrees of freedom.  With 6 to 12 rows of friction (elliptic, stacked in the plane) collocation took 0.3 to 0.9
+#: of the time of the others at 1e-4 and 1e-6, 0.9 to 1.3 at 1e-2; with 8 to 18 rows of which a third or a half are
+#: normal forces that vary 0.5 to 0.7 at 1e-6, 0.8 to 1.2 at 1e-4, 1.7 to 2.4 at 1e-2.
+VARYING_ROWS, FEW_ROWS, FRICTION_ROWS, MOST_ROWS = 2, 4, 12, 16
 #: Tolerance that counts as tight.
-TIGHT = 1e-7
+TIGHT = 1e-5
 #: Degrees of freedom per port row beyond which condensing to the ports pays at any tolerance, and largest structure.
 WIDE, LARGEST = 5, 400
 
