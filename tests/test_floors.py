@@ -34,7 +34,7 @@ ENGINE = (
     {"output"},
     {"step"},
     {"contact"},
-    {"methods"},
+    {"methods", "suits_taylor"},
     {"collocation", "constrained", "taylor", "timestepping"},
     {"guard", "guarded_taylor", "named"},
     {"select"},

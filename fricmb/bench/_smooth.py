@@ -161,7 +161,7 @@ def _band(operator: csr_array, problem: Problem, ports: csr_array) -> int:
     n, contacts = problem.n, problem.contacts
     if problem.n_z:
         return 2 * n + problem.n_z - 1
-    owner = np.repeat(np.arange(problem.n_c), np.diff(contacts.row))
+    owner = contacts.of_row
     together = csr_array((owner[:, None] == owner).astype(float))
     pattern = abs(operator[:, :n]) + abs(operator[:, n : 2 * n]) + abs(ports) @ together @ abs(csr_array(contacts.W.T))
     i, j = pattern.nonzero()

@@ -204,6 +204,11 @@ class Contacts:
         """``W``, ``Wu`` or ``Wn`` as a sparse matrix."""
         return _sparse_of(self, name)
 
+    @property
+    def of_row(self) -> Ints:
+        """(m,) the contact of every row."""
+        return np.repeat(np.arange(len(self.row) - 1), np.diff(self.row))
+
 
 class SparseContacts(LazyMatrices, Contacts):
     """The same of a large scene: ``W``, ``Wu``, ``Wn`` sparse, and dense only for those who ask for them."""

@@ -16,6 +16,7 @@ from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import LAW_SMOOTH, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.suits_taylor import against_taylor, fastest
 
 
 def many_rows(rtol: float) -> int:
@@ -104,6 +105,12 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
     if problem.n_c == 0 or (problem.n < WIDE and is_single(problem)):
         # kernels of its own
         return None
+    # asked first of all, since Taylor steps are slow to load
+    shallow = problem.n < DEEP * problem.n_c
+    if against_taylor(problem) is not None:
+        return None
+    if problem.n_c == 1 and not (_close(problem) if shallow else _long(problem)):
+        return None
     from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
     from fricmb.integrate.taylor.prepare_groups import coupled_or_rate_dependent
 
@@ -113,17 +120,25 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
         return None
     if problem.n_c > 1 and not coupled_or_rate_dependent(problem):
         return many, f"{contacts} under constant friction, none sharing a body: Taylor steps, local corrections"
-    if problem.n < DEEP * problem.n_c and (problem.n_c > 1 or _spread(problem) <= CLOSE):
+    if shallow:
         return many, f"{contacts} with friction of slip speed, or sharing bodies: Taylor steps, local corrections"
-    if problem.n >= LONG and _spread(problem) <= SPREAD * problem.n:
+    if _long(problem):
         return many, f"{contacts} on {problem.n} degrees of freedom, frequencies not far apart: Taylor steps"
     return None
 
 
+def _close(problem: Problem) -> bool:
+    """Whether all modes ring in the same octaves."""
+    return _spread(problem) <= CLOSE
+
+
+def _long(problem: Problem) -> bool:
+    """Whether modes are so many, and so close, that explicit steps are fewer than what exact structure costs."""
+    return problem.n >= LONG and _spread(problem) <= SPREAD * problem.n
+
+
 def _spread(problem: Problem) -> float:
     """Highest frequency over the lowest that is not 0; infinite where they are not known."""
-    from fricmb.integrate.taylor.prepare import fastest
-
     slow = problem.omega[problem.omega > 0.0].min(initial=math.inf)
     if problem.omega.size < problem.n:
         return math.inf
@@ -132,8 +147,6 @@ def _spread(problem: Problem) -> float:
 
 def _held_by_calm_modes(problem: Problem) -> bool:
     """Whether modes that come to rest at once are far faster than all that ring: they hold explicit steps alone."""
-    from fricmb.integrate.taylor.prepare import fastest
-
     rings = problem.omega[problem.zeta < CALM].max(initial=problem.omega.min(initial=math.inf))
     return bool(fastest(problem) > APART * rings > 0.0)
 

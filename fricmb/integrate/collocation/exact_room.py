@@ -132,7 +132,10 @@ def _exact(problem: Problem, s: int) -> Exact:
 
 @contextmanager
 def exact_lent(problem: Problem, s: int, safety: float, exact_up_to: float | None) -> Iterator[Exact]:
-    """A room of the problem with s nodes, its tables kept for the next run; nobody else has it meanwhile."""
+    """A room of the problem with s nodes; nobody else has it meanwhile.
+
+    Its tables are kept for the next run, where workspaces are lent as they were when they were made.
+    """
     free: list[Exact] = once_per_problem(problem, ("exact", s, exact_up_to), list)
     try:
         found = free.pop()  # of several threads one gets it

@@ -27,7 +27,7 @@ from fricmb.integrate.taylor.layout import (
     WATCH,
 )  # fmt: skip
 from fricmb.integrate.taylor.ledger import count_local, shorten_account
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import polynomial
 from fricmb.integrate.taylor.slip_range import correction_noise, good_until, widen
 from fricmb.integrate.taylor.touched import forget
@@ -132,25 +132,37 @@ def end_step(net: Net, c: int, until: float, was: int, before: float) -> None:
 
 
 @kernel
+def pay_slip(net: Net, c: int, tau: float) -> None:
+    """Losses of contact c in one direction up to tau, before its mode changes."""
+    if net.plain[c] == 1:
+        lose_sliding(net, c, polynomial(net.Q, net.first_dof[c], tau), tau)
+    else:
+        pay(net, c, tau)
+
+
+@kernel
+def await_end(net: Net, c: int, kind: int) -> None:
+    """Contact c, which has changed its mode by ``kind``, is looked at again in the next step."""
+    net.due[c] = math.inf
+    net.since[c] = AT_END if kind == EVENT_SLIP else -1.0
+
+
+@kernel
 def change_at_end(net: Net, c: int, tau: float) -> None:
     """Contact c changes its mode at tau in a scene with contacts in two directions: there the step ends.
 
     A correction of the direction of slip is as much work as a step.
     """
     h, was, before = net.x[STEP], net.mode[c], net.sigma[c]
-    net.due[c] = math.inf
     if net.groups.planar[c] >= 0:
         pay(net, c, tau)
         pay(net, c + 1, tau)
         kind = turn_planar(net, c, tau)
-    elif net.plain[c] == 1:
-        lose_sliding(net, c, polynomial(net.Q, net.first_dof[c], tau), tau)
-        kind = turn(net, c, tau, h)
+        net.due[c] = math.inf
     else:
-        pay(net, c, tau)
+        pay_slip(net, c, tau)
         kind = turn(net, c, tau, h)
-    if net.groups.planar[c] == -1:
-        net.since[c] = AT_END if kind == EVENT_SLIP else -1.0
+        await_end(net, c, kind)
     if kind >= 0:
         keep_event(net, net.x[TIME] + tau * h, c, kind)
         # what made steps short ends here; a step that is too long costs little, a short one at the beginning of slip
@@ -164,16 +176,13 @@ def change_at_end(net: Net, c: int, tau: float) -> None:
 @block
 def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     """Contact c changes its mode at tau; returns 0, or 1 where the correction would touch too many dofs."""
-    if net.groups.landing.shape[0] > 0:
+    if has_planes(net):
         change_at_end(net, c, tau)
         return 0
     h = net.x[STEP]
     plain = net.plain[c] == 1
     was, before = net.mode[c], net.sigma[c]
-    if plain:
-        lose_sliding(net, c, polynomial(net.Q, net.first_dof[c], tau), tau)
-    else:
-        pay(net, c, tau)
+    pay_slip(net, c, tau)
     kind = turn(net, c, tau, h)
     if kind < 0:
         # it only touched 0 and slips on
@@ -198,8 +207,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
         brief = True
     end_step(net, c, tau if brief else until, was, before)
     if brief:
-        net.due[c] = math.inf
-        net.since[c] = AT_END if kind == EVENT_SLIP else -1.0
+        await_end(net, c, kind)
         forget(net, count)
         return 0
     apply_correction(net, count, c, tau, h)

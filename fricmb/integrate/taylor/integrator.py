@@ -14,6 +14,7 @@ from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.suits_taylor import fastest
 from fricmb.integrate.taylor.layout import (
     END,
     FASTEST,
@@ -32,8 +33,8 @@ from fricmb.integrate.taylor.layout import (
     TOL,
 )  # fmt: skip
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.prepare import fastest, net_of, no_samples, refusal
-from fricmb.integrate.taylor.prepare_groups import has_planar, row_owner
+from fricmb.integrate.taylor.prepare import net_of, no_samples, refusal
+from fricmb.integrate.taylor.prepare_groups import has_planar
 from fricmb.integrate.taylor.starting_modes import settle_start
 from fricmb.integrate.taylor.step_loop import (
     CREEPS,
@@ -161,7 +162,7 @@ def set_start(
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
     if start.mode is not None:
-        net.mode[:] = start.mode[row_owner(problem)]
+        net.mode[:] = start.mode[problem.contacts.of_row]
         if start.direction is not None:
             net.sigma[:] = np.where(start.direction == 0.0, 1.0, start.direction)
     return net
@@ -191,7 +192,7 @@ def failure_text(problem: Problem, net: Net, code: int) -> str:
     if code in (CROWDED, TOO_SHORT) and narrow.min(initial=math.inf) < NARROW * net.x[FASTEST]:
         at = int(narrow.argmin())
         row = np.flatnonzero(net.groups.lawful == at)[0]
-        contact = problem.contact_names[row_owner(problem)[row]]
+        contact = problem.contact_names[problem.contacts.of_row[row]]
         return FAILURES[TOO_STEEP].format(contact=contact, range=2.0 * narrow[at])
     return FAILURES[code].format(limit=int(net.i[LIMIT]))
 
@@ -208,7 +209,7 @@ def _trajectory(
     problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
 ) -> TaylorRun:
     events = net.events[: net.i[N_EVENTS]].copy()
-    events[:, 1] = row_owner(problem)[events[:, 1].astype(int)]
+    events[:, 1] = problem.contacts.of_row[events[:, 1].astype(int)]
     steps = int(net.i[N_STEPS])
     counters = Counters(
         n_steps=steps, n_rejected=int(net.i[N_SHORTER]), n_rhs=steps * degree, n_jac=int(net.i[N_SEARCHES])

@@ -46,6 +46,15 @@ def set_planar(net: Net, c: int, mode: int) -> None:
 
 
 @kernel
+def let_go(net: Net, c: int, x: float, y: float) -> None:
+    """Contact c in two directions slips against the force (x, y) that has held it."""
+    size = math.hypot(x, y)
+    set_planar(net, c, SLIP)
+    net.since[c] = AT_END
+    net.sigma[c], net.sigma[c + 1] = -x / size, -y / size
+
+
+@kernel
 def friction_at(net: Net, c: int, speed: float) -> float:
     """Friction mu N at a slip speed."""
     if net.groups.lawful[c] < 0:
@@ -131,11 +140,7 @@ def take_off(net: Net) -> None:
 def turn_planar(net: Net, c: int, tau: float) -> int:
     """Give contact c in two directions its new mode; the kind of transition, -1 where slip is to be looked at again."""
     if net.mode[c] == STICK:
-        x, y = hold_force(net, c, tau), hold_force(net, c + 1, tau)
-        size = math.hypot(x, y)
-        set_planar(net, c, SLIP)
-        net.sigma[c], net.sigma[c + 1] = -x / size, -y / size
-        net.since[c] = AT_END
+        let_go(net, c, hold_force(net, c, tau), hold_force(net, c + 1, tau))
         return int(EVENT_SLIP)
     net.since[c] = -1.0
     if lands(net, c):

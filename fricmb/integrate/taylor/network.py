@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints
 from fricmb.integrate.taylor.groups import Groups
@@ -123,3 +124,9 @@ class Net(NamedTuple):
     stops: Floats
     places: Ints
     groups: Groups
+
+
+@kernel
+def has_planes(net: Net) -> bool:
+    """Whether any contact has two directions."""
+    return bool(net.groups.landing.shape[0] > 0)

@@ -18,7 +18,7 @@ from fricmb.integrate.problem import SLIP, Floats, Floats2
 from fricmb.integrate.taylor.friction_curve import friction_row
 from fricmb.integrate.taylor.layout import AT_END, FASTEST, NOISE
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.polynomials import drop_slip, relative_row
+from fricmb.integrate.taylor.polynomials import drop_slip, push_row, relative_row
 from fricmb.integrate.taylor.signals import belt_rate
 
 #: Slip speeds below that, relative to the largest speed, are the round-off of none.
@@ -134,7 +134,5 @@ def push_planar(net: Net, c: int, k: int, h: float, factor: float) -> None:
         landing_row(net, c, k, h, factor)
     else:
         slip_row(net, c, k, h, factor)
-    target = net.Q[k + 2]
     for row in range(c, c + 2):
-        for e in range(net.row_start[row], net.row_start[row + 1]):
-            target[net.row_dof[e]] += factor * net.push[e] * net.groups.F[k, row]
+        push_row(net, row, factor * net.groups.F[k, row], net.Q[k + 2])

@@ -83,13 +83,25 @@ def relative(net: Net, c: int, s: float, h: float) -> float:
 
 
 @kernel
+def slip_speed(net: Net, row: int, v: Floats, s: float) -> float:
+    """Relative velocity of a row at s under the velocities ``v``."""
+    g = -belt_value(net, row, s)
+    for e in range(net.row_start[row], net.row_start[row + 1]):
+        g += net.row_coef[e] * v[net.row_dof[e]]
+    return float(g)
+
+
+@kernel
+def push_row(net: Net, row: int, force: float, out: Floats) -> None:
+    """Add to ``out`` the accelerations that a force of a row brings about."""
+    for e in range(net.row_start[row], net.row_start[row + 1]):
+        out[net.row_dof[e]] += net.push[e] * force
+
+
+@kernel
 def drop_slip(net: Net, row: int) -> None:
     """Take the relative velocity of a row, which shares its dofs with no other, out of the state."""
-    value = belt_value(net, row, 0.0)
-    for e in range(net.row_start[row], net.row_start[row + 1]):
-        value -= net.row_coef[e] * net.v[net.row_dof[e]]
-    for e in range(net.row_start[row], net.row_start[row + 1]):
-        net.v[net.row_dof[e]] += net.push[e] * value / net.compliance[row]
+    push_row(net, row, -slip_speed(net, row, net.v, 0.0) / net.compliance[row], net.v)
 
 
 @kernel

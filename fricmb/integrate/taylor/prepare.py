@@ -11,8 +11,9 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import _table
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Floats, Ints, Problem
+from fricmb.integrate.problem import Floats, Ints, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare_groups import (
@@ -21,7 +22,6 @@ from fricmb.integrate.taylor.prepare_groups import (
     group_statics,
     legendre_rule,
     plain_contacts,
-    row_owner,
     solid,
 )
 from fricmb.integrate.taylor.signals import POINTS
@@ -39,20 +39,7 @@ def refusal(problem: Problem) -> str | None:
 
 
 def _refusal(problem: Problem) -> str | None:
-    if problem.mechanism is not None:
-        return "this scene has bodies that turn, or joints"
-    contacts, linear = problem.contacts, problem.linear
-    if len(problem.elements.table.address):
-        return "this scene has nonlinear elements"
-    if (contacts.law == LAW_SMOOTH).any() or (contacts.normal != NORMAL_CONSTANT).any() or problem.n_z:
-        return "every contact needs a coefficient of friction and a constant normal force"
-    if (contacts.piecewise & (contacts.law != LAW_CONSTANT)).any():
-        return "coefficients of friction that depend on slip speed must be formulas"
-    if not linear.csr("M").is_diagonal():
-        return "the mass matrix must be diagonal"
-    if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
-        return "the stiffness must be symmetric"
-    return against_groups(problem)
+    return against_taylor(problem) or against_groups(problem)
 
 
 def _joint(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
@@ -79,21 +66,6 @@ def _diagonals(start: Ints, index: Ints, values: Floats, n: int) -> tuple[Ints, 
 
 def _scaled(matrix: Csr, by: Floats) -> Csr:
     return Csr(matrix.shape, matrix.start, matrix.index, matrix.value * by[matrix.rows])
-
-
-def fastest(problem: Problem) -> float:
-    """A bound on the frequencies and decay rates of the structure (Gershgorin)."""
-    return once_per_problem(problem, "taylor fastest", lambda: _fastest(problem))
-
-
-def _fastest(problem: Problem) -> float:
-    n = problem.n
-    inside = slice(0, n), slice(0, n)
-    M = problem.linear.csr("M").diagonal()
-    K, C = problem.linear.csr("Kx").block(*inside), problem.linear.csr("Cx").block(*inside)
-    scale = 1.0 / np.sqrt(M)
-    sums = [np.bincount(A.rows, np.abs(A.value) * scale[A.rows] * scale[A.index], n).max(initial=0.0) for A in (K, C)]
-    return float(0.5 * sums[1] + np.sqrt(0.25 * sums[1] ** 2 + sums[0]))
 
 
 def _statics(problem: Problem) -> dict[str, Any]:
@@ -151,7 +123,7 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     plain = plain_contacts(problem)
     owner = np.full(n, -1, dtype=np.int64)
     owner[rows.index] = np.where(plain, np.arange(m), -1)[rows.rows]
-    of = row_owner(problem)
+    of = problem.contacts.of_row
     return {
         "row_start": rows.start, "row_dof": rows.index, "row_coef": rows.value, "push": push,
         "compliance": compliance, "belt": contacts.w, "stick": stick_limits(contacts)[of],

@@ -24,11 +24,6 @@ ISOTROPIC = 1e-12
 INDEPENDENT = 1e-9
 
 
-def row_owner(problem: Problem) -> Ints:
-    """The contact of every row."""
-    return np.repeat(np.arange(problem.n_c), np.diff(problem.contacts.row))
-
-
 def has_planar(problem: Problem) -> bool:
     """Whether a contact has two directions."""
     return problem.m > problem.n_c
@@ -40,7 +35,7 @@ def _labels(problem: Problem) -> tuple[int, Ints]:
     rows, columns, n = W.rows, W.index, problem.n
     if has_planar(problem):
         # a contact holds its rows together as a dof would
-        rows = np.concatenate([rows, n + row_owner(problem)])
+        rows = np.concatenate([rows, n + problem.contacts.of_row])
         columns = np.concatenate([columns, np.arange(problem.m)])
         n += problem.n_c
     return _labels_of(rows, columns, n, problem.m)
@@ -63,7 +58,7 @@ def plain_contacts(problem: Problem) -> NDArray[np.bool_]:
 
 def _plain_contacts(problem: Problem) -> NDArray[np.bool_]:
     contacts, m = problem.contacts, problem.m
-    W, Wu, law = contacts.csr("W"), contacts.csr("Wu"), contacts.law[row_owner(problem)]
+    W, Wu, law = contacts.csr("W"), contacts.csr("Wu"), contacts.law[problem.contacts.of_row]
     _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
     plain = (np.bincount(W.index, minlength=m) == 1) & (np.diff(Wu.start) == 0) & (law == LAW_CONSTANT)
     return np.asarray(plain & (np.bincount(label)[label] == 1))
@@ -151,7 +146,7 @@ def _group_statics(problem: Problem) -> dict[str, Any]:
     lawful = np.full(m, -1, dtype=np.int64)
     chosen = contacts.row[:-1][contacts.law == LAW_COEFFICIENT]
     lawful[chosen] = np.arange(len(chosen))
-    owner, laws = row_owner(problem), _table(contacts.law_table)
+    owner, laws = problem.contacts.of_row, _table(contacts.law_table)
     planar = np.full(m, -1, dtype=np.int64)
     first = contacts.row[:-1][np.diff(contacts.row) == 2]
     planar[first], planar[first + 1] = np.arange(len(first)), SECOND

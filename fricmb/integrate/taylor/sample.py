@@ -10,10 +10,9 @@ from fricmb.integrate.taylor.account import displacement, pay_groups
 from fricmb.integrate.taylor.landing import friction_at
 from fricmb.integrate.taylor.layout import DAMPING, INPUT, N_SAMPLES, STEP, WORK
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands
-from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate
-from fricmb.integrate.taylor.signals import belt_value
+from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate, slip_speed
 
 
 @kernel
@@ -30,7 +29,7 @@ def sample(net: Net, s: float) -> None:
         plain, slips = net.plain[c] == 1, net.mode[c] == SLIP
         e, j = net.row_start[c], net.first_dof[c]
         net.out_mode[at, c] = net.mode[c]
-        net.out_g[at, c] = slip_speed(net, c, s, at) if slips else 0.0
+        net.out_g[at, c] = slip_speed(net, c, v, s) if slips else 0.0
         net.out_loss[at, c] = net.loss[c]
         if not plain:
             net.out_F[at, c] = hold_force(net, c, s)
@@ -39,7 +38,7 @@ def sample(net: Net, s: float) -> None:
             net.out_loss[at, c] += net.slip[c] * abs(displacement(net, c, q[j], s) - net.mark[c])
         else:
             net.out_F[at, c] = -net.row_coef[e] * response[j] / net.compliance[c]
-    for c in range(net.mode.shape[0]):
+    for c in range(net.mode.shape[0] if has_planes(net) else 0):
         if lands(net, c):
             rub_along_landing(net, c, at)
     brought, lost = net.x[INPUT], net.x[DAMPING]
@@ -59,11 +58,3 @@ def rub_along_landing(net: Net, c: int, at: int) -> None:
         rubs = friction_at(net, c, speed)
         net.out_F[at, c], net.out_F[at, c + 1] = -rubs * x / speed, -rubs * y / speed
 
-
-@kernel
-def slip_speed(net: Net, c: int, s: float, at: int) -> float:
-    """Relative velocity of contact c at s, from the velocities of sample ``at``."""
-    g = -belt_value(net, c, s)
-    for e in range(net.row_start[c], net.row_start[c + 1]):
-        g += net.row_coef[e] * net.out_v[at, net.row_dof[e]]
-    return float(g)

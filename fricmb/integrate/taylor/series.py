@@ -10,10 +10,10 @@ from fricmb.integrate.taylor.friction_curve import friction_row, slip_law
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
 from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.layout import ALLOWED, FASTEST
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands, push_planar, start_from_belts
-from fricmb.integrate.taylor.polynomials import relative_row
-from fricmb.integrate.taylor.signals import add_signals, belt_rate, belt_value
+from fricmb.integrate.taylor.polynomials import push_row, relative_row, slip_speed
+from fricmb.integrate.taylor.signals import add_signals, belt_rate
 
 
 @kernel
@@ -98,8 +98,7 @@ def push_slipping(net: Net, k: int, h: float, factor: float) -> None:
         force = slip_force(net, c, k, h)
         net.groups.F[k, c] = force
         if force != 0.0:
-            for e in range(net.row_start[c], net.row_start[c + 1]):
-                target[net.row_dof[e]] += factor * net.push[e] * force
+            push_row(net, c, factor * force, target)
 
 
 @kernel
@@ -136,15 +135,10 @@ def hold_velocities(net: Net) -> None:
         first = net.groups.group_start[gi]
         for i in range(n_stuck[gi]):
             c = stuck_contact(net, gi, i)
-            value = belt_value(net, c, 0.0)
-            for e in range(net.row_start[c], net.row_start[c + 1]):
-                value -= net.row_coef[e] * net.v[net.row_dof[e]]
-            rhs[first + i] = value
+            rhs[first + i] = -slip_speed(net, c, net.v, 0.0)
         solve_group(net, gi)
         for i in range(n_stuck[gi]):
-            c = stuck_contact(net, gi, i)
-            for e in range(net.row_start[c], net.row_start[c + 1]):
-                net.v[net.row_dof[e]] += net.push[e] * rhs[first + i]
+            push_row(net, stuck_contact(net, gi, i), rhs[first + i], net.v)
 
 
 @kernel
@@ -153,7 +147,7 @@ def begin_groups(net: Net) -> None:
     for gi in range(net.groups.n_stuck.shape[0]):
         factor_group(net, gi)
     hold_velocities(net)
-    if net.groups.landing.shape[0] > 0:
+    if has_planes(net):
         start_from_belts(net)
     for i in range(net.grouped.shape[0]):
         net.groups.paid[net.grouped[i]] = 0.0

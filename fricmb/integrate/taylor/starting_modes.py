@@ -8,10 +8,10 @@ from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.account import displacement, lose_sliding
 from fricmb.integrate.taylor.groups import SECOND
-from fricmb.integrate.taylor.landing import set_planar
-from fricmb.integrate.taylor.layout import AT_END, EPS, LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.landing import let_go, set_planar
+from fricmb.integrate.taylor.layout import EPS, LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.polynomials import hold_force, relative_row
+from fricmb.integrate.taylor.polynomials import hold_force, relative_row, slip_speed
 from fricmb.integrate.taylor.series import taylor_series
 from fricmb.integrate.taylor.signals import belt_grain, belt_value, signal_series
 from fricmb.integrate.taylor.turning import MARGIN, keep_event, set_mode
@@ -25,15 +25,6 @@ def set_window(net: Net) -> None:
     high = net.stops[net.i[N_STOP]]
     net.window[0] = low + 2.0 * EPS * abs(low) + 1e-300
     net.window[1] = high - 2.0 * EPS * abs(high) - 1e-300
-
-
-@kernel
-def first_speed(net: Net, row: int) -> float:
-    """Relative velocity of a row at the start."""
-    g = -belt_value(net, row, 0.0)
-    for e in range(net.row_start[row], net.row_start[row + 1]):
-        g += net.row_coef[e] * net.v[net.row_dof[e]]
-    return float(g)
 
 
 @kernel
@@ -65,18 +56,17 @@ def look_at_speeds(net: Net, given: bool, before_it: float) -> None:
         planar = net.groups.planar[c]
         if planar == SECOND:
             continue
-        g, noise = first_speed(net, c), speed_noise(net, c, given, before_it)
-        net.groups.before[c] = direction_of(net, c)
+        g, across, noise = slip_speed(net, c, net.v, 0.0), 0.0, speed_noise(net, c, given, before_it)
         if planar >= 0:
-            across = first_speed(net, c + 1)
+            across = slip_speed(net, c + 1, net.v, 0.0)
             noise = max(noise, speed_noise(net, c + 1, given, before_it))
-            rests = math.hypot(g, across) <= noise
-            net.groups.rests[c] = 1 if rests else 0
-            set_planar(net, c, STICK if rests else SLIP)
-            continue
-        rests = abs(g) <= noise
+        rests = math.hypot(g, across) <= noise
+        net.groups.before[c] = direction_of(net, c)
         net.groups.rests[c] = 1 if rests else 0
-        set_mode(net, c, STICK if rests else SLIP, net.sigma[c] if rests else math.copysign(1.0, g))
+        if planar >= 0:
+            set_planar(net, c, STICK if rests else SLIP)
+        else:
+            set_mode(net, c, STICK if rests else SLIP, net.sigma[c] if rests else math.copysign(1.0, g))
 
 
 @kernel
@@ -93,12 +83,9 @@ def release_plain(net: Net) -> None:
 def release_planar(net: Net, c: int) -> bool:
     """Let go contact c in two directions where it holds more than it can; whether it did."""
     x, y = net.groups.F[0, c], net.groups.F[0, c + 1]
-    size = math.hypot(x, y)
-    if net.mode[c] != STICK or size <= net.stick[c] * (1.0 + MARGIN):
+    if net.mode[c] != STICK or math.hypot(x, y) <= net.stick[c] * (1.0 + MARGIN):
         return False
-    set_planar(net, c, SLIP)
-    net.since[c] = AT_END
-    net.sigma[c], net.sigma[c + 1] = -x / size, -y / size
+    let_go(net, c, x, y)
     return True
 
 
@@ -168,9 +155,9 @@ def settle(net: Net, given: bool) -> None:
     release_plain(net)
     release_groups(net)
     for c in range(net.mode.shape[0]):
-        now, before = direction_of(net, c), net.groups.before[c]
         if net.groups.planar[c] == SECOND:
             continue
+        now, before = direction_of(net, c), net.groups.before[c]
         if given and now != before:
             kind = EVENT_STICK if now == STICK else (EVENT_SLIP if before == STICK else EVENT_REVERSAL)
             keep_event(net, net.x[TIME], c, kind)

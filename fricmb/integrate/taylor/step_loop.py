@@ -34,7 +34,7 @@ from fricmb.integrate.taylor.layout import (
     UNTIL,
 )  # fmt: skip
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import horner, horner_rate, rescale
 from fricmb.integrate.taylor.sample import sample
 from fricmb.integrate.taylor.signals import belt_value
@@ -161,7 +161,7 @@ def finish_step(net: Net) -> int:
         net.i[PHASE] = BEGIN
     net.x[TIME] = t
     net.i[N_CREEP] = net.i[N_CREEP] + 1 if h < SLIGHT * net.x[LONGEST] else 0
-    if net.i[N_CREEP] > MANY and net.groups.landing.shape[0] > 0:
+    if net.i[N_CREEP] > MANY and has_planes(net):
         return CREEPS
     return DONE if sound == 0.0 else NOT_FINITE
 
@@ -169,7 +169,7 @@ def finish_step(net: Net) -> int:
 @kernel
 def list_may_be_full(net: Net) -> bool:
     """Whether the list of transitions might not hold those with which a step begins."""
-    return bool(net.groups.landing.shape[0] > 0 and net.i[N_EVENTS] + net.mode.shape[0] > net.events.shape[0])
+    return bool(has_planes(net) and net.i[N_EVENTS] + net.mode.shape[0] > net.events.shape[0])
 
 
 @entry

@@ -21,7 +21,7 @@ from fricmb.integrate.taylor.layout import (
     UNTIL,
     WORK,
 )  # fmt: skip
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import rescale
 from fricmb.integrate.taylor.series import taylor_series
 from fricmb.integrate.taylor.signals import ROUNDING, signal_series
@@ -88,7 +88,7 @@ def begin_step(net: Net) -> bool:
         if h == 0.0:
             return False
         busy = taylor_series(net, h, net.places)
-        rest = land_all(net, h) if net.groups.landing.shape[0] > 0 else math.inf
+        rest = land_all(net, h) if has_planes(net) else math.inf
         if rest < math.inf:
             h = follow_signals(net, t, min(h, rest))
             net.x[STEP] = h

@@ -104,7 +104,7 @@ class SteppedRun(Trajectory):
     def _belt_work(self, k: np.ndarray, s: Floats) -> Floats:
         """What the work of belts within steps is beside a straight line, where holding forces rise or fall."""
         rows, contacts = self._samples, self.problem.contacts
-        owner = np.repeat(np.arange(self.problem.n_c), np.diff(contacts.row))
+        owner = contacts.of_row
         same = (rows.mode[:, k] == rows.mode[:, k + 1])[owner]
         W = contacts.csr("W")
 
@@ -128,7 +128,7 @@ class SteppedRun(Trajectory):
         rows, row = self._samples, self.problem.contacts.row
         if len(row) < 2:
             return rows.F[:, k]
-        owner = np.repeat(np.arange(self.problem.n_c), np.diff(row))
+        owner = self.problem.contacts.of_row
         mine, mode = rows.F[:, k], rows.mode[:, k]
         same = (mode == rows.mode[:, k + 1])[owner]
         found: Floats = mine + np.where(same, s, 0.0) * (rows.F[:, k + 1] - mine)

@@ -1,0 +1,41 @@
+"""What Taylor steps ask of structure and laws; every scene is asked, so it loads none of their kernels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Problem
+from fricmb.integrate.run.problem_cache import once_per_problem
+
+
+def against_taylor(problem: Problem) -> str | None:
+    """What stands against Taylor steps in the structure and the laws, or None."""
+    if problem.mechanism is not None:
+        return "this scene has bodies that turn, or joints"
+    contacts, linear = problem.contacts, problem.linear
+    if len(problem.elements.table.address):
+        return "this scene has nonlinear elements"
+    if (contacts.law == LAW_SMOOTH).any() or (contacts.normal != NORMAL_CONSTANT).any() or problem.n_z:
+        return "every contact needs a coefficient of friction and a constant normal force"
+    if (contacts.piecewise & (contacts.law != LAW_CONSTANT)).any():
+        return "coefficients of friction that depend on slip speed must be formulas"
+    if not linear.csr("M").is_diagonal():
+        return "the mass matrix must be diagonal"
+    if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
+        return "the stiffness must be symmetric"
+    return None
+
+
+def fastest(problem: Problem) -> float:
+    """A bound on the frequencies and decay rates of a structure whose masses are uncoupled (Gershgorin)."""
+    return once_per_problem(problem, "taylor fastest", lambda: _fastest(problem))
+
+
+def _fastest(problem: Problem) -> float:
+    n = problem.n
+    inside = slice(0, n), slice(0, n)
+    M = problem.linear.csr("M").diagonal()
+    K, C = problem.linear.csr("Kx").block(*inside), problem.linear.csr("Cx").block(*inside)
+    scale = 1.0 / np.sqrt(M)
+    sums = [np.bincount(A.rows, np.abs(A.value) * scale[A.rows] * scale[A.index], n).max(initial=0.0) for A in (K, C)]
+    return float(0.5 * sums[1] + np.sqrt(0.25 * sums[1] ** 2 + sums[0]))
