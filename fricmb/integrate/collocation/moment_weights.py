@@ -78,7 +78,7 @@ def free_weights(run: Any, z: int, modal: bool, h: float, stiff: float, slot: in
 
     Blocks beyond ``stiff`` (w h) take Radau's own answer throughout; terms = 0 marks them.
     """
-    s = run.nx.shape[2]
+    s = run.mo.shape[2]
     end = s - 1
     for j in range(run.blk.shape[2]):
         for q in range(6):
@@ -109,7 +109,7 @@ def free_weights(run: Any, z: int, modal: bool, h: float, stiff: float, slot: in
 @kernel
 def stiff_tables(run: Any, w2: float, d: float, j: int, h: float, slot: int) -> None:
     """The tables of one stiff block."""
-    s = run.nx.shape[2]
+    s = run.mo.shape[2]
     end = s - 1
     radau_block(run, h, w2, d)
     for i in range(s):
@@ -180,7 +180,7 @@ def sum_moments(mo: Floats2, weight: Floats, most: int, h: float, out: Floats) -
 @kernel
 def port_weights(run: Any, z: int, modal: bool, h: float, slot: int) -> None:
     """Outputs at the nodes per node value of inputs, into ``slot`` of tk, after :func:`free_weights`."""
-    s = run.nx.shape[2]
+    s = run.mo.shape[2]
     mo = run.mo.reshape(run.mo.shape[0], (s + 1) * s)
     weight = run.kappa[run.blk.shape[2]]
     for a in range(run.co.shape[1]):
@@ -208,7 +208,7 @@ def stiff_pair(run: Any, z: int, j: int, a: int, b: int, h: float, slot: int) ->
     if (c0 == 0.0 and c1 == 0.0) or (b0 == 0.0 and b1 == 0.0):
         return
     w2 = run.blk[z, W2, j]
-    s = run.nx.shape[2]
+    s = run.mo.shape[2]
     radau_block(run, h, w2, run.blk[z, DAMP, j])
     for i in range(s):
         for l in range(s):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
+from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.problem import Complexes, Floats
 from fricmb.integrate.step.tableau import radau
 
@@ -29,12 +30,15 @@ class Nodes(NamedTuple):
     nd (4, s+1, s+1): the nodes, their weights, the last two Legendre coefficients of the polynomial through the nodes
     and the last of that through 0 and the nodes; monomial coefficients (rows) of the polynomial through 0 and the nodes
     and of that through the nodes; the Radau IIA matrix A.  mo (TERMS, s+1, s): moments, and ``c^(m+1)/(m+1)!`` (their
-    row sums) in the last row.  cx (3, l, s): A diagonalised, one of each conjugate pair.
+    row sums) in the last row.  cx (3, l, s): A diagonalised, one of each conjugate pair.  basis (s, s'): monomial
+    coefficients of the polynomial that is 1 at a node and 0 at the others, node by node, with places that stay 0 for
+    ``compile.lanes``.
     """
 
     nd: Floats
     mo: Floats
     cx: Complexes
+    basis: Floats
 
 
 def _moments(c: Floats) -> Floats:
@@ -74,4 +78,6 @@ def nodes(s: int) -> Nodes:
     mo[:, s] = np.array([c ** (m + 1) / factorial[m] for m in range(TERMS)])
     cx = np.empty((3, len(tableau.lam), s), dtype=complex)
     cx[0], cx[1], cx[2] = tableau.lam[:, None], np.transpose(tableau.T), tableau.Tinv
-    return Nodes(nd, mo, cx)
+    basis = np.zeros((s, padded(s)))
+    basis[:, :s] = nd[2, :s, :s].T
+    return Nodes(nd, mo, cx, basis)

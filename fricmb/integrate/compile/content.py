@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
-_COMPILER = ("room", "block", "template", "kernel", "linked", "short_lowering", "array_view")
+_COMPILER = ("room", "lanes", "block", "template", "kernel", "linked", "short_lowering", "array_view")
 
 
 @lru_cache(maxsize=1)

@@ -168,7 +168,8 @@ def rows(n: int, m: int, s: int, size: int) -> Rows:
 def _nothing(s: int) -> Run:
     """Empty arrays, and the tables for s nodes."""
     kinds = dict.fromkeys(("flags", "slots", "terms", "si", "kinds", "places"), np.int64)
-    axes = {"mat": 4, "tb": 4, "tk": 4} | dict.fromkeys(("blk", "co", "ci", "row", "dof", "con", "nx", "wk"), 3)
+    axes = dict.fromkeys(("mat", "tb", "tk", "answers"), 4)
+    axes |= dict.fromkeys(("blk", "co", "ci", "row", "dof", "con", "nx", "wk"), 3)
     axes |= dict.fromkeys(("lim", "flags", "ladder", "slots", "terms", "sx", "si", "places"), 1)
     empty = {name: np.zeros((0,) * axes.get(name, 2), kinds.get(name, float)) for name in Run._fields}
     return room(Run(**(empty | nodes(s)._asdict())))

@@ -8,39 +8,55 @@ from fricmb.integrate.collocation.layout import (
     COUPLED,
     DIRECTION,
     FREE,
-    JACOBIAN,
     LINES,
     MU_0_N,
     OUT,
     RELATIVE,
-    RHS,
     ROWS,
     D,
     N,
 )  # fmt: skip
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lanes import LANES, lanes, roots, set_lanes
+from fricmb.integrate.problem import Floats2
 
 
 @kernel
 def relative_velocity(run: Run, slot: int, d: int) -> None:
     """Relative velocity at the nodes for the directions there, F = -mu N n."""
-    s = run.nx.shape[2]
+    nx, muN = run.nx, run.lim[MU_0_N]
     for a in range(d):
-        for i in range(s):
-            x = 0.0
-            for l in range(s):
-                x += run.tk[slot, run.flags[ROWS] * a + a, i, l] * run.nx[DIRECTION, a, l]
-            run.nx[RELATIVE, a, i] = run.nx[FREE, a, i] - run.lim[MU_0_N] * x
-    if run.flags[COUPLED] == 1:
-        for i in range(s):
-            x = 0.0
-            y = 0.0
-            for l in range(s):
-                x += run.tk[slot, 1, i, l] * run.nx[DIRECTION, 1, l]
-                y += run.tk[slot, 2, i, l] * run.nx[DIRECTION, 0, l]
-            run.nx[RELATIVE, 0, i] -= run.lim[MU_0_N] * x
-            run.nx[RELATIVE, 1, i] -= run.lim[MU_0_N] * y
+        for at in range(0, nx.shape[2], LANES):
+            g = lanes(nx[FREE, a], at)
+            for b in range(d):
+                if a == b or run.flags[COUPLED] == 1:
+                    answer = run.answers[slot, d * a + b]
+                    for l in range(answer.shape[0]):
+                        g = g - muN * nx[DIRECTION, b, l] * lanes(answer[l], at)
+            set_lanes(nx[RELATIVE, a], at, g)
+
+
+@kernel
+def turning(run: Run, slot: int) -> None:
+    """What is to vanish, t_i . g_i at the nodes, and its change per angle of each of the directions, column by column.
+
+    The right-hand side is the column behind them.
+    """
+    nx, J, answers = run.nx, run.jacobian, run.answers[slot]
+    s, muN, coupled = run.mo.shape[2], run.lim[MU_0_N], run.flags[COUPLED] == 1
+    for at in range(0, nx.shape[2], LANES):
+        x, y = lanes(nx[DIRECTION, 0], at), lanes(nx[DIRECTION, 1], at)
+        gx, gy = lanes(nx[RELATIVE, 0], at), lanes(nx[RELATIVE, 1], at)
+        set_lanes(J[s], at, x * gy - y * gx)
+        r = x * gx + y * gy
+        for l in range(s):
+            ux, uy = -muN * nx[DIRECTION, 1, l], muN * nx[DIRECTION, 0, l]
+            across, along = uy * lanes(answers[3, l], at), ux * lanes(answers[0, l], at)
+            if coupled:
+                across = across + ux * lanes(answers[2, l], at)
+                along = along + uy * lanes(answers[1, l], at)
+            set_lanes(J[l], at, r * lanes(run.unit[l], at) + x * across - y * along)
 
 
 @kernel
@@ -49,39 +65,27 @@ def slip_directions(run: Run, slot: int, tol: float) -> int:
 
     Regular through r = 0: a node's r may come out negative, which tells that the slip ended before it.
     """
-    nx = run.nx
-    wk = run.wk
-    tk = run.tk
-    s = nx.shape[2]
+    d, s = run.nx[DIRECTION], run.mo.shape[2]
+    turns = run.jacobian[s]
     for iteration in range(14):
         relative_velocity(run, slot, 2)
-        for i in range(s):
-            tx = -nx[DIRECTION, 1, i]
-            ty = nx[DIRECTION, 0, i]
-            wk[LINES, RHS, i] = tx * nx[RELATIVE, 0, i] + ty * nx[RELATIVE, 1, i]
-            for l in range(s):
-                ux = -nx[DIRECTION, 1, l]
-                uy = nx[DIRECTION, 0, l]
-                value = tx * tk[slot, 0, i, l] * ux + ty * tk[slot, 3, i, l] * uy
-                if run.flags[COUPLED] == 1:
-                    value += tx * tk[slot, 1, i, l] * uy + ty * tk[slot, 2, i, l] * ux
-                wk[JACOBIAN, i, l] = run.lim[MU_0_N] * value
-            wk[JACOBIAN, i, i] += nx[DIRECTION, 0, i] * nx[RELATIVE, 0, i] + nx[DIRECTION, 1, i] * nx[RELATIVE, 1, i]
+        turning(run, slot)
         if not eliminate(run, s):
             return -1
         largest = 0.0
         for i in range(s):
-            turn = wk[LINES, RHS, i]
-            if not abs(turn) < 1e300:
+            if not abs(turns[i]) < 1e300:
                 return -1
-            largest = max(largest, turn * turn)
-            turn = min(0.5, max(-0.5, turn))
-            size = 1.0 / math.sqrt(1.0 + turn * turn)
-            x = nx[DIRECTION, 0, i]
-            y = nx[DIRECTION, 1, i]
-            nx[DIRECTION, 0, i] = (x - turn * y) * size
-            nx[DIRECTION, 1, i] = (y + turn * x) * size
-        if largest < tol:
+            largest = max(largest, abs(turns[i]))
+        if largest > 0.5:
+            for i in range(s):
+                turns[i] = min(0.5, max(-0.5, turns[i]))
+        for at in range(0, d.shape[1], LANES):
+            x, y, turn = lanes(d[0], at), lanes(d[1], at), lanes(turns, at)
+            size = roots(1.0 + turn * turn)
+            set_lanes(d[0], at, (x - turn * y) / size)
+            set_lanes(d[1], at, (y + turn * x) / size)
+        if largest * largest < tol:
             relative_velocity(run, slot, 2)
             return iteration + 1
     return -1
@@ -89,42 +93,39 @@ def slip_directions(run: Run, slot: int, tol: float) -> int:
 
 @kernel
 def eliminate(run: Run, s: int) -> bool:
-    """Solve J x = rhs in place; rows are exchanged only where a pivot is small."""
+    """Solve the system of :func:`turning` in place, all rows at once (Gauss and Jordan's way).
+
+    Rows are exchanged only where a pivot is small.  Each column is taken without its pivot, so that a pivot's row stays
+    what it is, and is divided in the end (a place just written by itself
+    and read again with others would be waited for).
+    """
+    J = run.jacobian
+    width, inverse = J.shape[1], J[s + 1]
     for k in range(s):
-        pivot = run.wk[JACOBIAN, k, k]
-        if k + 1 < s and abs(pivot) < 1e-3 * abs(run.wk[JACOBIAN, k + 1, k]):
-            exchange(run, k, s)
-            pivot = run.wk[JACOBIAN, k, k]
+        if k + 1 < s and abs(J[k, k]) < 1e-3 * abs(J[k, k + 1]):
+            exchange(J, k, s)
+        pivot = J[k, k]
         if pivot == 0.0:
             return False
-        inverse = 1.0 / pivot
-        for i in range(k + 1, s):
-            x = run.wk[JACOBIAN, i, k] * inverse
-            for j in range(k + 1, s):
-                run.wk[JACOBIAN, i, j] -= x * run.wk[JACOBIAN, k, j]
-            run.wk[LINES, RHS, i] -= x * run.wk[LINES, RHS, k]
-    for i in range(s - 1, -1, -1):
-        x = run.wk[LINES, RHS, i]
-        for j in range(i + 1, s):
-            x -= run.wk[JACOBIAN, i, j] * run.wk[LINES, RHS, j]
-        run.wk[LINES, RHS, i] = x / run.wk[JACOBIAN, i, i]
+        part = inverse[k] = 1.0 / pivot
+        for at in range(0, width, LANES):
+            others = lanes(J[k], at) - pivot * lanes(run.unit[k], at)
+            for j in range(k + 1, s + 1):
+                set_lanes(J[j], at, lanes(J[j], at) - (J[j, k] * part) * others)
+    for at in range(0, width, LANES):
+        set_lanes(J[s], at, lanes(J[s], at) * lanes(inverse, at))
     return True
 
 
 @kernel
-def exchange(run: Run, k: int, s: int) -> None:
+def exchange(J: Floats2, k: int, s: int) -> None:
     """Bring the largest entry of column k below the diagonal onto it."""
     best = k
     for i in range(k + 1, s):
-        if abs(run.wk[JACOBIAN, i, k]) > abs(run.wk[JACOBIAN, best, k]):
+        if abs(J[k, i]) > abs(J[k, best]):
             best = i
-    for j in range(k, s):
-        x = run.wk[JACOBIAN, k, j]
-        run.wk[JACOBIAN, k, j] = run.wk[JACOBIAN, best, j]
-        run.wk[JACOBIAN, best, j] = x
-    x = run.wk[LINES, RHS, k]
-    run.wk[LINES, RHS, k] = run.wk[LINES, RHS, best]
-    run.wk[LINES, RHS, best] = x
+    for j in range(k, s + 1):
+        J[j, k], J[j, best] = J[j, best], J[j, k]
 
 
 @kernel

@@ -75,7 +75,12 @@ from fricmb.integrate.problem import SLIP, Ints
 def transfer_weights(run: Run, h: float, slot: int, stiff: float, address: Ints) -> None:
     """Fill a slot of the tables."""
     free_weights(run, 0, run.flags[MODAL] == 1, h, stiff, slot)
-    port_weights(run, 0, run.flags[MODAL] == 1, h, slot)
+    port_weights(run, 0, run.flags[MODAL] == 1, h, 0)
+    # column by column, so that all nodes are taken at once
+    for pair in range(run.tk.shape[1]):
+        for l in range(run.tk.shape[3]):
+            for i in range(run.tk.shape[2]):
+                run.answers[slot, pair, l, i] = run.tk[0, pair, i, l]
 
 
 @kernel
@@ -103,7 +108,7 @@ def free_answer(run: Run, slot: int, h: float) -> None:
     tb = run.tb
     nx = run.nx
     m = run.flags[ROWS]
-    s = nx.shape[2]
+    s = run.mo.shape[2]
     modal = run.flags[MODAL] == 1
     for a in range(m):
         for i in range(s):
@@ -146,7 +151,7 @@ def end_state(run: Run, slot: int, h: float) -> None:
     tb = run.tb
     nx = run.nx
     m = run.flags[ROWS]
-    s = nx.shape[2]
+    s = run.mo.shape[2]
     end = s - 1
     modal = run.flags[MODAL] == 1
     muN = run.lim[MU_0_N]
@@ -195,7 +200,7 @@ def weigh(run: Run, h: float) -> None:
 def step_error(run: Run, h: float, tol: float) -> float:
     """Estimated error of a slip step in units of the tolerance, the worst over signals by their own scales."""
     m = run.flags[ROWS]
-    s = run.nx.shape[2]
+    s = run.mo.shape[2]
     muN = run.lim[MU_0_N]
     worst = 0.0
     for a in range(m):
@@ -229,7 +234,7 @@ def keep_slip(run: Run, h: float) -> float:
     """Write the row of a slip step; returns its friction loss."""
     n = run.sd.shape[1]
     m = run.flags[ROWS]
-    s = run.nx.shape[2]
+    s = run.mo.shape[2]
     at_row = run.si[N_ROWS]
     run.kinds[at_row, 0] = SLIP
     run.kinds[at_row, 1] = run.si[N_PHASES] - 1
@@ -269,7 +274,7 @@ def commit(run: Run, h: float, loss: float) -> None:
         run.bx[U, j] = run.bx[U_END, j]
         run.bx[U_LOW, j] = run.bx[LOW_END, j]
         run.bx[V, j] = run.bx[V_END, j]
-    end = run.nx.shape[2] - 1
+    end = run.mo.shape[2] - 1
     for a in range(run.flags[ROWS]):
         run.sm[G, a] = run.nx[RELATIVE, a, end]
         run.sm[N, a] = run.nx[DIRECTION, a, end]

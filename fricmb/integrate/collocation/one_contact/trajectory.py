@@ -10,7 +10,8 @@ import numpy as np
 from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, has_ledger, powers
 from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
-from fricmb.integrate.collocation.one_contact.sample import locate, sample_rows
+from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
+from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.problem import Floats, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
@@ -112,7 +113,9 @@ class SingleRun(Trajectory):
             friction_loss=np.zeros((problem.n_c, k)), damping_loss=np.zeros(k), input=np.zeros(k),
         )  # fmt: skip
 
-    def _states(self, row: Ints, tau: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats, Ints, Floats]:
+    def _states(
+        self, row: Ints, tau: Floats, t: Floats, *, with_loss: bool = False
+    ) -> tuple[Floats, Floats, Floats, Floats, Ints, Floats]:
         problem = self.problem
         p = model(problem)
         n, m, k = problem.n, problem.m, len(row)
@@ -120,10 +123,10 @@ class SingleRun(Trajectory):
         inverse = p.con[1] @ p.row[3]
         hold, load = np.stack([inverse @ stiff, inverse @ visc]), p.vec[:2] @ inverse.T
         q, v, F, g = np.empty((n, k)), np.empty((n, k)), np.empty((m, k)), np.empty((m, k))
-        mode, loss = np.empty(k, dtype=np.int64), np.empty(k)
+        mode, loss = np.empty(k, dtype=np.int64), np.empty(k if with_loss else 0)
         sample_rows(
-            self._run(), row, tau, t, hold, np.ascontiguousarray(load), np.zeros((m + 2 * n, self._s)),
-            np.zeros((2, n)), q, v, F, g, mode, loss,
+            self._run(), row, tau, t, hold, np.ascontiguousarray(load), np.zeros((m, padded(self._s))),
+            np.zeros((BY_FORCE + 2 * m, padded(n))), q, v, F, g, mode, loss,
         )  # fmt: skip
         return q, v, F, g, mode, loss
 
@@ -151,9 +154,11 @@ class SingleRun(Trajectory):
         self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), found[:, :k]]), axis=1)
         return self._totals[:, row] + found[:, k:]
 
-    def _motion(self, row: Ints, tau: Floats, t: Floats) -> tuple[MotionSamples, Floats]:
-        """Motion, and the loss to friction, which comes with it."""
-        q, v, F, g, mode, loss = self._states(row, tau, t)
+    def _motion(
+        self, row: Ints, tau: Floats, t: Floats, *, with_loss: bool = False
+    ) -> tuple[MotionSamples, Floats]:
+        """Motion, and the loss to friction if it is wanted."""
+        q, v, F, g, mode, loss = self._states(row, tau, t, with_loss=with_loss)
         found = MotionSamples(
             t=t, q=q, v=v, z=np.empty((0, len(t))), F=F, g=g, N=np.full((1, len(t)), self.problem.contacts.N[0]),
             mode=mode.astype(np.int8)[None],
@@ -161,6 +166,6 @@ class SingleRun(Trajectory):
         return found, loss
 
     def _samples(self, row: Ints, tau: Floats, t: Floats) -> Samples:
-        motion, loss = self._motion(row, tau, t)
+        motion, loss = self._motion(row, tau, t, with_loss=True)
         damping, supply = self._energies(row, tau)
         return Samples(**vars(motion), friction_loss=loss[None], damping_loss=damping, input=supply)

@@ -18,6 +18,7 @@ from fricmb.integrate.collocation.nodes import RUNGS, TERMS, nodes
 from fricmb.integrate.collocation.one_contact.prepare import Model, Rows, model, rows, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.run import BLOCKS
+from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Problem
@@ -61,7 +62,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
 
 def goes_back(run: Run) -> bool:
     """Whether the arrays are put back after the run; else what it has filled may stay where it is."""
-    return bool(sum([getattr(run, name).nbytes for name in ("tb", "tk", *Rows._fields)]) <= LARGE)
+    return bool(sum([getattr(run, name).nbytes for name in ("tb", "answers", *Rows._fields)]) <= LARGE)
 
 
 def lengthened(held: Rows) -> Rows | None:
@@ -101,21 +102,22 @@ def _made(p: Model, s: int) -> Run:
     count = 1 + int(np.clip(4_000_000 // (6 * n * s + (m * s) ** 2), 12, 48))
     slots = np.full(RUNGS + 2, -1, dtype=np.int64)
     slots[-1] = 0
-    tables = np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, s)), np.zeros(RUNGS + 1), slots
+    tables = np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, padded(s))), np.zeros((1, m * m, s, s))
     # the last line of wk has a name (CHANGE): few nodes need as many lines
     lines = (3, max(s, CHANGE) + 1, s + 1)
-    bx, nx, kappa, wk = (np.zeros(shape) for shape in ((14, n), (3, m, s), (n + 1, TERMS), lines))
+    shapes = (14, n), (3, m, padded(s)), (s + 2, padded(s)), (n + 1, TERMS)
+    bx, nx, jacobian, kappa = (np.zeros(shape) for shape in shapes)
     state = np.zeros((4, n)), np.zeros((2, m)), np.zeros(5), np.zeros(8, dtype=np.int64)
-    work: list[Any] = [bx, nx, kappa, np.zeros(n, np.int64), wk, *state]
-    own = [array.copy() for array in p]
-    return room(Run._make([*own, *nodes(s), *tables, *work, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
+    work: list[Any] = [bx, nx, jacobian, np.eye(s, padded(s)), kappa, np.zeros(n, np.int64), np.zeros(lines), *state]
+    made = [*(array.copy() for array in p), *nodes(s), *tables, np.zeros(RUNGS + 1), slots, *work]
+    return room(Run._make([*made, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
 
 
 def _begin_anew(run: Run, p: Model) -> None:
     """The constants of another scene of the same size; nothing is left of the run before."""
     for name, array in zip(Model._fields, p, strict=True):
         getattr(run, name)[...] = array
-    for array in (run.ladder, run.bx, run.nx, run.kappa, run.terms, run.wk, run.sd, run.sm, run.sx, run.si):
-        array.fill(0)
+    for name in ("ladder", "bx", "nx", "jacobian", "kappa", "terms", "wk", "sd", "sm", "sx", "si"):
+        getattr(run, name).fill(0)
     run.slots[:-1] = -1
     run.slots[-1] = 0
