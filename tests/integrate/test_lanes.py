@@ -18,7 +18,7 @@ from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
 class Contact(NamedTuple):
     """What the kernels take of a run of one contact."""
 
-    mo: Floats3
+    basis: Floats2
     answers: Floats4
     nx: Floats3
     jacobian: Floats2
@@ -31,7 +31,7 @@ def contact(s, coupled=1):
     wide = padded(s)
     flags = np.array([2, 0, 0, 0, coupled], np.int64)
     return Contact(
-        np.zeros((1, s + 1, s)), np.zeros((1, 4, s, wide)), np.zeros((3, 2, wide)), np.zeros((s + 2, wide)),
+        np.zeros((s, wide)), np.zeros((1, 4, s, wide)), np.zeros((3, 2, wide)), np.zeros((s + 2, wide)),
         np.eye(s, wide), np.array([0.0, 0.7]), flags,
     )  # fmt: skip
 

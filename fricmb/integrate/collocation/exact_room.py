@@ -11,6 +11,7 @@ import numpy as np
 
 from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
+from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Floats, Problem, Templates
 from fricmb.integrate.run.problem_cache import once_per_problem
@@ -78,7 +79,7 @@ def _has_ledger(problem: Problem) -> bool:
 
 def _tables(b: int, s: int, pairs: int) -> tuple[Floats, Floats]:
     count = 1 + int(np.clip(6_000_000 // (6 * b * s + pairs * s * s + 1), 10, 60))
-    return np.zeros((count, 6, b, s)), np.zeros((count, pairs, s, s))
+    return np.zeros((count, 6, b, padded(s))), np.zeros((count, pairs, s, padded(s)))
 
 
 #: Numbers kept at most for contacts that stick.
@@ -108,7 +109,7 @@ def _exact(problem: Problem, s: int) -> Exact:
     made: dict[str, Any] = {
         "flags": np.array(flags, np.int64),
         "par": np.array([1.0, Z_EXACT[s] * 1.0001, np.inf, fastest, 0.0]),
-        "nx": np.zeros((1, 1, s)), "blk": np.stack([part.w2, part.d])[None], "co": co, "ci": ci,
+        "blk": np.stack([part.w2, part.d])[None], "co": co, "ci": ci,
         "linked": linked.astype(float), "mat": np.stack([part.q_u, part.q_v, part.v_u, part.v_v]),
         "start": np.stack([part.force_0, part.force_1, part.force_0 @ problem.linear.M,
                            part.force_1 @ problem.linear.M]),

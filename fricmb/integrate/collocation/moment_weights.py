@@ -36,6 +36,7 @@ from fricmb.integrate.collocation.layout import (
     S,
 )  # fmt: skip
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, set_lanes
 from fricmb.integrate.problem import Floats, Floats2
 
 
@@ -78,38 +79,54 @@ def free_weights(run: Any, z: int, modal: bool, h: float, stiff: float, slot: in
 
     Blocks beyond ``stiff`` (w h) take Radau's own answer throughout; terms = 0 marks them.
     """
-    s = run.mo.shape[2]
-    end = s - 1
     for j in range(run.blk.shape[2]):
         for q in range(6):
-            for i in range(s):
+            for i in range(run.tb.shape[3]):
                 run.tb[slot, q, j, i] = 0.0
         if max(math.sqrt(abs(run.blk[z, W2, j])), abs(run.blk[z, DAMP, j])) * h > stiff:
             run.terms[j] = 0
             stiff_tables(run, run.blk[z, W2, j], run.blk[z, DAMP, j], j, h, slot)
             continue
-        n = markov(run, h, run.blk[z, W2, j], run.blk[z, DAMP, j], j, run.kappa.shape[1] - 3)
-        run.terms[j] = n
-        for m in range(n):
-            x = h * run.kappa[j, m]
+        run.terms[j] = markov(run, h, run.blk[z, W2, j], run.blk[z, DAMP, j], j, run.kappa.shape[1] - 3)
+        exact_tables(run, modal, j, h, slot)
+
+
+@kernel
+def exact_tables(run: Any, modal: bool, j: int, h: float, slot: int) -> None:
+    """The tables of one block that is not stiff: sums of moments by Markov parameters."""
+    mo, kappa, tb = run.mo, run.kappa[j], run.tb[slot]
+    s = mo.shape[1] - 1
+    end = s - 1
+    for at in range(0, mo.shape[2], LANES):
+        v_free, u_free, v_end, u_end = all_lanes(0.0), all_lanes(0.0), all_lanes(0.0), all_lanes(0.0)
+        for m in range(run.terms[j]):
+            x = h * kappa[m]
             y = h * x
-            for i in range(s):
-                run.tb[slot, S, j, i] += x * run.mo[m, s, i]
-                run.tb[slot, IS, j, i] += y * run.mo[m + 1, s, i]
-                run.tb[slot, Q1, j, i] += x * run.mo[m, end, i]
-                run.tb[slot, Q2, j, i] += y * run.mo[m + 1, end, i]
-            run.tb[slot, IIS, j, end] += h * y * run.mo[m + 2, s, end]
-            if not modal:
-                for i in range(s):
-                    run.tb[slot, IIS, j, i] += h * y * run.mo[m + 2, s, i]
-                    run.tb[slot, Q3, j, i] += h * y * run.mo[m + 2, end, i]
-                run.tb[slot, IIS, j, end] -= h * y * run.mo[m + 2, s, end]
+            v_free = v_free + x * lanes(mo[m, s], at)
+            u_free = u_free + y * lanes(mo[m + 1, s], at)
+            v_end = v_end + x * lanes(mo[m, end], at)
+            u_end = u_end + y * lanes(mo[m + 1, end], at)
+        set_lanes(tb[S, j], at, v_free)
+        set_lanes(tb[IS, j], at, u_free)
+        set_lanes(tb[Q1, j], at, v_end)
+        set_lanes(tb[Q2, j], at, u_end)
+        if not modal:
+            once, force = all_lanes(0.0), all_lanes(0.0)
+            for m in range(run.terms[j]):
+                y = h * h * h * kappa[m]
+                once = once + y * lanes(mo[m + 2, s], at)
+                force = force + y * lanes(mo[m + 2, end], at)
+            set_lanes(tb[IIS, j], at, once)
+            set_lanes(tb[Q3, j], at, force)
+    if modal:
+        for m in range(run.terms[j]):
+            tb[IIS, j, end] += h * h * h * kappa[m] * mo[m + 2, s, end]
 
 
 @kernel
 def stiff_tables(run: Any, w2: float, d: float, j: int, h: float, slot: int) -> None:
     """The tables of one stiff block."""
-    s = run.mo.shape[2]
+    s = run.mo.shape[1] - 1
     end = s - 1
     radau_block(run, h, w2, d)
     for i in range(s):
@@ -152,45 +169,35 @@ def pair_moments(run: Any, z: int, modal: bool, h: float, a: int, b: int, weight
                 weight[m] += (co[C0, a, j] * b1 - co[C1, a, j] * b0 * w2) * (h * run.kappa[j, m - 1])
             if m > 1:
                 weight[m] -= co[C0, a, j] * b0 * w2 * h * h * run.kappa[j, m - 2]
+    for m in range(most):
+        weight[m] *= h
     return most
 
 
 @kernel
-def sum_moments(mo: Floats2, weight: Floats, most: int, h: float, out: Floats) -> None:
-    """Add the moments (rows of ``mo``) by their weights, four at a time: what is summed is loaded and kept less often.
-
-    The order of the sum is that of the moments.
-    """
-    n = out.shape[0]
-    m = 0
-    while m + 4 <= most:
-        y0, y1, y2, y3 = h * weight[m], h * weight[m + 1], h * weight[m + 2], h * weight[m + 3]
-        m0, m1, m2, m3 = mo[m, :n], mo[m + 1, :n], mo[m + 2, :n], mo[m + 3, :n]
-        for x in range(n):
-            out[x] = (((out[x] + y0 * m0[x]) + y1 * m1[x]) + y2 * m2[x]) + y3 * m3[x]
-        m += 4
-    while m < most:
-        y = h * weight[m]
-        line = mo[m, :n]
-        for x in range(n):
-            out[x] += y * line[x]
-        m += 1
+def sum_moments(mo: Floats2, weight: Floats, most: int, out: Floats) -> None:
+    """The moments (rows of ``mo``) by their weights, eight places at a time."""
+    for at in range(0, out.shape[0], LANES):
+        found = all_lanes(0.0)
+        for m in range(most):
+            found = found + weight[m] * lanes(mo[m], at)
+        set_lanes(out, at, found)
 
 
 @kernel
 def port_weights(run: Any, z: int, modal: bool, h: float, slot: int) -> None:
     """Outputs at the nodes per node value of inputs, into ``slot`` of tk, after :func:`free_weights`."""
-    s = run.mo.shape[2]
-    mo = run.mo.reshape(run.mo.shape[0], (s + 1) * s)
+    size = run.tk.shape[2] * run.tk.shape[3]
+    mo = run.mo.reshape(run.mo.shape[0], run.mo.shape[1] * run.mo.shape[2])
     weight = run.kappa[run.blk.shape[2]]
     for a in range(run.co.shape[1]):
         for b in range(run.ci.shape[1]):
-            out = run.tk[slot, run.flags[ROWS] * a + b].reshape(s * s)
-            out[:] = 0.0
+            out = run.tk[slot, run.flags[ROWS] * a + b].reshape(size)
             if run.linked[a, b] == 0.0:
+                out[:] = 0.0
                 continue
             most = pair_moments(run, z, modal, h, a, b, weight)
-            sum_moments(mo, weight, most, h, out)
+            sum_moments(mo, weight, most, out)
             for j in range(run.blk.shape[2]):
                 if run.terms[j] == 0:
                     stiff_pair(run, z, j, a, b, h, slot)
@@ -208,7 +215,7 @@ def stiff_pair(run: Any, z: int, j: int, a: int, b: int, h: float, slot: int) ->
     if (c0 == 0.0 and c1 == 0.0) or (b0 == 0.0 and b1 == 0.0):
         return
     w2 = run.blk[z, W2, j]
-    s = run.mo.shape[2]
+    s = run.mo.shape[1] - 1
     radau_block(run, h, w2, run.blk[z, DAMP, j])
     for i in range(s):
         for l in range(s):

@@ -29,7 +29,7 @@ class Nodes(NamedTuple):
 
     nd (4, s+1, s+1): the nodes, their weights, the last two Legendre coefficients of the polynomial through the nodes
     and the last of that through 0 and the nodes; monomial coefficients (rows) of the polynomial through 0 and the nodes
-    and of that through the nodes; the Radau IIA matrix A.  mo (TERMS, s+1, s): moments, and ``c^(m+1)/(m+1)!`` (their
+    and of that through the nodes; the Radau IIA matrix A.  mo (TERMS, s+1, s'): moments, and ``c^(m+1)/(m+1)!`` (their
     row sums) in the last row.  cx (3, l, s): A diagonalised, one of each conjugate pair.  basis (s, s'): monomial
     coefficients of the polynomial that is 1 at a node and 0 at the others, node by node, with places that stay 0 for
     ``compile.lanes``.
@@ -73,9 +73,9 @@ def nodes(s: int) -> Nodes:
     nd[2, :s, :s] = np.linalg.inv(np.vander(c, increasing=True))
     nd[3, :s, :s] = tableau.A
     factorial = np.cumprod(np.arange(1.0, TERMS + 1.0))
-    mo = np.empty((TERMS, s + 1, s))
-    mo[:, :s] = _moments(c)
-    mo[:, s] = np.array([c ** (m + 1) / factorial[m] for m in range(TERMS)])
+    mo = np.zeros((TERMS, s + 1, padded(s)))
+    mo[:, :s, :s] = _moments(c)
+    mo[:, s, :s] = np.array([c ** (m + 1) / factorial[m] for m in range(TERMS)])
     cx = np.empty((3, len(tableau.lam), s), dtype=complex)
     cx[0], cx[1], cx[2] = tableau.lam[:, None], np.transpose(tableau.T), tableau.Tinv
     basis = np.zeros((s, padded(s)))

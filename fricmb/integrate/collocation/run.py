@@ -69,7 +69,7 @@ def _no_factor() -> Factor:
 
 def exact_step(problem: Problem, exact: Exact) -> OneStep:
     """Arrays for exact steps."""
-    s = exact.nx.shape[2]
+    s = exact.xf.shape[1]
     none, empty = np.zeros((0, 0)), np.zeros(0)
     stages = Stages(
         none, none, none, none, none, np.zeros(s), empty, empty, np.zeros((s, s)), np.zeros((0, 0), complex),

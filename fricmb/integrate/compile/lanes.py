@@ -6,6 +6,7 @@ what is read.  Of short loops over arrays of a room it knows neither.  A kernel 
     x = lanes(a, at)             the numbers a[at], ..., a[at+7] of an array of one axis
     y = x * x + 2.0 * x          sums, differences, products, quotients, with numbers too
     roots(x)                     square roots
+    total(x)                     the sum of all eight
     set_lanes(b, at, y)
     all_lanes(1.0)               a number eight times
 
@@ -99,6 +100,22 @@ def roots(typingctx: Any, values: Any) -> Any:
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), args)
 
     return lanes_type(lanes_type), codegen
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def total(typingctx: Any, values: Any) -> Any:
+    """The sum of eight numbers, by halves."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        left, count = args[0], LANES
+        while count > 1:
+            count //= 2
+            kind = ir.VectorType(ir.IntType(32), count)
+            low, high = (ir.Constant(kind, list(range(first, first + count))) for first in (0, count))
+            left = builder.fadd(builder.shuffle_vector(left, left, low), builder.shuffle_vector(left, left, high))
+        return builder.extract_element(left, ir.Constant(ir.IntType(32), 0))
+
+    return types.float64(lanes_type), codegen
 
 
 def _spread(builder: Any, kind: Any, value: Any) -> Any:

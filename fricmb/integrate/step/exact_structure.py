@@ -33,11 +33,12 @@ Ints2 = Ints
 class Exact(NamedTuple):
     """Blocks, inputs and outputs, tables by step size and the work of one step; empty for other methods.
 
-    With b blocks, s nodes: ``blk`` (1, 2, b), ``co`` (2, n_o, b), ``ci`` (2, n_in, b), ``linked`` (n_o, n_in), ``mat``
-    (4, n, b) dofs by blocks, ``start`` (4, b, n) blocks by forces and by velocities, ``MB`` (n_in, n) accelerations per
-    input; ``nd``, ``mo``, ``cx`` tables of the nodes; ``tb`` (slots, 6, b, s), ``tk``
-    (slots, n_o n_in, s, s) by step size, slot 0 for steps off the ``ladder``.  ``bs`` (8, b) blocks at the start of the
-    step; ``xf``, ``x`` (n_o, s) outputs without unknown inputs, and with; ``P`` (n_in, s) inputs at the nodes; ``now``
+    With b blocks, s nodes, s' for s and places that stay 0 (see ``compile.lanes``): ``blk`` (1, 2, b), ``co``
+    (2, n_o, b), ``ci`` (2, n_in, b), ``linked`` (n_o, n_in), ``mat`` (4, n, b) dofs by blocks, ``start`` (4, b, n)
+    blocks by forces and by velocities, ``MB`` (n_in, n) accelerations per input; ``nd``, ``mo``, ``cx`` tables of the
+    nodes; ``tb`` (slots, 6, b, s'), ``tk`` (slots, n_o n_in, s, s') by step size, slot 0 for steps off the ``ladder``.
+    ``bs`` (8, b) blocks at the start of the step; ``xf``, ``x`` (n_o, s) outputs without unknown inputs, and with;
+    ``P`` (n_in, s) inputs at the nodes; ``now``
     (n_in,) signals at the start; ``weight`` (n_in,); ``low`` (2, n+1) what rounding dropped from q and t, at the start
     and the end of the step; ``end`` (2, n) gain of q, and v at the end; ``node`` (2, s, n) q and v at the nodes.
     ``held`` (places, 3, s m, s m) what is left of the contacts' equations where some stick (collocation/held_rows),
@@ -48,7 +49,6 @@ class Exact(NamedTuple):
 
     flags: Ints
     par: Floats
-    nx: Floats3
     blk: Floats3
     co: Floats3
     ci: Floats3

@@ -69,7 +69,7 @@ from fricmb.integrate.step.crossing import evaluate, lowest_between, root_betwee
 def tail_of_r(run: Run, r0: float) -> float:
     """Size of the last Legendre coefficient of r through its values at 0 and the nodes (in RHS)."""
     last = run.nd[VECTORS, TAIL_START, 0] * r0
-    for l in range(run.mo.shape[2]):
+    for l in range(run.basis.shape[0]):
         last += run.nd[VECTORS, TAIL_START, l + 1] * run.wk[LINES, RHS, l]
     return float(abs(last))
 
@@ -77,7 +77,7 @@ def tail_of_r(run: Run, r0: float) -> float:
 @kernel
 def polynomial_of_r(run: Run, r0: float) -> None:
     """Monomial coefficients of r from its values at 0 and the nodes (in RHS)."""
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     for k in range(s + 1):
         value = run.nd[WITH_START, k, 0] * r0
         for l in range(s):
@@ -99,7 +99,7 @@ def first_stop(run: Run, r0: float, h: float, tol: float) -> float:
     Nodes, the points half-way and minima between them are looked at; e is the error of this polynomial, which friction
     loss follows too, in units of the tolerance.
     """
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     for i in range(s):
         r = 0.0
         for a in range(run.flags[ROWS]):
@@ -140,7 +140,7 @@ def first_stop(run: Run, r0: float, h: float, tol: float) -> float:
 @kernel
 def resample(run: Run, m: int, ratio: float) -> None:
     """Directions at the nodes of a step ``ratio`` times as long as the present one."""
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     for a in range(m):
         for k in range(s):
             value = 0.0
@@ -171,7 +171,7 @@ def closing_rate(run: Run, since: float) -> float:
     bx = run.bx
     blk = run.blk
     m = run.flags[ROWS]
-    end = run.mo.shape[2] - 1
+    end = run.basis.shape[0] - 1
     rate = 0.0
     for j in range(blk.shape[2]):
         u = bx[U_END, j] + bx[LOW_END, j]
@@ -246,7 +246,7 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
     The step's length is corrected by r/r' until what is left is small enough to be crossed to second order.
     """
     m = run.flags[ROWS]
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     end = s - 1
     length = root * h
     ratio = root

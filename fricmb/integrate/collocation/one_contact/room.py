@@ -12,13 +12,13 @@ Ints2 = Ints
 class Run(NamedTuple):
     """Arrays of a run of one contact; the places in them have names in ``collocation/layout``.
 
-    With n dofs, m rows, s nodes, x' for x and places that stay 0 (see ``compile.lanes``): ``blk`` (2, 2, n), ``mat``
+    With n dofs, m rows, s nodes, x' for x and places beside it (see ``compile.lanes``): ``blk`` (2, 2, n), ``mat``
     (2, 8, n, n) blocks of the structure in slip (0) and stick (1); ``co``, ``ci`` (2, m, n), ``linked`` (m, m), ``row``
     (4, m, n), ``con`` (2, m, m) the contact; ``dof`` (3, n, n), ``vec`` (3, n) the structure; ``lim`` (3+m,), ``flags``
-    (5,).  ``nd`` (4, s+1, s+1), ``mo`` (TERMS, s+1, s), ``cx`` (3, l, s), ``basis`` (s, s'): tables of the nodes.
-    ``tb`` (slots, 6, n, s), ``answers`` (slots, m m, s, s'): weights by step size, slot 0 for steps off the ``ladder``;
-    ``slots``: slot of a rung or -1, then how many were used.
-    ``tk`` (1, m m, s, s), ``bx`` (14, n), ``nx`` (3, m, s'), ``jacobian`` (s+2, s'), ``kappa`` (n + 1, TERMS; its last
+    (5,).  ``nd`` (4, s+1, s+1), ``mo`` (TERMS, s+1, s'), ``cx`` (3, l, s), ``basis`` (s, s'): tables of the nodes.
+    ``tb`` (slots, 6, n, s'), ``answers`` (slots, m m, s, s'): weights by step size, slot 0 for steps off the
+    ``ladder``; ``slots``: slot of a rung or -1, then how many were used.
+    ``tk`` (1, m m, s, s'), ``bx`` (14, n), ``nx`` (3, m, s'), ``jacobian`` (s+2, s'), ``kappa`` (n + 1, TERMS; its last
     row is work), ``terms`` (n,), ``wk`` (3, lines, s+1): work; ``unit`` (s, s'): the unit matrix.
     ``sd`` (4, n), ``sm`` (2, m), ``sx`` (5,), ``si`` (8,): the state between phases.  ``steps``, ``kinds``,
     ``phases``, ``events``: rows of what is kept.  ``places``: table of the blocks.

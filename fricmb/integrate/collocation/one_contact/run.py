@@ -106,7 +106,7 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
     """Slip until it ends, the run ends, or the reference point should move along; DONE, or what went wrong."""
     n = run.sd.shape[1]
     m = run.flags[ROWS]
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     begin_phase(run, 0, n, run.places)
     rates(run)
     since = 0.0

@@ -105,25 +105,25 @@ def slip_blocks(run: Run, k: int, work: Floats2, polynomial: Floats2, tau: float
             fastest = max(fastest, work[FASTEST, j])
         square, damping = lanes(work[SQUARE], at), lanes(work[DAMPING], at)
         speed = lanes(work[START_V], at)
-        moved = all_lanes(0.0)
-        rate_u, rate_v = speed, lanes(work[START_A], at)
+        u = v = moved = all_lanes(0.0)
+        rate_u, given = speed, lanes(work[START_A], at)
         power, bound = 1.0, 1.0
         q = 0
         while (q < s + 2 or bound > 1e-18) and q <= MOST:
             if q < s:
                 for a in range(m):
                     force = polynomial[a, q] * power
-                    rate_v = rate_v + force * lanes(work[BY_FORCE + a], at)
+                    given = given + force * lanes(work[BY_FORCE + a], at)
                     if not modal:
                         rate_u = rate_u + force * lanes(work[BY_FORCE + m + a], at)
             weight = tau / (q + 1)
-            u, v = weight * rate_u, weight * rate_v
+            # v last: it is the only one that waits for the term before
+            v = weight * ((given - square * u) - damping * v)
+            u = weight * rate_u
             moved = moved + u
             speed = speed + v
             rate_u = v
-            rate_v = all_lanes(0.0) - square * u - damping * v
-            if q == 0:
-                rate_v = rate_v + lanes(work[SLOPES], at)
+            given = lanes(work[SLOPES], at) if q == 0 else all_lanes(0.0)
             q += 1
             power *= gone
             bound *= fastest * weight

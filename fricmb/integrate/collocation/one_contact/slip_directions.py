@@ -44,7 +44,7 @@ def turning(run: Run, slot: int) -> None:
     The right-hand side is the column behind them.
     """
     nx, J, answers = run.nx, run.jacobian, run.answers[slot]
-    s, muN, coupled = run.mo.shape[2], run.lim[MU_0_N], run.flags[COUPLED] == 1
+    s, muN, coupled = run.basis.shape[0], run.lim[MU_0_N], run.flags[COUPLED] == 1
     for at in range(0, nx.shape[2], LANES):
         x, y = lanes(nx[DIRECTION, 0], at), lanes(nx[DIRECTION, 1], at)
         gx, gy = lanes(nx[RELATIVE, 0], at), lanes(nx[RELATIVE, 1], at)
@@ -65,7 +65,7 @@ def slip_directions(run: Run, slot: int, tol: float) -> int:
 
     Regular through r = 0: a node's r may come out negative, which tells that the slip ended before it.
     """
-    d, s = run.nx[DIRECTION], run.mo.shape[2]
+    d, s = run.nx[DIRECTION], run.basis.shape[0]
     turns = run.jacobian[s]
     for iteration in range(14):
         relative_velocity(run, slot, 2)

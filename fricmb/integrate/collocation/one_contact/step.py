@@ -68,6 +68,7 @@ from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.slip_directions import relative_velocity, slip_directions
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, set_lanes, total
 from fricmb.integrate.problem import SLIP, Ints
 
 
@@ -78,7 +79,7 @@ def transfer_weights(run: Run, h: float, slot: int, stiff: float, address: Ints)
     port_weights(run, 0, run.flags[MODAL] == 1, h, 0)
     # column by column, so that all nodes are taken at once
     for pair in range(run.tk.shape[1]):
-        for l in range(run.tk.shape[3]):
+        for l in range(run.tk.shape[2]):
             for i in range(run.tk.shape[2]):
                 run.answers[slot, pair, l, i] = run.tk[0, pair, i, l]
 
@@ -108,18 +109,18 @@ def free_answer(run: Run, slot: int, h: float) -> None:
     tb = run.tb
     nx = run.nx
     m = run.flags[ROWS]
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     modal = run.flags[MODAL] == 1
     for a in range(m):
-        for i in range(s):
-            nx[FREE, a, i] = run.sm[G, a]
+        for at in range(0, nx.shape[2], LANES):
+            free = all_lanes(run.sm[G, a])
+            for j in range(run.blk.shape[2]):
+                c1 = run.co[C1, a, j]
+                if c1 != 0.0:
+                    free = free + c1 * bx[A, j] * lanes(tb[slot, S, j], at) + c1 * bx[K, j] * lanes(tb[slot, IS, j], at)
+            set_lanes(nx[FREE, a], at, free)
         for j in range(run.blk.shape[2]):
             c1 = run.co[C1, a, j]
-            if c1 != 0.0:
-                y = c1 * bx[A, j]
-                z = c1 * bx[K, j]
-                for i in range(s):
-                    nx[FREE, a, i] += y * tb[slot, S, j, i] + z * tb[slot, IS, j, i]
             if not modal:
                 for i in range(s):
                     t = run.nd[VECTORS, NODE, i] * h
@@ -151,7 +152,7 @@ def end_state(run: Run, slot: int, h: float) -> None:
     tb = run.tb
     nx = run.nx
     m = run.flags[ROWS]
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     end = s - 1
     modal = run.flags[MODAL] == 1
     muN = run.lim[MU_0_N]
@@ -161,13 +162,12 @@ def end_state(run: Run, slot: int, h: float) -> None:
         for a in range(m):
             b1 = -muN * run.ci[B1, a, j]
             if b1 != 0.0:
-                y = 0.0
-                z = 0.0
-                for l in range(s):
-                    y += tb[slot, Q2, j, l] * nx[DIRECTION, a, l]
-                    z += tb[slot, Q1, j, l] * nx[DIRECTION, a, l]
-                du += b1 * y
-                dv += b1 * z
+                y, z = all_lanes(0.0), all_lanes(0.0)
+                for at in range(0, nx.shape[2], LANES):
+                    d = lanes(nx[DIRECTION, a], at)
+                    y, z = y + d * lanes(tb[slot, Q2, j], at), z + d * lanes(tb[slot, Q1, j], at)
+                du += b1 * total(y)
+                dv += b1 * total(z)
             if not modal:
                 b0 = -muN * run.ci[B0, a, j]
                 w2 = run.blk[0, W2, j]
@@ -200,7 +200,7 @@ def weigh(run: Run, h: float) -> None:
 def step_error(run: Run, h: float, tol: float) -> float:
     """Estimated error of a slip step in units of the tolerance, the worst over signals by their own scales."""
     m = run.flags[ROWS]
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     muN = run.lim[MU_0_N]
     worst = 0.0
     for a in range(m):
@@ -234,7 +234,7 @@ def keep_slip(run: Run, h: float) -> float:
     """Write the row of a slip step; returns its friction loss."""
     n = run.sd.shape[1]
     m = run.flags[ROWS]
-    s = run.mo.shape[2]
+    s = run.basis.shape[0]
     at_row = run.si[N_ROWS]
     run.kinds[at_row, 0] = SLIP
     run.kinds[at_row, 1] = run.si[N_PHASES] - 1
@@ -274,7 +274,7 @@ def commit(run: Run, h: float, loss: float) -> None:
         run.bx[U, j] = run.bx[U_END, j]
         run.bx[U_LOW, j] = run.bx[LOW_END, j]
         run.bx[V, j] = run.bx[V_END, j]
-    end = run.mo.shape[2] - 1
+    end = run.basis.shape[0] - 1
     for a in range(run.flags[ROWS]):
         run.sm[G, a] = run.nx[RELATIVE, a, end]
         run.sm[N, a] = run.nx[DIRECTION, a, end]

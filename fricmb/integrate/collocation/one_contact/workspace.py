@@ -9,7 +9,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import numpy as np
 
@@ -102,15 +101,16 @@ def _made(p: Model, s: int) -> Run:
     count = 1 + int(np.clip(4_000_000 // (6 * n * s + (m * s) ** 2), 12, 48))
     slots = np.full(RUNGS + 2, -1, dtype=np.int64)
     slots[-1] = 0
-    tables = np.zeros((count, 6, n, s)), np.zeros((count, m * m, s, padded(s))), np.zeros((1, m * m, s, s))
     # the last line of wk has a name (CHANGE): few nodes need as many lines
     lines = (3, max(s, CHANGE) + 1, s + 1)
-    shapes = (14, n), (3, m, padded(s)), (s + 2, padded(s)), (n + 1, TERMS)
-    bx, nx, jacobian, kappa = (np.zeros(shape) for shape in shapes)
-    state = np.zeros((4, n)), np.zeros((2, m)), np.zeros(5), np.zeros(8, dtype=np.int64)
-    work: list[Any] = [bx, nx, jacobian, np.eye(s, padded(s)), kappa, np.zeros(n, np.int64), np.zeros(lines), *state]
-    made = [*(array.copy() for array in p), *nodes(s), *tables, np.zeros(RUNGS + 1), slots, *work]
-    return room(Run._make([*made, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
+    wide = padded(s)
+    zeros = lambda *shapes: [np.zeros(shape) for shape in shapes]  # noqa: E731
+    tables = zeros((count, 6, n, wide), (count, m * m, s, wide), (1, m * m, s, wide), RUNGS + 1)
+    steps = [*zeros((14, n), (3, m, wide), (s + 2, wide)), np.eye(s, wide), *zeros((n + 1, TERMS))]
+    state = [*zeros((4, n), (2, m), 5), np.zeros(8, np.int64)]
+    work = [*tables, slots, *steps, np.zeros(n, np.int64), *zeros(lines), *state]
+    own = [array.copy() for array in p]
+    return room(Run._make([*own, *nodes(s), *work, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
 
 
 def _begin_anew(run: Run, p: Model) -> None:
