@@ -12,6 +12,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, total
 from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
@@ -27,17 +28,15 @@ QUADRATIC = 1e-2
 
 @kernel
 def dot(a: Floats, b: Floats) -> float:
-    """Inner product, in four sums side by side."""
-    x0, x1, x2, x3 = 0.0, 0.0, 0.0, 0.0
-    whole = b.shape[0] // 4 * 4
-    for i in range(0, whole, 4):
-        x0 += a[i] * b[i]
-        x1 += a[i + 1] * b[i + 1]
-        x2 += a[i + 2] * b[i + 2]
-        x3 += a[i + 3] * b[i + 3]
+    """Inner product, eight terms at a time."""
+    whole = b.shape[0] // LANES * LANES
+    parts = all_lanes(0.0)
+    for i in range(0, whole, LANES):
+        parts = parts + lanes(a, i) * lanes(b, i)
+    rest = 0.0
     for i in range(whole, b.shape[0]):
-        x0 += a[i] * b[i]
-    return (x0 + x1) + (x2 + x3)
+        rest += a[i] * b[i]
+    return float(total(parts) + rest)
 
 
 @kernel
