@@ -26,16 +26,19 @@ def drive_bdf(
     rec: Record, part: Codes, past: Differences, formula: Formula,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until the space for steps is used up."""
-    set_window(c, k.s.window, y.t[0])
+    stop = set_window(c, k.s.window, y.t[0])
     while True:
-        if stopped() or crowded(rec, y.mode.shape[0]):
+        if stopped():
             return FULL
-        stop = next_stop(c, y.t[0])
+        # a stop is kept until it has been gone through: a step may end on it to the last digit
         if reached(y.t[0], stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
             past.status[ON] = 0
             if code == DONE and stop >= c.span[1]:
                 return DONE
+            stop = next_stop(c, y.t[0])
+        elif crowded(rec, y.mode.shape[0]):
+            return FULL
         elif past.status[ON] == 1:
             code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t[0], mech.address)
             if code == ACCEPTED and is_slower(past, formula.usual[0]):

@@ -83,8 +83,8 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
 
 @kernel
 def crowded(out: Record, n_c: int) -> bool:
-    """Whether another step and its transitions might not find space."""
-    return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + n_c + 2 > out.event.shape[0])
+    """Whether another step, its transitions and those of a breakpoint at its end might not find space."""
+    return bool(out.used[0] + 2 > out.span.shape[0] or out.used[1] + 2 * n_c + 2 > out.event.shape[0])
 
 
 @block

@@ -81,15 +81,18 @@ def drive(
     rec: Record, part: Codes,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until the space for steps is used up."""
-    set_window(c, k.s.window, y.t[0])
+    stop = set_window(c, k.s.window, y.t[0])
     while True:
-        if stopped() or crowded(rec, y.mode.shape[0]):
+        if stopped():
             return FULL
-        stop = next_stop(c, y.t[0])
+        # a stop is kept until it has been gone through: a step may end on it to the last digit
         if reached(y.t[0], stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
             if code == DONE and stop >= c.span[1]:
                 return DONE
+            stop = next_stop(c, y.t[0])
+        elif crowded(rec, y.mode.shape[0]):
+            return FULL
         else:
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop, mech.address)
         if code > FULL:

@@ -71,6 +71,25 @@ def turn_with_slip(mech: Mech, k: Moving, y: State, size: float, but: int) -> No
 
 
 @kernel
+def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
+    """Velocities behind a breakpoint: those that driven joints ask for; what stuck slips on ground that has jumped.
+
+    ``size``: largest slip velocity, of which slip may be round-off to 1e-11.
+    """
+    if not project_velocities(mech, k, w, y, False, False, mech.address):
+        return False
+    row = mech.port.row
+    for i in range(y.mode.shape[0]):
+        speed = magnitude(row, i, y.g)
+        if y.mode[i] == STICK and speed > 1e-11 * size:
+            y.mode[i] = SLIP
+            for a in range(row[i], row[i + 1]):
+                y.n[a] = y.g[a] / speed
+    turn_with_slip(mech, k, y, size, -1)
+    return True
+
+
+@kernel
 def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
     """Take the round-off of slip away from what sticks, and from what has been at rest and sets out from there."""
     for i in range(part.shape[0]):
@@ -107,6 +126,8 @@ def change_modes(
         if code != DONE:
             return code
     set_window(c, k.s.window, y.t[0])
+    if j < 0 and not meet_jump(mech, k, w, y, out.size[0]):
+        return FAIL_PROJECT
     for i in range(n_c):
         part[i] = RESTED if y.mode[i] == STICK else SLIPS_ON
         # without load the direction of slip decides nothing: found anew it would be that of round-off

@@ -11,6 +11,8 @@ from fricmb.integrate.step.contact_unknowns import PortState
 
 #: Part of the tolerance of velocities that the force of a law's state may move a contact by without being looked at.
 UNFELT = 1e-6
+#: Round-off of forces, in parts of their size, that redundant contacts may go on to exchange.
+LAST_DIGITS = 1e-15
 
 
 @kernel
@@ -22,6 +24,22 @@ def round_off(w: PortState, i: int, mi: int, a: int, g: float) -> float:
     """
     s = w.F.shape[0]
     return float((2e-15 if s < 8 else 4e-16 * s * s) * (abs(g) + abs(w.Fin[i, a] * w.G[i * mi + a, i * mi + a])))
+
+
+@kernel
+def share_noise(line: Floats, Fin: Floats2) -> float:
+    """Round-off of a velocity, from its responses ``line`` to the port inputs (stage by stage) of all stages.
+
+    A force that alone holds a body comes to rest at one number.  Of redundant contacts each takes a part of what is
+    missing and rounds it by itself; the sums miss by that, and shares move on by a last digit without an end.  A body
+    that rests shows nothing but this, and no part of the little that it may move can be asked for.
+    """
+    noise = 0.0
+    mi = Fin.shape[1]
+    for j in range(Fin.shape[0]):
+        for c in range(mi):
+            noise += abs(line[j * mi + c] * Fin[j, c])
+    return LAST_DIGITS * noise
 
 
 @kernel
