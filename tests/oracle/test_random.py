@@ -34,6 +34,7 @@ FOUND = {
     ("modes", 1001): "exact structure: slip and stick in turn within round-off of the time at a break-away",
     ("plane", 3001): "exact structure: slip that turns round beside rest was taken to end there",
     ("line", 3006): "exact structure: no step without a scale where springs alone are held by a varying normal force",
+    ("line", 150502): "exact structure: slip that a step left between its nodes was taken for a belt that has jumped",
     ("modes", 31027): "slip that begins without a jump of its acceleration ended, and began again, 2e-12 later",
     ("modes", 31387): "the same where two contacts rub",
     ("roller", 206): "a load passed through 0, and round-off of its friction was taken for slip that turns round",

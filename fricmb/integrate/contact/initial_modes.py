@@ -25,7 +25,7 @@ def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: boo
     """
     if not given:
         find_open(packed, s, y, address)
-    mark_rest(packed, s, y, r, address)
+    mark_rest(packed, s, y, r, True, address)
     if given:
         for k in range(y.mode.shape[0]):
             if r.part[k] == 1 and y.mode[k] == SLIP:

@@ -293,8 +293,11 @@ def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> Non
 
 
 @block
-def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> None:
-    """Mark as at rest every contact that sticks or whose relative velocity is nothing but round-off."""
+def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, jumped: bool, address: Ints) -> None:
+    """Mark as at rest every contact that sticks or whose relative velocity is nothing but round-off.
+
+    ``jumped``: prescribed velocities may have jumped; what stuck slips then, where it has a speed.
+    """
     kinematics(packed, s, y)
     for k in range(y.mode.shape[0]):
         row0 = packed.ports.row[k]
@@ -304,8 +307,8 @@ def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> N
         speed = magnitude(packed.ports.row, k, y.g)
         if y.mode[k] == STICK or speed <= 8e-16 * y.size[row0] + r.small[k]:
             r.part[k] = 1
-        if y.mode[k] == STICK and speed > 1e-9 * y.size[row0] + 1e3 * r.small[k]:
-            # a prescribed velocity has jumped: the contact slips from now on (what drifts in stick is round-off)
+        if jumped and y.mode[k] == STICK and speed > 1e-9 * y.size[row0] + 1e3 * r.small[k]:
+            # else what drifts in stick is what a step leaves between its nodes
             r.part[k] = 0
             y.mode[k] = SLIP
         if r.part[k] == 0:

@@ -129,7 +129,7 @@ def transition(
     if lifted:
         # the normal force is at its zero, up to round-off of either sign
         y.mode[contact] = SLIP if old.mode[contact] == OPEN else OPEN
-    mark_rest(packed, s, y, r, address)
+    mark_rest(packed, s, y, r, contact < 0, address)
     for c in range(y.mode.shape[0]):
         row0 = ports.row[c]
         force = ports.D[row0, row0] * stick_limit(ports, packed.laws, c, s, y.N[c])
