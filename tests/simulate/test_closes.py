@@ -52,7 +52,7 @@ def test_slip_that_has_only_begun_is_no_negative_friction():
 
 @pytest.mark.parametrize(("method", "rtol"), [("radau", 1e-4), ("bdf", 1e-6), ("collocation", 1e-6)])
 def test_slip_that_ends_is_no_negative_friction(method, rtol):
-    """Steps that come to rest to the tolerance have passed it by as much: the row before stick has slip turned round."""
+    """Steps that come to rest to the tolerance have passed it by as much: the row before stick has slip reversed."""
     block = fm.Body("block", mass=1.0, axes="xy", velocity={"y": 0.3})
     law = fm.laws.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.05, exponent=1.0)
     loads = [0.9 * sympy.sin(100.0 * fm.t), 0.5 * sympy.cos(77.0 * fm.t)]

@@ -2,8 +2,9 @@
 
 # x: time; size of the present step; longest step; tolerance; totals of input and damping; end of the run; speeds
 # below NOISE are round-off; next step; the part of the step (s) that
-# counts, and that in which friction curves hold; largest speed, or that to which the step begins to lead
-TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST = range(12)
+# counts, and that in which friction curves hold; largest speed, or that to which the step begins to lead; the same by
+# accelerations alone; when steps that are next to nothing began
+TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST, REACHED, CREPT = range(14)
 # i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
 # phase of the step, next stop; contacts and groups that a correction touches; steps in a row that did not move the
 # time; transitions in a row with which steps began; steps in a row that are next to nothing

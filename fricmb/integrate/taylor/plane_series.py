@@ -16,7 +16,7 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Floats2
 from fricmb.integrate.taylor.friction_curve import friction_row
-from fricmb.integrate.taylor.layout import AT_END, FASTEST, NOISE
+from fricmb.integrate.taylor.layout import AT_END, NOISE, REACHED
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import drop_slip, relative_row
 from fricmb.integrate.taylor.signals import belt_rate
@@ -28,7 +28,7 @@ STILL = 1e-12
 @kernel
 def is_still(net: Net, speed: float) -> bool:
     """Whether a slip speed is round-off."""
-    return bool(speed <= 10.0 * net.x[NOISE] + STILL * net.x[FASTEST])
+    return bool(speed <= 10.0 * net.x[NOISE] + STILL * net.x[REACHED])
 
 
 @kernel

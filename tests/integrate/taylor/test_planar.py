@@ -184,3 +184,20 @@ def test_slip_that_sets_out_from_rest_takes_few_steps():
         assert sol.stats.n_steps < 250
         assert [e.kind for e in sol.events] == ["slip"]
         np.testing.assert_allclose(sol.q[:, -1], true.q[:, -1], atol=rtol)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("N", [1e-10, 1e-6, 1e-2])
+def test_weak_friction_is_told_as_it_is(N, rtol):
+    """Steps are as long as motion bears, and the direction of friction that hardly matters turns much faster."""
+    block = fm.Body("block", mass=1.0, axes="xy", velocity={"x": 0.3, "y": -0.7})
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    parts = [fm.Spring(f"s{axis}", block, axis=axis, stiffness=1.0) for axis in "xy"]
+    parts += [fm.Force("f", block, axis="x", value=0.3 * sympy.sin(0.7 * fm.t))]
+    sole = fm.Contact("sole", block, belt, law=fm.laws.Coulomb(mu_s=0.5), normal_force=N)
+    scene, t = fm.Scene("weak", [block, belt, *parts, sole]), np.linspace(0.0, 20.0, 401)
+    true = fm.simulate(scene, t_end=20.0, rtol=1e-10, t_eval=t, method="radau")
+    sol = fm.simulate(scene, t_end=20.0, rtol=rtol, t_eval=t, method="taylor")
+    np.testing.assert_allclose(sol.force("sole") / (0.5 * N), true.force("sole") / (0.5 * N), atol=max(rtol, 1e-8))
+    np.testing.assert_allclose(sol.energy.friction_loss, true.energy.friction_loss, rtol=1e-5, atol=1e-6 * N)
+    assert sol.audit().ok, sol.audit().table()
