@@ -44,6 +44,7 @@ AT_LIMIT, GROWS = 1e-9, 1e-9
 def set_planar(net: Net, c: int, mode: int) -> None:
     """Mode of contact c in two directions."""
     net.mode[c] = net.mode[c + 1] = mode
+    net.since[c + 1] = -1.0
     net.groups.landing[net.groups.planar[c], 0] = 0.0
 
 

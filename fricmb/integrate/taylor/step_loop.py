@@ -11,6 +11,7 @@ from fricmb.integrate.taylor.account import pay_groups
 from fricmb.integrate.taylor.change import taylor_change
 from fricmb.integrate.taylor.event_heap import pop_due, push_due
 from fricmb.integrate.taylor.event_search import bounds, taylor_search
+from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.landing_path import leave_landings
 from fricmb.integrate.taylor.layout import (
     AT_END,
@@ -60,8 +61,10 @@ def find_ends(net: Net) -> None:
     net.i[N_HEAP] = 0
     net.i[N_HERE] = 0
     for c in range(net.mode.shape[0]):
-        net.since[c] = 0.0 if net.since[c] == AT_END else -1.0
         net.due[c] = math.inf
+        if net.groups.planar[c] == SECOND:
+            continue
+        net.since[c] = 0.0 if net.since[c] == AT_END else -1.0
         if net.slack[c] <= 0.0:
             push_due(net, c, taylor_search(net, c, 0.0, net.places))
 
