@@ -17,6 +17,7 @@ from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.taylor.layout import (
     END,
     FASTEST,
+    GOES_ON,
     LIMIT,
     LONGEST,
     N_EVENTS,
@@ -160,8 +161,10 @@ def set_start(
     net.loss[:], net.large[:] = 0.0, 0.0
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
+    net.since[:] = -1.0
     if start.mode is not None:
         net.mode[:] = start.mode[row_owner(problem)]
+        net.since[net.mode == SLIP] = GOES_ON
         if start.direction is not None:
             net.sigma[:] = np.where(start.direction == 0.0, 1.0, start.direction)
     return net

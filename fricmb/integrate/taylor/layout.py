@@ -19,5 +19,7 @@ WATCH, SHIFTED, BEFORE = range(3)
 AT_END = 2.0
 # since[.] of the second row of a contact in two directions: it has broken away a short time ago
 FRESH = 3.0
+# since[.] where a run starts: the contact slips, as the run before has left it
+GOES_ON = 4.0
 # relative round-off of one operation
 EPS = 2.3e-16

@@ -9,7 +9,7 @@ from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SL
 from fricmb.integrate.taylor.account import displacement, lose_sliding
 from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.landing import set_planar
-from fricmb.integrate.taylor.layout import AT_END, EPS, LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.layout import AT_END, EPS, GOES_ON, LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row
 from fricmb.integrate.taylor.series import taylor_series
@@ -70,7 +70,8 @@ def look_at_speeds(net: Net, given: bool, before_it: float) -> None:
         if planar >= 0:
             across = first_speed(net, c + 1)
             noise = max(noise, speed_noise(net, c + 1, given, before_it))
-            rests = math.hypot(g, across) <= noise
+            # what has broken away where the run before ended, or comes to rest there, has next to no speed
+            rests = math.hypot(g, across) <= noise and (given or net.since[c] != GOES_ON)
             net.groups.rests[c] = 1 if rests else 0
             set_planar(net, c, STICK if rests else SLIP)
             continue

@@ -201,3 +201,27 @@ def test_weak_friction_is_told_as_it_is(N, rtol):
     np.testing.assert_allclose(sol.force("sole") / (0.5 * N), true.force("sole") / (0.5 * N), atol=max(rtol, 1e-8))
     np.testing.assert_allclose(sol.energy.friction_loss, true.energy.friction_loss, rtol=1e-5, atol=1e-6 * N)
     assert sol.audit().ok, sol.audit().table()
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_run_goes_on_from_a_transition(rtol):
+    """What lets go or comes to rest where a run ends is told once, by that run or by the next."""
+    scene = SCENES["Stribeck"]
+    whole = fm.simulate(scene, t_end=15.0, rtol=rtol, method="taylor")
+    for event in list(whole.events)[:10]:
+        first = fm.simulate(scene, t_end=event.t, rtol=rtol, method="taylor")
+        then = fm.simulate(scene, t_end=15.0, rtol=rtol, method="taylor", initial=first)
+        told = [(e.contact, e.kind) for e in (*first.events, *then.events)]
+        assert told == [(e.contact, e.kind) for e in whole.events]
+        np.testing.assert_allclose(then.q[:, -1], whole.q[:, -1], atol=rtol)
+
+
+def test_a_run_leaves_nothing_to_the_next():
+    """One that ends where a contact breaks away; the next starts with a speed."""
+    scene, _, _ = sliding(0.3, fm.laws.Coulomb(mu_s=RUB), speed=0.0, pull=0.4 * fm.t)
+    start = {"velocity": {"block.x": 0.7}}
+    alone = fm.simulate(scene, t_end=1.0, rtol=1e-8, method="taylor", initial=start)
+    (slip,) = fm.simulate(scene, t_end=3.0, rtol=1e-8, method="taylor").events
+    assert fm.simulate(scene, t_end=float(np.nextafter(slip.t, 9.0)), rtol=1e-8, method="taylor").events
+    after = fm.simulate(scene, t_end=1.0, rtol=1e-8, method="taylor", initial=start)
+    np.testing.assert_array_equal(after.q, alone.q)
