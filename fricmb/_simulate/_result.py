@@ -132,7 +132,8 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: M
     """Refuse friction that drives, which is what a coefficient does that turns negative.
 
     The built-in integrators stop there by themselves; this is for others.  Between steps slip that has only begun may
-    show the wrong sign by as much as the tolerance allows.
+    show the wrong sign by as much as the tolerance allows.  Where slip ends it may by more than that: a step whose end
+    is rest to the tolerance has passed it by as much.
     """
     run = [i for i, _ in trajectory.runs] if isinstance(trajectory, JoinedRun) else None
     if samples.t.size == 0 or not mechanics.has_law(LAW_COEFFICIENT, run):
@@ -145,6 +146,7 @@ def check_friction(mechanics: SceneMechanics, trajectory: Trajectory, samples: M
 
     given = power(samples)
     force, speed = np.abs(samples.F).max(initial=0.0), np.abs(samples.v).max(initial=0.0)
+    given[:, :-1][:, samples.t[:-1] == samples.t[1:]] = 0.0
     limit = np.where(varies, max(POWER, rtol) * np.abs(given).max(axis=1) + SPEED * speed * force, np.inf)[:, None]
     if not (given > limit).any():
         return

@@ -97,10 +97,15 @@ class Stepper:
             at = [*range(low.c.size - 1), c.size - 1]
             less = step_maps(low, h[own], slopes[:, at], rates[:, at], e.n, e.n_y)
             maps = step_maps(high, h[own], slopes[:, low.c.size - 1 :], rates[:, low.c.size - 1 :], e.n, e.n_y)
-            found.append(_difference(self._along(less - maps, t[own], h[own], phase[own]), maps, scale, e.n_y))
-            kept = np.linalg.slogdet(maps[..., : e.n_y])[1]
-            traces = np.trace(slopes[..., e.n : 2 * e.n], axis1=2, axis2=3)
-            traces = traces + np.trace(rates[..., 2 * e.n : e.n_y], axis1=2, axis2=3)
+            off, square, pulls = less - maps, maps[..., : e.n_y].copy(), slopes[..., e.n : 2 * e.n].copy()
+            for j, across in self._across(t[own], h[own], phase[own]):
+                off[j] -= off[j][:, e.n : 2 * e.n] @ across
+                square[j] -= square[j][:, e.n : 2 * e.n] @ across[:, : e.n_y]
+                square[j][e.n : 2 * e.n] += across[:, : e.n_y]
+                pulls[j] -= pulls[j] @ across[:, e.n : 2 * e.n]
+            found.append(_difference(off, maps, scale, e.n_y))
+            kept = np.linalg.slogdet(square)[1]
+            traces = np.trace(pulls, axis1=2, axis2=3) + np.trace(rates[..., 2 * e.n : e.n_y], axis1=2, axis2=3)
             blind.append(kept < h[own] * (traces[:, low.c.size - 1 :] @ high.A[-1]) - _LOST)
         off = np.concatenate(found)
         first = np.flatnonzero((self.sets_out[phase] & (t == self.phases.t[phase])) | near)
@@ -108,11 +113,11 @@ class Stepper:
             off[first] = np.maximum(off[first], self._layers(t[first], h[first], phase[first], scale))
         return off, np.concatenate(blind)
 
-    def _along(self, off: Floats, t: Floats, h: Floats, phase: Ints) -> Floats:
-        """Differences of maps (n_t, n_y, n_y + n_p) for what derivatives there may be at the begin of each step.
+    def _across(self, t: Floats, h: Floats, phase: Ints) -> Iterator[tuple[int, Floats]]:
+        """Steps with which slip in several directions sets out; what is across it of velocities (n, n_y + n_p).
 
-        Where slip in several directions sets out its own derivative is along it, because it was 0 before.  What is
-        across would vanish at a rate like 1/r, of which no two formulas say the same, nor do shorter steps.
+        Its own derivative is along it, because it was 0 before.  What is across would vanish at a rate like 1/r, of
+        which no two formulas say the same, and in which steps of any length lose as much volume.
         """
         e = self.equations
         for k, begins in self.turning:
@@ -128,9 +133,7 @@ class Stepper:
             for i, j in enumerate(first.tolist()):
                 held = [c for c, contact in e.contacts.items() if not contact.smooth and mode[c, i] == STICK]
                 B = e.projector(found, [*held, k], i)[1][:, -len(n[i]) :]
-                across = slopes[i] - np.outer(n[i], n[i] @ slopes[i])
-                off[j] -= off[j][:, e.n : 2 * e.n] @ B @ across
-        return off
+                yield j, B @ (slopes[i] - np.outer(n[i], n[i] @ slopes[i]))
 
     def _layers(self, t: Floats, h: Floats, phase: Ints, scale: Floats) -> Floats:
         """How far slopes at the begin of steps (n_t,) are, over the step, from what its nodes tell of them."""

@@ -100,7 +100,8 @@ def test_8_two_are_caught_at_the_same_instant(method, angle):
     assert sol.events.t == pytest.approx([5.0, 5.0], abs=1e-7)
     assert along(angle, sol, "lower")[-1] == pytest.approx(2.5, abs=1e-7)
     assert along(angle, sol, "upper")[-1] == pytest.approx(5.0, abs=1e-7)
-    assert not sol.v[:, -1].any()
+    # what a projection leaves of round-off: whether that is nothing at all depends on how sums are rounded
+    assert np.abs(sol.v[:, -1]).max() < 1e-30
 
 
 @METHODS

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from fricmb import models
@@ -170,3 +171,21 @@ def test_bodies_in_space_whose_friction_changes_its_own_load(kind, seed, name):
     sol = fm.simulate(case_of(spec).scene, t_end=spec.t_end, rtol=1e-8, sensitivities=(name,))
     off = shares_off(sol, (name,), steps=(1e-3,), t_end=spec.t_end)
     assert off[name] < max([1e3 * 1e-8, *said(sol)]), (off, sol.stats.notes)
+
+
+@pytest.mark.parametrize("method", ["radau", "taylor"])
+def test_a_short_way_behind_a_break_away(method):
+    """The speed of slip that has just begun is (mu_s - mu_k) N/m times the time since: with mu_s that time shrinks."""
+    mu_s, mu_k, turns = 0.6, 0.4, 0.3
+    for after in (1e-3, 1e-4, 1e-5):
+        for begins in (1.3, 6.5, 50.0):
+            block = fm.Body("block", mass=1.0, axes="xy")
+            rate = mu_s / begins
+            loads = [rate * fm.t * way(turns * fm.t) for way in (sympy.cos, sympy.sin)]
+            pull = [fm.Force(f"f{axis}", block, axis=axis, value=F) for axis, F in zip("xy", loads, strict=True)]
+            sole = fm.Contact("sole", block, law=fm.laws.Coulomb(mu_s=mu_s, mu_k=mu_k), normal_force=1.0)
+            scene, name = fm.Scene("pulled", [block, *pull, sole]), "sole.law.mu_s"
+            sol = fm.simulate(scene, t_end=begins + after, rtol=1e-9, method=method, sensitivities=(name,))
+            found = [sol.sensitivity(f"block.{axis}", name)[-1] / after for axis in "xy"]
+            along = np.array([np.cos(turns * begins), np.sin(turns * begins)])
+            np.testing.assert_allclose(found, -(mu_s - mu_k) / rate * along, rtol=10.0 * after + 1e-5)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from fricmb import models
@@ -47,6 +48,21 @@ def test_slip_that_has_only_begun_is_no_negative_friction():
     case = next(case for case in SCENES if case.name == "two_blocks")
     sol = fm.simulate(case.build(), t_end=case.t_end, t_eval=case.reference().t, rtol=1e-3, method="bdf")
     assert len(sol.events) == 41
+
+
+@pytest.mark.parametrize(("method", "rtol"), [("radau", 1e-4), ("bdf", 1e-6), ("collocation", 1e-6)])
+def test_slip_that_ends_is_no_negative_friction(method, rtol):
+    """Steps that come to rest to the tolerance have passed it by as much: the row before stick has slip reversed."""
+    block = fm.Body("block", mass=1.0, axes="xy", velocity={"y": 0.3})
+    law = fm.laws.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.05, exponent=1.0)
+    loads = [0.9 * sympy.sin(100.0 * fm.t), 0.5 * sympy.cos(77.0 * fm.t)]
+    shaken = [fm.Force(f"f{axis}", block, axis=axis, value=F) for axis, F in zip("xy", loads, strict=True)]
+    scene = fm.Scene("shaken", [block, *shaken, fm.Contact("sole", block, law=law, normal_force=1.0)])
+    t = np.linspace(0.0, 5.0, 51)
+    true = fm.simulate(scene, t_end=5.0, rtol=1e-9, t_eval=t, method="taylor")
+    sol = fm.simulate(scene, t_end=5.0, rtol=rtol, method=method)
+    assert [event.kind for event in sol.events] == [event.kind for event in true.events]
+    np.testing.assert_allclose(sol(t)[2:], true.v, atol=100.0 * rtol)
 
 
 @pytest.mark.parametrize("load", [0.1, 1e-3])

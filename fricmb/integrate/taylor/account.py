@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
+from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.layout import INPUT, N_TOUCHED, STEP
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative
+from fricmb.integrate.taylor.rubbing import is_lost, rubbing_at
 from fricmb.integrate.taylor.signals import belt_value
 
 
@@ -42,12 +44,18 @@ def pay(net: Net, c: int, s: float) -> None:
         return
     h = net.x[STEP]
     rule = net.groups.rule
+    first = c - 1 if net.groups.planar[c] == SECOND else c
+    lost = slips and is_lost(net, first)
     for g in range(rule.shape[1]):
         at = before + (s - before) * rule[0, g]
-        work = (s - before) * h * rule[1, g] * hold_force(net, c, at)
+        time = (s - before) * h * rule[1, g]
+        work = time * hold_force(net, c, at)
         net.x[INPUT] += work * belt_value(net, c, at)
-        if slips:
-            net.loss[c] -= work * relative(net, c, at, h)
+        if not slips:
+            continue
+        speed = relative(net, c, at, h)
+        rubs = rubbing_at(net, first, relative(net, first, at, h), relative(net, first + 1, at, h)) if lost else -1.0
+        net.loss[c] += time * rubs * speed * speed if rubs >= 0.0 else -work * speed
 
 
 @kernel

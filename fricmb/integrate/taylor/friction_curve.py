@@ -39,6 +39,14 @@ def coefficient_at(net: Net, c: int, r: float) -> float:
 
 
 @kernel
+def friction_at(net: Net, c: int, speed: float) -> float:
+    """Friction mu N at a slip speed."""
+    if net.groups.lawful[c] < 0:
+        return float(net.slip[c])
+    return float(net.groups.N[c] * coefficient_at(net, c, speed))
+
+
+@kernel
 def fit_curve(net: Net, c: int, low: float, high: float) -> None:
     """The coefficient of contact c between two slip speeds."""
     at = net.groups.lawful[c]

@@ -37,8 +37,10 @@ class Groups(NamedTuple):
     changes; ``along`` (2, .): points of a step, and an argument there.
     Two directions: ``planar`` (m,): number of a contact in two directions by its first row, ``SECOND`` for its second
     row, -1 for a contact in one; by that number powers of s of d = u/|u| in ``unit`` (., 2, .), of |u| in ``speed``, of
-    mu N in ``rubbing``; ``begins``: slip begins with the step, so that ``speed`` is of |u|/s; ``landing`` (., 5): how
-    long it takes to come to rest (0: it does not), and what its velocity follows (see ``landing``); ``square``: |F|^2.
+    mu N in ``rubbing``; ``begins``: slip begins with the step (1), or a short time before it (2) with ``first_speed``,
+    so that ``speed`` is of (|u| - |u_0|)/s; ``turned``: how far a pass of series has changed ``unit``; ``landing``
+    (., 14): how long it takes to come to rest (0: it does not), and what its velocity follows (see ``landing_path``);
+    ``square``: |F|^2.
     """
 
     F: Floats2
@@ -86,5 +88,7 @@ class Groups(NamedTuple):
     speed: Floats2
     rubbing: Floats2
     begins: Codes
+    first_speed: Floats
+    turned: Floats2
     landing: Floats2
     square: Floats

@@ -18,6 +18,7 @@ from fricmb.integrate.suits_taylor import fastest
 from fricmb.integrate.taylor.layout import (
     END,
     FASTEST,
+    GOES_ON,
     LIMIT,
     LONGEST,
     N_EVENTS,
@@ -161,8 +162,10 @@ def set_start(
     net.loss[:], net.large[:] = 0.0, 0.0
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
+    net.since[:] = -1.0
     if start.mode is not None:
         net.mode[:] = start.mode[problem.contacts.of_row]
+        net.since[net.mode == SLIP] = GOES_ON
         if start.direction is not None:
             net.sigma[:] = np.where(start.direction == 0.0, 1.0, start.direction)
     return net

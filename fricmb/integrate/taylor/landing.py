@@ -14,7 +14,7 @@ and on the way there the contact slides, along a and across it (c = cosine of th
 
 .. math:: \frac{r^2 (2 b c + |a| (1 + c^2))}{4 (b^2 - |a|^2)}, \qquad \frac{r (2 b + |a| c)}{4 b^2 - |a|^2}\, u_\perp.
 
-A step of T leads there along the parabola of velocity that slides as far.
+A step of T leads there along the parabola of velocity that slides as far; for times between see ``landing_path``.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, SLIP, STICK
-from fricmb.integrate.taylor.friction_curve import coefficient_at
-from fricmb.integrate.taylor.layout import AT_END, EPS, FASTEST, LONGEST, TIME, TOL
+from fricmb.integrate.taylor.friction_curve import friction_at
+from fricmb.integrate.taylor.layout import AT_END, EPS, LONGEST, REACHED, TIME, TOL
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import is_still, lands
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row
@@ -34,14 +34,17 @@ from fricmb.integrate.taylor.turning import keep_event
 SHORT, SLOW = 0.3, 0.1
 #: Relative change of friction down to rest over which its mean is good enough.
 EVEN = 0.01
-#: A force so close to its limit may have left it.
-AT_LIMIT = 1e-9
+#: What loads that change on the way may change of its length, in tolerances of the largest speed.
+UNEVEN = 10.0
+#: A force so close to its limit may have left it, if it grows by more than that part of it in a step.
+AT_LIMIT, GROWS = 1e-9, 1e-9
 
 
 @kernel
 def set_planar(net: Net, c: int, mode: int) -> None:
     """Mode of contact c in two directions."""
     net.mode[c] = net.mode[c + 1] = mode
+    net.since[c + 1] = -1.0
     net.groups.landing[net.groups.planar[c], 0] = 0.0
 
 
@@ -52,14 +55,6 @@ def let_go(net: Net, c: int, x: float, y: float) -> None:
     set_planar(net, c, SLIP)
     net.since[c] = AT_END
     net.sigma[c], net.sigma[c + 1] = -x / size, -y / size
-
-
-@kernel
-def friction_at(net: Net, c: int, speed: float) -> float:
-    """Friction mu N at a slip speed."""
-    if net.groups.lawful[c] < 0:
-        return float(net.slip[c])
-    return float(net.groups.N[c] * coefficient_at(net, c, speed))
 
 
 @kernel
@@ -87,12 +82,31 @@ def plan_landing(net: Net, c: int, x: float, y: float, ax: float, ay: float) -> 
     far = (2.0 * slows * along * speed + pull * (speed * speed + along * along)) / (4.0 * left)
     plan = net.groups.landing[net.groups.planar[c]]
     plan[0], plan[1], plan[2] = time, x, y
+    plan[5], plan[6], plan[7] = ax, ay, slows
     for i in range(2):
         u, e = (x, ax) if i == 0 else (y, ay)
         e = e / pull if pull > 0.0 else 0.0
         way = far * e + across * (u - along * e)
         plan[3 + i] = 6.0 * (way / time - 0.5 * u)
     return float(time)
+
+
+@kernel
+def pushed_slope(net: Net, row: int, k: int, h: float) -> float:
+    """Coefficient k of the relative acceleration of a row without its own friction."""
+    return float((k + 1) * relative_row(net, row, k + 1, h) / h - net.compliance[row] * net.groups.F[k, row])
+
+
+@kernel
+def is_even(net: Net, c: int, h: float) -> bool:
+    """Whether relative acceleration without friction is as good as constant on the way to rest that is planned."""
+    plan = net.groups.landing[net.groups.planar[c]]
+    time, slows = plan[0], plan[7]
+    part = time / h
+    changes = part * math.hypot(pushed_slope(net, c, 1, h), pushed_slope(net, c + 1, 1, h))
+    changes += part * part * math.hypot(pushed_slope(net, c, 2, h), pushed_slope(net, c + 1, 2, h))
+    longer = time * changes * slows * slows / (slows * slows - plan[5] * plan[5] - plan[6] * plan[6])
+    return bool(longer <= UNEVEN * net.x[TOL] * net.x[REACHED])
 
 
 @kernel
@@ -103,13 +117,17 @@ def land(net: Net, c: int, h: float) -> float:
         return math.inf
     x, y = relative_row(net, c, 0, h), relative_row(net, c + 1, 0, h)
     speed = math.hypot(x, y)
-    if speed > SLOW * math.sqrt(net.x[TOL]) * net.x[FASTEST]:
+    if speed > SLOW * math.sqrt(net.x[TOL]) * net.x[REACHED]:
         return math.inf
-    ax = relative_row(net, c, 1, h) / h - net.compliance[c] * net.groups.F[0, c]
-    ay = relative_row(net, c + 1, 1, h) / h - net.compliance[c] * net.groups.F[0, c + 1]
-    if math.hypot(ax, ay) > net.stick[c] * net.compliance[c] * (1.0 - AT_LIMIT):
+    ax, ay = pushed_slope(net, c, 0, h), pushed_slope(net, c + 1, 0, h)
+    holds = net.stick[c] * net.compliance[c]
+    grows = ax * pushed_slope(net, c, 1, h) + ay * pushed_slope(net, c + 1, 1, h) > GROWS * holds * holds
+    if math.hypot(ax, ay) > holds * (1.0 - AT_LIMIT if grows else 1.0):
         return math.inf
     time = 0.0 if is_still(net, speed) else plan_landing(net, c, x, y, ax, ay)
+    if 0.0 < time < math.inf and not is_even(net, c, h):
+        net.groups.landing[net.groups.planar[c], 0] = 0.0
+        return math.inf
     if time > 4.0 * EPS * abs(net.x[TIME]):
         return time
     set_planar(net, c, STICK)

@@ -2,8 +2,10 @@
 
 # x: time; size of the present step; longest step; tolerance; totals of input and damping; end of the run; speeds
 # below NOISE are round-off; next step; the part of the step (s) that
-# counts, and that in which friction curves hold; largest speed, or that to which the step begins to lead
-TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST = range(12)
+# counts, and that in which friction curves hold; largest speed, or that to which the step begins to lead; the same by
+# accelerations alone; when steps that are next to nothing began; step
+# that polynomials were made for
+TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST, REACHED, CREPT, MADE = range(15)
 # i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
 # phase of the step, next stop; contacts and groups that a correction touches; steps in a row that did not move the
 # time; transitions in a row with which steps began; steps in a row that are next to nothing
@@ -15,5 +17,9 @@ WORK, WORK2, WORK3 = range(3)
 WATCH, SHIFTED, BEFORE = range(3)
 # since[.]: the contact broke away where the step ended
 AT_END = 2.0
+# since[.] of the second row of a contact in two directions: it has broken away a short time ago
+FRESH = 3.0
+# since[.] where a run starts: the contact slips, as the run before has left it
+GOES_ON = 4.0
 # relative round-off of one operation
 EPS = 2.3e-16

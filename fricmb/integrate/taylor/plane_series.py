@@ -7,6 +7,9 @@ With u the slip velocity, r = |u| and d = u/r, the sums
 give r_k and d_k from u_k and the orders before.  Where slip begins with the step, u = s p, and p takes the place of u:
 its coefficient k contains friction of order k, ``p_k = h/(k+1) (a_k - D sum_i (mu N)_i d_(k-i))`` with a the relative
 acceleration without friction, which stays linear in d_k.  That holds where mu_s = mu_k as well, and p_0 = 0.
+
+A short time behind that, u_0 = r_0 d_0 is small, and powers of u hold over about r_0/(D mu N) alone, since d is driven
+back so fast to where it has to be.  There r = r_0 + s |p| and p_k takes in ``r_0 d_(k+1)``, from a pass before.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Floats2
 from fricmb.integrate.taylor.friction_curve import friction_row
-from fricmb.integrate.taylor.layout import AT_END, FASTEST, NOISE
+from fricmb.integrate.taylor.layout import AT_END, FRESH, NOISE, REACHED
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import drop_slip, push_row, relative_row
 from fricmb.integrate.taylor.signals import belt_rate
@@ -28,7 +31,7 @@ STILL = 1e-12
 @kernel
 def is_still(net: Net, speed: float) -> bool:
     """Whether a slip speed is round-off."""
-    return bool(speed <= 10.0 * net.x[NOISE] + STILL * net.x[FASTEST])
+    return bool(speed <= 10.0 * net.x[NOISE] + STILL * net.x[REACHED])
 
 
 @kernel
@@ -67,28 +70,43 @@ def first_direction(net: Net, c: int, x: float, y: float, rubs: float) -> None:
 
 
 @kernel
+def set_begin(net: Net, c: int, h: float) -> None:
+    """Whether slip of contact c begins with the step (1), or began a short time ago (2)."""
+    groups, at = net.groups, net.groups.planar[c]
+    speed = math.hypot(relative_row(net, c, 0, h), relative_row(net, c + 1, 0, h))
+    groups.begins[at], groups.first_speed[at] = 0, 0.0
+    if net.since[c] == AT_END or is_still(net, speed):
+        groups.begins[at] = 1
+        net.since[c + 1] = FRESH
+    elif net.since[c + 1] == FRESH:
+        groups.begins[at], groups.first_speed[at] = 2, speed
+
+
+@kernel
 def slip_row(net: Net, c: int, k: int, h: float, factor: float) -> None:
     """Coefficient k of direction, slip speed and friction of contact c, which slips, and of its force."""
     groups, at = net.groups, net.groups.planar[c]
     d, r, rubbing = groups.unit[at], groups.speed[at], groups.rubbing[at]
     if k == 0:
-        speed = math.hypot(relative_row(net, c, 0, h), relative_row(net, c + 1, 0, h))
-        groups.begins[at] = 1 if net.since[c] == AT_END or is_still(net, speed) else 0
-    if groups.begins[at] == 1:
-        rubbing[k] = friction_row(net, c, k, r[k - 1] if k > 0 else 0.0, h)
+        set_begin(net, c, h)
+    begins, first = groups.begins[at] > 0, groups.first_speed[at]
+    before_x, before_y = d[0, k], d[1, k]
+    if begins:
+        rubbing[k] = friction_row(net, c, k, r[k - 1] if k > 0 else first, h)
         x, y = pushed_row(net, c, k, h, factor), pushed_row(net, c + 1, k, h, factor)
         for i in range(1, k + 1):
             x -= net.compliance[c] * rubbing[i] * d[0, k - i]
             y -= net.compliance[c] * rubbing[i] * d[1, k - i]
         by = h / (k + 1)
-        x, y, rubs = by * x, by * y, by * net.compliance[c] * rubbing[0]
+        x, y, rubs = by * x - first * d[0, k + 1], by * y - first * d[1, k + 1], by * net.compliance[c] * rubbing[0]
     else:
         x, y, rubs = relative_row(net, c, k, h), relative_row(net, c + 1, k, h), 0.0
     if k == 0:
         first_direction(net, c, x, y, rubs)
     else:
         next_direction(r, d, k, x, y, rubs)
-    if groups.begins[at] == 0:
+    groups.turned[at, k] = math.hypot(d[0, k] - before_x, d[1, k] - before_y)
+    if not begins:
         rubbing[k] = friction_row(net, c, k, r[k], h)
     x, y = 0.0, 0.0
     for i in range(k + 1):

@@ -195,7 +195,8 @@ def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
         "touched": z(count, np.int8), "was": z((most, P + 1)), "dF": z((P + 1, most)),
         "local_b": z((most if lawful else 0, *sums)), "first": z(most, i), "along": z((2, 12)),
         "unit": z((planes, 2, P + 1)), "speed": z((planes, P + 1)), "rubbing": z((planes, P + 1)),
-        "begins": z(planes, np.int8), "landing": z((planes, 5)), "square": z(2 * P + 3),
+        "begins": z(planes, np.int8), "first_speed": z(planes), "turned": z((planes, P + 1)),
+        "landing": z((planes, 14)), "square": z(2 * P + 3),
     }  # fmt: skip
     return Groups(**{name: solid(array) for name, array in arrays.items()})
 

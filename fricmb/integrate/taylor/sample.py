@@ -7,12 +7,14 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.account import displacement, pay_groups
-from fricmb.integrate.taylor.landing import friction_at
+from fricmb.integrate.taylor.friction_curve import friction_at
+from fricmb.integrate.taylor.landing_path import AT, UNIT, follow_landing, shift_relative
 from fricmb.integrate.taylor.layout import DAMPING, INPUT, N_SAMPLES, STEP, WORK
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands
 from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate, slip_speed
+from fricmb.integrate.taylor.rubbing import is_lost, rubbing_at
 
 
 @kernel
@@ -40,7 +42,9 @@ def sample(net: Net, s: float) -> None:
             net.out_F[at, c] = -net.row_coef[e] * response[j] / net.compliance[c]
     for c in range(net.mode.shape[0] if has_planes(net) else 0):
         if lands(net, c):
-            rub_along_landing(net, c, at)
+            sample_landing(net, c, s, at)
+        elif is_lost(net, c):
+            sample_lost(net, c, at)
     brought, lost = net.x[INPUT], net.x[DAMPING]
     count_rest(net, s, -1.0)
     net.out_x[at, 0] = net.x[INPUT] - belt_work(net, s)
@@ -50,11 +54,21 @@ def sample(net: Net, s: float) -> None:
 
 
 @kernel
-def rub_along_landing(net: Net, c: int, at: int) -> None:
-    """Friction of contact c in two directions at sample ``at``: what leads along a landing has the mean of it alone."""
+def sample_landing(net: Net, c: int, s: float, at: int) -> None:
+    """Velocity and friction of contact c, which comes to rest: its polynomials lead there, but by another way."""
+    plan = net.groups.landing[net.groups.planar[c]]
+    follow_landing(plan, s * net.x[STEP])
+    rubs = friction_at(net, c, math.hypot(plan[AT], plan[AT + 1]))
+    for i in range(2):
+        shift_relative(net, c + i, plan[AT + i] - net.out_g[at, c + i], net.out_v[at])
+        net.out_g[at, c + i], net.out_F[at, c + i] = plan[AT + i], -rubs * plan[UNIT + i]
+
+
+@kernel
+def sample_lost(net: Net, c: int, at: int) -> None:
+    """Friction of contact c, of which powers of s do not tell, at sample ``at``."""
     x, y = net.out_g[at, c], net.out_g[at, c + 1]
-    speed = math.hypot(x, y)
-    if speed > 0.0:
-        rubs = friction_at(net, c, speed)
-        net.out_F[at, c], net.out_F[at, c + 1] = -rubs * x / speed, -rubs * y / speed
+    rubs = rubbing_at(net, c, x, y)
+    if rubs >= 0.0:
+        net.out_F[at, c], net.out_F[at, c + 1] = -rubs * x, -rubs * y
 

@@ -9,7 +9,7 @@ from fricmb.integrate.taylor.curve_check import curve_part
 from fricmb.integrate.taylor.friction_curve import friction_row, slip_law
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
 from fricmb.integrate.taylor.groups import SECOND
-from fricmb.integrate.taylor.layout import ALLOWED, FASTEST
+from fricmb.integrate.taylor.layout import ALLOWED, FASTEST, REACHED
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands, push_planar, start_from_belts
 from fricmb.integrate.taylor.polynomials import push_row, relative_row, slip_speed
@@ -204,7 +204,7 @@ def taylor_series(net: Net, h: float, places: Ints) -> bool:
         push_slipping(net, k, h, factor)
         hold_groups(net, k, h, factor)
         if k == 0:
-            net.x[FASTEST] = fastest_speed(net, h)
+            net.x[FASTEST] = net.x[REACHED] = fastest_speed(net, h)
         if k == 1:
             net.x[FASTEST] = speed_from_rest(net, h)
         if not busy:

@@ -9,7 +9,7 @@ from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SL
 from fricmb.integrate.taylor.account import displacement, lose_sliding
 from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.landing import let_go, set_planar
-from fricmb.integrate.taylor.layout import EPS, LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.layout import EPS, GOES_ON, LONGEST, N_STOP, NOISE, STEP, TIME
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row, slip_speed
 from fricmb.integrate.taylor.series import taylor_series
@@ -61,6 +61,9 @@ def look_at_speeds(net: Net, given: bool, before_it: float) -> None:
             across = slip_speed(net, c + 1, net.v, 0.0)
             noise = max(noise, speed_noise(net, c + 1, given, before_it))
         rests = math.hypot(g, across) <= noise
+        if planar >= 0 and not given and net.since[c] == GOES_ON:
+            # what has broken away where the run before ended, or comes to rest there, has next to no speed
+            rests = False
         net.groups.before[c] = direction_of(net, c)
         net.groups.rests[c] = 1 if rests else 0
         if planar >= 0:

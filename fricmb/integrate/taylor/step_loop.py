@@ -11,8 +11,11 @@ from fricmb.integrate.taylor.account import pay_groups
 from fricmb.integrate.taylor.change import taylor_change
 from fricmb.integrate.taylor.event_heap import pop_due, push_due
 from fricmb.integrate.taylor.event_search import bounds, taylor_search
+from fricmb.integrate.taylor.groups import SECOND
+from fricmb.integrate.taylor.landing_path import leave_landings
 from fricmb.integrate.taylor.layout import (
     AT_END,
+    CREPT,
     END,
     EPS,
     INPUT,
@@ -39,7 +42,7 @@ from fricmb.integrate.taylor.polynomials import horner, horner_rate, rescale
 from fricmb.integrate.taylor.sample import sample
 from fricmb.integrate.taylor.signals import belt_value
 from fricmb.integrate.taylor.starting_modes import set_window, settle
-from fricmb.integrate.taylor.step_start import begin_step
+from fricmb.integrate.taylor.step_start import begin_step, follow_signals
 
 #: Why a run came back.
 DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP, CREEPS = range(10)
@@ -58,8 +61,10 @@ def find_ends(net: Net) -> None:
     net.i[N_HEAP] = 0
     net.i[N_HERE] = 0
     for c in range(net.mode.shape[0]):
-        net.since[c] = 0.0 if net.since[c] == AT_END else -1.0
         net.due[c] = math.inf
+        if net.groups.planar[c] == SECOND:
+            continue
+        net.since[c] = 0.0 if net.since[c] == AT_END else -1.0
         if net.slack[c] <= 0.0:
             push_due(net, c, taylor_search(net, c, 0.0, net.places))
 
@@ -138,6 +143,7 @@ def finish_step(net: Net) -> int:
     last = net.Q.shape[0] - 1
     horner(net.Q, last, 1.0, net.q)
     horner_rate(net.Q, last, 1.0, h, net.v)
+    leave_landings(net)
     sound = 0.0
     for j in range(n):
         net.top[j] = max(net.top[j], abs(net.v[j]))
@@ -160,10 +166,25 @@ def finish_step(net: Net) -> int:
     else:
         net.i[PHASE] = BEGIN
     net.x[TIME] = t
-    net.i[N_CREEP] = net.i[N_CREEP] + 1 if h < SLIGHT * net.x[LONGEST] else 0
-    if net.i[N_CREEP] > MANY and has_planes(net):
-        return CREEPS
-    return DONE if sound == 0.0 else NOT_FINITE
+    if sound != 0.0:
+        return NOT_FINITE
+    return CREEPS if creeps(net) else DONE
+
+
+@kernel
+def creeps(net: Net) -> bool:
+    """Whether steps have been next to nothing for long, beside what structure and prescribed functions allow."""
+    t, h = net.x[TIME], net.x[STEP]
+    if h >= SLIGHT * net.x[LONGEST] or not has_planes(net):
+        net.i[N_CREEP] = 0
+    else:
+        if net.i[N_CREEP] == 0:
+            net.x[CREPT] = t - h
+        net.i[N_CREEP] += 1
+    if net.i[N_CREEP] <= MANY:
+        return False
+    net.i[N_CREEP] = 0
+    return bool(t - net.x[CREPT] < MANY * SLIGHT * follow_signals(net, t, net.x[LONGEST]))
 
 
 @kernel

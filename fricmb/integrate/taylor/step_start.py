@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.taylor.fresh import all_series, lose_fresh
 from fricmb.integrate.taylor.idle import idle_step
 from fricmb.integrate.taylor.landing import land_all, take_off
 from fricmb.integrate.taylor.layout import (
@@ -23,7 +24,6 @@ from fricmb.integrate.taylor.layout import (
 )  # fmt: skip
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import rescale
-from fricmb.integrate.taylor.series import taylor_series
 from fricmb.integrate.taylor.signals import ROUNDING, signal_series
 
 #: Errors in units of the tolerance from which on, and parts of the step down to which, its polynomials say nothing.
@@ -72,6 +72,17 @@ def follow_signals(net: Net, t: float, h: float) -> float:
 @kernel
 def begin_step(net: Net) -> bool:
     """Choose the step and make its polynomials; False for an idle one, which has no transitions inside."""
+    wanted = net.x[NEXT]
+    busy = choose_step(net)
+    while lose_fresh(net):
+        net.x[NEXT] = wanted
+        busy = choose_step(net)
+    return busy
+
+
+@kernel
+def choose_step(net: Net) -> bool:
+    """The same, with slip that began a short time ago taken for what it is told to be."""
     t = net.x[TIME]
     stop = net.stops[net.i[N_STOP]]
     left = stop - t
@@ -87,12 +98,12 @@ def begin_step(net: Net) -> bool:
         net.x[UNTIL] = net.x[ALLOWED] = 1.0
         if h == 0.0:
             return False
-        busy = taylor_series(net, h, net.places)
+        busy = all_series(net, h)
         rest = land_all(net, h) if has_planes(net) else math.inf
         if rest < math.inf:
             h = follow_signals(net, t, min(h, rest))
             net.x[STEP] = h
-            busy = taylor_series(net, h, net.places)
+            busy = all_series(net, h)
         if not busy and net.series.shape[0] == 0:
             idle = idle_step(net, left)
             if idle > h:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import sympy
 from scipy.integrate import solve_ivp
 
 import fricmb as fm
@@ -41,3 +42,34 @@ def test_slip_from_rest_grows_as_the_law_says(name, rtol):
     # a part of the steep law's growth is that of the release's round-off: from there on it is 40 times rtol
     np.testing.assert_allclose(sol(t), true.sol(t), rtol=0.0, atol=40.0 * max(rtol, 1e-10))
     assert np.abs(true.sol(t)[1]).max() > 0.1
+
+
+ONSETS = {
+    "equal": fm.laws.Coulomb(mu_s=0.5),
+    "jump": fm.laws.Coulomb(mu_s=0.6, mu_k=0.4),
+    "steep": fm.laws.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.05, exponent=1.0),
+}
+
+
+@pytest.mark.parametrize("after", [1e-7, 1e-5, 1e-3, 1e-2])
+@pytest.mark.parametrize("name", ONSETS)
+def test_blocks_that_break_away_one_shortly_after_another(name, after):
+    """A step that ends at the next one's break-away leaves a slip speed in which the direction could turn at once."""
+    parts, blocks = [], [fm.Body(f"b{i}", mass=1.0, axes="xy") for i in range(3)]
+    for i, block in enumerate(blocks):
+        t = fm.t - after * i
+        loads = [0.3 * t * way(0.8 * t) for way in (sympy.cos, sympy.sin)]
+        parts += [fm.Force(f"f{i}{a}", block, axis=a, value=F) for a, F in zip("xy", loads, strict=True)]
+        parts += [fm.Spring(f"k{i}{a}", block, axis=a, stiffness=1.0) for a in "xy"]
+        parts.append(fm.Contact(f"c{i}", block, law=ONSETS[name], normal_force=1.0))
+    parts += [fm.Spring(f"t{i}{a}", blocks[i], blocks[i + 1], axis=a, stiffness=0.01) for i in range(2) for a in "xy"]
+    scene, t = fm.Scene("onset", [*blocks, *parts]), np.linspace(0.0, 4.0, 101)
+    true = fm.simulate(scene, t_end=4.0, rtol=1e-11, t_eval=t, method="radau")
+    for rtol in (1e-4, 1e-6, 1e-9):
+        sol = fm.simulate(scene, t_end=4.0, rtol=rtol, t_eval=t, method="taylor")
+        assert [(event.contact, event.kind) for event in sol.events] == [(f"c{i}", "slip") for i in range(3)]
+        np.testing.assert_allclose(np.diff(sol.events.t), after, rtol=1e-4, atol=0.01 * rtol)  # but for the ties
+        assert sol.stats.n_steps < 100
+        np.testing.assert_allclose(sol.v, true.v, atol=0.1 * rtol)
+        np.testing.assert_allclose(sol.q, true.q, atol=0.1 * rtol)
+        assert sol.audit().ok, sol.audit().table()

@@ -184,3 +184,44 @@ def test_slip_that_sets_out_from_rest_takes_few_steps():
         assert sol.stats.n_steps < 250
         assert [e.kind for e in sol.events] == ["slip"]
         np.testing.assert_allclose(sol.q[:, -1], true.q[:, -1], atol=rtol)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("N", [1e-10, 1e-6, 1e-2])
+def test_weak_friction_is_told_as_it_is(N, rtol):
+    """Steps are as long as motion bears, and the direction of friction that hardly matters turns much faster."""
+    block = fm.Body("block", mass=1.0, axes="xy", velocity={"x": 0.3, "y": -0.7})
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    parts = [fm.Spring(f"s{axis}", block, axis=axis, stiffness=1.0) for axis in "xy"]
+    parts += [fm.Force("f", block, axis="x", value=0.3 * sympy.sin(0.7 * fm.t))]
+    sole = fm.Contact("sole", block, belt, law=fm.laws.Coulomb(mu_s=0.5), normal_force=N)
+    scene, t = fm.Scene("weak", [block, belt, *parts, sole]), np.linspace(0.0, 20.0, 401)
+    true = fm.simulate(scene, t_end=20.0, rtol=1e-10, t_eval=t, method="radau")
+    sol = fm.simulate(scene, t_end=20.0, rtol=rtol, t_eval=t, method="taylor")
+    np.testing.assert_allclose(sol.force("sole") / (0.5 * N), true.force("sole") / (0.5 * N), atol=max(rtol, 1e-8))
+    np.testing.assert_allclose(sol.energy.friction_loss, true.energy.friction_loss, rtol=1e-5, atol=1e-6 * N)
+    assert sol.audit().ok, sol.audit().table()
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_run_goes_on_from_a_transition(rtol):
+    """What lets go or comes to rest where a run ends is told once, by that run or by the next."""
+    scene = SCENES["Stribeck"]
+    whole = fm.simulate(scene, t_end=15.0, rtol=rtol, method="taylor")
+    for event in list(whole.events)[:10]:
+        first = fm.simulate(scene, t_end=event.t, rtol=rtol, method="taylor")
+        then = fm.simulate(scene, t_end=15.0, rtol=rtol, method="taylor", initial=first)
+        told = [(e.contact, e.kind) for e in (*first.events, *then.events)]
+        assert told == [(e.contact, e.kind) for e in whole.events]
+        np.testing.assert_allclose(then.q[:, -1], whole.q[:, -1], atol=rtol)
+
+
+def test_a_run_leaves_nothing_to_the_next():
+    """One that ends where a contact breaks away; the next starts with a speed."""
+    scene, _, _ = sliding(0.3, fm.laws.Coulomb(mu_s=RUB), speed=0.0, pull=0.4 * fm.t)
+    start = {"velocity": {"block.x": 0.7}}
+    alone = fm.simulate(scene, t_end=1.0, rtol=1e-8, method="taylor", initial=start)
+    (slip,) = fm.simulate(scene, t_end=3.0, rtol=1e-8, method="taylor").events
+    assert fm.simulate(scene, t_end=float(np.nextafter(slip.t, 9.0)), rtol=1e-8, method="taylor").events
+    after = fm.simulate(scene, t_end=1.0, rtol=1e-8, method="taylor", initial=start)
+    np.testing.assert_array_equal(after.q, alone.q)
