@@ -36,11 +36,19 @@ def unit(label: str, argument: str, value: Any) -> Floats:
     return found
 
 
+#: Components of a unit vector that are the same, or 0, to round-off.
+ALIKE = 1e-9
+
+
 def triad(e: Floats) -> tuple[Floats, Floats]:
-    """Unit vectors u, w at right angles to the unit vector e, with u x w = e; along axes where e is along one."""
-    i = int(np.argmin(np.abs(e)))
-    order = [(1, 2, 0), (2, 0, 1), (0, 1, 2)][int(np.argmax(np.abs(e)))]
-    start = np.eye(3)[order[0]] if np.count_nonzero(e) == 1 else np.eye(3)[i]
+    """Unit vectors u, w at right angles to the unit vector e, with u x w = e; along axes where e is along one.
+
+    Round-off of e does not choose: of an axis that has been turned there and back u is what it was.
+    """
+    size = np.abs(e)
+    i = int(np.argmax(size <= size.min() + ALIKE))
+    along = int(np.argmax(size))
+    start = np.eye(3)[(along + 1) % 3 if np.count_nonzero(size > ALIKE) == 1 else i]
     u = start - (start @ e) * e
     u /= np.linalg.norm(u)
     return u, np.cross(e, u)

@@ -132,3 +132,22 @@ def test_guide_that_jams_says_how_much_friction_it_bears(mu, share):
             fm.simulate(scene(1.0), t_end=0.01, method=method)
         sol = fm.simulate(scene(0.99 * share), t_end=0.01, method=method)
         assert sol.normal_force("rail")[0] == pytest.approx(2.0 * 9.81)
+
+
+@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (-8e-17, -3e-17, 1.0), (3e-17, -8e-17, 1.0), (2e-13, 1e-13, 1.0)])
+def test_round_off_of_an_axis_does_not_turn_the_shoes(axis):
+    """Shoes side by side along x bear a push P along y, and its torque P l about the guide, by ``(P/2 +- P l/b)/2``."""
+    push, arm, width, speed = 7.0, 0.1, 0.1, -1.5
+    body = SPACE.RigidBody(
+        "slide", mass=M, inertia=(0.02, 0.03, 0.04), velocity=(0, 0, speed), points={"mid": (arm, 0.0, 0.0)}
+    )
+    guide = SPACE.Prismatic(
+        "guide", body.point("mid"), SPACE.ground_point(arm, 0.0, 0.0), axis=axis, width=width,
+        friction=fm.laws.Coulomb(mu_s=MU),
+    )  # fmt: skip
+    sol = fm.simulate(
+        fm.Scene("guide", [body, guide, fm.Force("push", body, axis="y", value=push), DOWN]), t_end=0.5, rtol=1e-9
+    )
+    load = 2.0 * (abs(push / 4 + push * arm / width / 2) + abs(push / 4 - push * arm / width / 2))
+    np.testing.assert_allclose(sol.normal_force("guide"), load, rtol=1e-9)
+    assert sol["slide.z"][-1] == pytest.approx(speed * 0.5 + 0.5 * (MU * load / M - G) * 0.25, rel=1e-8)

@@ -64,8 +64,6 @@ def arrive(
     return CHANGED if code == DONE else code
 
 
-
-
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
@@ -96,8 +94,9 @@ def radau_step(
         c.made[0] = 0.0
         made = try_step(mech, k, y, st, c, h, mech.address)
     if not made:
+        # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.counts[1] += 1
-        c.h[0] = 0.4 * h
+        c.h[0], c.h[1] = 0.4 * h, 0.0
         return REJECTED
     error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol[0])
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
