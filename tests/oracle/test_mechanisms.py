@@ -11,7 +11,7 @@ from tests.oracle.random_scenes import generate
 
 
 def test_shoes_of_a_guide_stand_where_the_axis_says_not_its_round_off():
-    """A guide along z but for 1e-17, its shoes side by side along x; also by a program of its own, in one coordinate."""
+    """A guide along z but for 1e-17, its shoes side by side along x; also by an own program in one coordinate."""
     spec = generate("tree", 150003)
     case = make({}, spec)
     true = truth(case)
@@ -34,7 +34,7 @@ def test_shoes_of_a_guide_stand_where_the_axis_says_not_its_round_off():
 
 
 def test_stages_near_rest_start_from_the_step_before_only_where_that_was_one():
-    """Slip that passes rest by 4e-8: what steps as short say of forces is round-off, and they met no solution from it."""
+    """Slip passes rest by 4e-8: what steps as short say of forces is round-off, and no solution was found from it."""
     true = truth(make({}, generate("tree", 150009)))
     kinds = {rtol: judge(true, "radau", rtol).kind for rtol in (3.16e-6, 1e-6, 4.6e-7, 2.15e-7)}
     assert set(kinds.values()) == {"right"}, kinds

@@ -20,7 +20,7 @@ from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Problem
+from fricmb.integrate.problem import Floats, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.stop import ended
 
@@ -104,13 +104,16 @@ def _made(p: Model, s: int) -> Run:
     # the last line of wk has a name (CHANGE): few nodes need as many lines
     lines = (3, max(s, CHANGE) + 1, s + 1)
     wide = padded(s)
-    zeros = lambda *shapes: [np.zeros(shape) for shape in shapes]  # noqa: E731
-    tables = zeros((count, 6, n, wide), (count, m * m, s, wide), (1, m * m, s, wide), RUNGS + 1)
-    steps = [*zeros((14, n), (3, m, wide), (s + 2, wide)), np.eye(s, wide), *zeros((n + 1, TERMS))]
-    state = [*zeros((4, n), (2, m), 5), np.zeros(8, np.int64)]
-    work = [*tables, slots, *steps, np.zeros(n, np.int64), *zeros(lines), *state]
+    tables = _zeros((count, 6, n, wide), (count, m * m, s, wide), (1, m * m, s, wide), (RUNGS + 1,))
+    steps = [*_zeros((14, n), (3, m, wide), (s + 2, wide)), np.eye(s, wide), *_zeros((n + 1, TERMS))]
+    state = [*_zeros((4, n), (2, m), (5,)), np.zeros(8, np.int64)]
+    work: list[Any] = [*tables, slots, *steps, np.zeros(n, np.int64), *_zeros(lines), *state]
     own = [array.copy() for array in p]
     return room(Run._make([*own, *nodes(s), *work, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
+
+
+def _zeros(*shapes: tuple[int, ...]) -> list[Floats]:
+    return [np.zeros(shape) for shape in shapes]
 
 
 def _begin_anew(run: Run, p: Model) -> None:
