@@ -13,6 +13,8 @@ from fricmb.integrate.taylor.series import taylor_series
 
 #: Passes: each makes what is left over smaller by slip speed over what friction brings in the time scale of loads.
 PASSES = 4
+#: Part of the tolerance that a pass may change for the next one to be left out.
+ENOUGH = 0.1
 
 
 @kernel
@@ -28,13 +30,42 @@ def any_fresh(net: Net) -> bool:
 
 
 @kernel
+def slip_off(net: Net, c: int, part: float) -> float:
+    """How far slip of contact c, which began a short time ago, may be off over a part of what was asked for.
+
+    By what the last pass has changed, and by what its direction is not the one that slip has had.
+    """
+    at, h = net.groups.planar[c], net.x[MADE]
+    turned, d, first = net.groups.turned[at], net.groups.unit[at], net.groups.first_speed[at]
+    off, power = 0.0, part * h * net.compliance[c] * abs(net.groups.rubbing[at, 0])
+    for k in range(net.groups.F.shape[0]):
+        off += turned[k] * power
+        power *= part
+    x, y = relative_row(net, c, 0, net.x[STEP]), relative_row(net, c + 1, 0, net.x[STEP])
+    return float(off + math.hypot(x - first * d[0, 0], y - first * d[1, 0]))
+
+
+@kernel
+def largest_off(net: Net) -> float:
+    """The largest of these."""
+    worst = 0.0
+    for c in range(net.mode.shape[0]):
+        at = net.groups.planar[c]
+        if at >= 0 and net.mode[c] == SLIP and net.groups.begins[at] == 2:
+            worst = max(worst, slip_off(net, c, 1.0))
+    return float(worst)
+
+
+@kernel
 def all_series(net: Net, h: float) -> bool:
     """Polynomials for a step h, by as many passes as they take; whether anything accelerates."""
     net.x[MADE] = h
-    more = PASSES - 1 if any_fresh(net) else 0
+    fresh = any_fresh(net)
     busy = taylor_series(net, h, net.places)
-    for _ in range(more):
+    for _ in range(PASSES - 1 if fresh else 0):
         busy = taylor_series(net, h, net.places)
+        if largest_off(net) <= ENOUGH * net.x[TOL] * net.x[FASTEST]:
+            break
     return bool(busy)
 
 
@@ -42,22 +73,12 @@ def all_series(net: Net, h: float) -> bool:
 def lose_fresh(net: Net) -> bool:
     """Contacts whose slip the last pass of the step has changed too much slip as others do; whether there are any."""
     lost = False
-    h = net.x[STEP]
-    part = h / net.x[MADE]
+    part = net.x[STEP] / net.x[MADE]
     for c in range(net.mode.shape[0]):
         at = net.groups.planar[c]
         if at < 0 or net.mode[c] != SLIP or net.groups.begins[at] != 2:
             continue
-        turned, d, first = net.groups.turned[at], net.groups.unit[at], net.groups.first_speed[at]
-        off, power = 0.0, 1.0
-        for k in range(net.groups.F.shape[0]):
-            off += turned[k] * power
-            power *= part
-        off *= h * net.compliance[c] * abs(net.groups.rubbing[at, 0])
-        off += math.hypot(
-            relative_row(net, c, 0, h) - first * d[0, 0], relative_row(net, c + 1, 0, h) - first * d[1, 0]
-        )
-        if not off <= net.x[TOL] * net.x[FASTEST]:
+        if not slip_off(net, c, part) <= net.x[TOL] * net.x[FASTEST]:
             net.since[c + 1] = -1.0
             lost = True
     return lost

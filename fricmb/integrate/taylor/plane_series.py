@@ -26,6 +26,8 @@ from fricmb.integrate.taylor.signals import belt_rate
 
 #: Slip speeds below that, relative to the largest speed, are the round-off of none.
 STILL = 1e-12
+#: Slip speeds that take few steps to follow, as a part of what friction would bring in the step.
+FEW = 0.1
 
 
 @kernel
@@ -78,7 +80,7 @@ def set_begin(net: Net, c: int, h: float) -> None:
     if net.since[c] == AT_END or is_still(net, speed):
         groups.begins[at] = 1
         net.since[c + 1] = FRESH
-    elif net.since[c + 1] == FRESH:
+    elif net.since[c + 1] == FRESH and speed <= FEW * h * net.compliance[c] * net.slip[c]:
         groups.begins[at], groups.first_speed[at] = 2, speed
 
 
