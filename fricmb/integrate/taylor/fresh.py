@@ -18,15 +18,19 @@ ENOUGH = 0.1
 
 
 @kernel
-def any_fresh(net: Net) -> bool:
-    """Whether slip has begun a short time ago; nothing is known of such directions then."""
-    found = False
+def forget_directions(net: Net) -> None:
+    """Nothing is known yet in a step of the directions of slip that began a short time ago."""
     for c in range(net.mode.shape[0]):
         at = net.groups.planar[c]
         if at >= 0 and net.mode[c] == SLIP and net.since[c + 1] == FRESH:
             net.groups.unit[at, :, :] = 0.0
-            found = True
-    return found
+
+
+@kernel
+def is_fresh(net: Net, c: int) -> bool:
+    """Whether the series just made took slip of contact c for one that began a short time ago."""
+    at = net.groups.planar[c]
+    return bool(at >= 0 and net.mode[c] == SLIP and net.groups.begins[at] == 2)
 
 
 @kernel
@@ -47,11 +51,10 @@ def slip_off(net: Net, c: int, part: float) -> float:
 
 @kernel
 def largest_off(net: Net) -> float:
-    """The largest of these."""
-    worst = 0.0
+    """The largest of these; -1 where there are none."""
+    worst = -1.0
     for c in range(net.mode.shape[0]):
-        at = net.groups.planar[c]
-        if at >= 0 and net.mode[c] == SLIP and net.groups.begins[at] == 2:
+        if is_fresh(net, c):
             worst = max(worst, slip_off(net, c, 1.0))
     return float(worst)
 
@@ -60,9 +63,9 @@ def largest_off(net: Net) -> float:
 def all_series(net: Net, h: float) -> bool:
     """Polynomials for a step h, by as many passes as they take; whether anything accelerates."""
     net.x[MADE] = h
-    fresh = any_fresh(net)
+    forget_directions(net)
     busy = taylor_series(net, h, net.places)
-    for _ in range(PASSES - 1 if fresh else 0):
+    for _ in range(PASSES - 1 if largest_off(net) >= 0.0 else 0):
         busy = taylor_series(net, h, net.places)
         if largest_off(net) <= ENOUGH * net.x[TOL] * net.x[FASTEST]:
             break
@@ -75,10 +78,7 @@ def lose_fresh(net: Net) -> bool:
     lost = False
     part = net.x[STEP] / net.x[MADE]
     for c in range(net.mode.shape[0]):
-        at = net.groups.planar[c]
-        if at < 0 or net.mode[c] != SLIP or net.groups.begins[at] != 2:
-            continue
-        if not slip_off(net, c, part) <= net.x[TOL] * net.x[FASTEST]:
+        if is_fresh(net, c) and not slip_off(net, c, part) <= net.x[TOL] * net.x[FASTEST]:
             net.since[c + 1] = -1.0
             lost = True
     return lost

@@ -107,8 +107,9 @@ def slip_row(net: Net, c: int, k: int, h: float, factor: float) -> None:
         first_direction(net, c, x, y, rubs)
     else:
         next_direction(r, d, k, x, y, rubs)
-    groups.turned[at, k] = math.hypot(d[0, k] - before_x, d[1, k] - before_y)
-    if not begins:
+    if begins:
+        groups.turned[at, k] = math.hypot(d[0, k] - before_x, d[1, k] - before_y)
+    else:
         rubbing[k] = friction_row(net, c, k, r[k], h)
     x, y = 0.0, 0.0
     for i in range(k + 1):
