@@ -77,7 +77,9 @@ class TaylorRun(Trajectory):
         """Times of the rows, and whether the left-hand value is meant."""
         starts = np.append(self._steps[:, 0], self.end.t)
         width = 2 * self.problem.n + 4 * max(self.problem.n_c, 1)
-        events = self.transitions.t
+        # what jumps at a breakpoint has a value on each side, too
+        breaks = self.problem.signals.breakpoints
+        events = np.append(self.transitions.t, breaks[(breaks > starts[0]) & (breaks < starts[-1])])
         if (len(starts) + 2 * len(events)) * width <= ROWS:
             inner = starts[~_beside(starts, np.sort(events))]
             t = np.concatenate([inner, events, events])

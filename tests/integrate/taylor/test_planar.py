@@ -225,3 +225,24 @@ def test_a_run_leaves_nothing_to_the_next():
     assert fm.simulate(scene, t_end=float(np.nextafter(slip.t, 9.0)), rtol=1e-8, method="taylor").events
     after = fm.simulate(scene, t_end=1.0, rtol=1e-8, method="taylor", initial=start)
     np.testing.assert_array_equal(after.q, alone.q)
+
+
+@pytest.mark.parametrize("axes", ["x", "xy"])
+def test_rows_stand_on_both_sides_of_a_belt_that_jumps_under_slip(axes):
+    """No contact changes its mode there, but slip velocities and friction do; audits look at what is between rows."""
+    later = {"y": 0.05} if axes == "xy" else {}
+    speed = sympy.Piecewise((0.1, fm.t < 5.0), (0.5, True))
+    belt = fm.Driven("belt", velocity={"x": speed, **later})
+    parts = [belt]
+    for i in range(2):
+        body = fm.Body(f"b{i}", mass=1.0, axes=axes, velocity=dict.fromkeys(axes, 1.0))
+        springs = [fm.Spring(f"k{i}{a}", body, axis=a, stiffness=0.2 + 0.1 * i) for a in axes]
+        law = fm.laws.Coulomb(mu_s=0.06, mu_k=0.04)
+        parts += [body, *springs, fm.Contact(f"c{i}", body, belt, axes=tuple(axes), law=law, normal_force=1.0)]
+    sol = fm.simulate(fm.Scene("jump", parts), t_end=6.0, rtol=1e-8, method="taylor")
+    before, behind = np.flatnonzero(np.abs(sol.t - 5.0) < 1e-12)
+    slip = [sol.relative_velocity(f"c{i}") for i in range(2)]
+    for g in slip:
+        x = np.atleast_2d(g)[0]
+        assert x[behind] - x[before] == pytest.approx(-0.4, abs=1e-9)
+    assert sol.audit().ok, sol.audit().table()
