@@ -124,8 +124,8 @@ class Prismatic(Guided):
     length, width : float
         Of the guide: a is carried by four shoes, ``length`` apart along the axis and ``width`` apart along u, the point
         of a in the middle.  At the start u is as near as can be to the axis of space most nearly at right angles to the
-        guide; of one along x, y or z it is y, z or x.  Torques are borne by forces that far apart and add to the normal force; 0: they bring no
-        friction.
+        guide; of one along x, y or z it is y, z or x.  Torques are borne by forces that far apart and add to the normal
+        force; 0: they bring no friction.
     friction : FrictionLaw, optional
         Normal force: the sum over the shoes of ``|(F_u/2 +- M_w/length, F_w/2 -+ M_u/length)/2 +- (0, M_e/width)/2|``.
     """
