@@ -68,6 +68,8 @@ MECHANISM_STEPS = (
     "add_stick",
     "law_defect",
 )
+#: Of contacts in loops.
+MECHANISM_LOOPS = ("share_load",)
 FURTHER = (
     "start_history",
     "bdf_step",
@@ -108,5 +110,6 @@ FURTHER = (
     "dgbtrs",
     "root_along_step",
     "exact_root",
+    *MECHANISM_LOOPS,
 )
 PLACES = LAPACK + CORE + FURTHER

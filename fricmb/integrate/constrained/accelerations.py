@@ -20,6 +20,7 @@ from fricmb.integrate.constrained.forces import (
 )
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
 from fricmb.integrate.constrained.jacobian_layers import add, add_contacts, add_joints, add_mass, place_slope
+from fricmb.integrate.constrained.load_share import share_load
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import add_stick
@@ -226,6 +227,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         last = error
     else:
         return False
+    share_load(mech, k, y.mode, y.N, y.F, 1.0, mech.address)
     # of what has been found: iterates on the way there may be anything
     k.borne[0] = max(k.borne[1], largest(y.lam), largest(y.F), largest_load(mech, y))
     instant_residual(mech, k, w, y, mech.address)

@@ -6,6 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import call_joint, is_open, move
 from fricmb.integrate.constrained.load_kinks import BEFORE, BEHIND, law_side
+from fricmb.integrate.constrained.load_share import may_share, share_stages
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import lack, plane, slip_speed, spare
@@ -99,6 +100,7 @@ def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages
     s = st.tab.c.shape[0]
     worst, least = -1, 0.0
     out.where[0] = 1.0
+    shared = share_stages(mech, k, y, end, st)
     triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
     out.inner[0] = out.trigger
     if out.opened[0] > 0:
@@ -118,7 +120,7 @@ def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages
             value = out.inner[i + 1, j] + (rough if i < s - 1 else 0.0)
             if value < -limit and value / max(limit, 1e-290) < least:
                 worst, least = j, value / max(limit, 1e-290)
-    return worst if worst >= 0 else first_between(mech, k, out, y, st)
+    return worst if worst >= 0 else first_between(mech, k, out, y, st, shared)
 
 
 @kernel
@@ -139,11 +141,15 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
 
 
 @kernel
-def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages) -> int:
-    """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then."""
+def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, shared: bool) -> int:
+    """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then.
+
+    ``shared``: contacts in loops share their load anew, by forces that jump between two stages.
+    """
     found = -1
     for j in range(2 * y.mode.shape[0] + mech.joint.port.shape[0]):
-        if not is_smooth(mech, k, j, y, st):
+        jumps = shared and j < 2 * y.mode.shape[0] and y.mode[j // 2] == STICK and may_share(mech, j // 2)
+        if jumps or not is_smooth(mech, k, j, y, st):
             continue
         hair = 10.0 * grain(mech, out, j, y) if is_slip(j, y) else ROUGH * out.size[1]
         for i in range(st.tab.c.shape[0]):

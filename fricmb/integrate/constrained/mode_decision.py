@@ -6,9 +6,11 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import is_open
+from fricmb.integrate.constrained.load_share import mark_loops
 from fricmb.integrate.constrained.mode_enumeration import FOUND, NO_SOLUTION, enumerate_modes
 from fricmb.integrate.constrained.mode_trial import (
     ARRIVES,
+    LETS_GO,
     RESTED,
     SLIPS_ON,
     at_rest,
@@ -17,6 +19,7 @@ from fricmb.integrate.constrained.mode_trial import (
     largest_acceleration,
     release,
     set_out,
+    still,
     wrong,
 )
 from fricmb.integrate.constrained.moving import Moving
@@ -31,23 +34,28 @@ from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, 
 def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int, address: Ints) -> int:
     """Modes of the ports in ``part`` (their slip is 0); the others keep theirs.  ``forced`` (or -1) does not stick.
 
-    Sticking first (what is at its limit already stays there where another breaks away); the port that is furthest
-    beyond its limit is released against its force, one that would slip the wrong way sticks again.  One that comes to
-    rest is released before those that have rested: more friction at rest than in slip lets several combinations hold,
+    Sticking first (a joint that is at its limit already stays there where another breaks away; contacts in loops share
+    what they hold); the port that is furthest beyond its limit is released against its force, one that would slip the
+    wrong way, or is held by others, sticks again.  What LETS_GO in ``part`` does not stick.  One that comes to rest is
+    released before those that have rested: more friction at rest than in slip lets several combinations hold,
     and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried.
     """
     n_c = y.mode.shape[0]
     count, anew = 0, True
+    mark_loops(mech, k, y, part)
+    freely = forced < 0
     for c in range(n_c):
+        freely = freely and part[c] != LETS_GO
         # what has rested goes on from the forces that held it, as what is elastic does
         anew = anew and not (at_rest(mech, y, c, part) and y.mode[c] == STICK)
     for c in range(n_c):
         if at_rest(mech, y, c, part):
             count += 1
-            part[c] = RESTED if y.mode[c] == STICK else ARRIVES
-            if c == forced:
+            if part[c] != LETS_GO:
+                part[c] = RESTED if y.mode[c] == STICK else ARRIVES
+            if c == forced or part[c] == LETS_GO:
                 release(mech, k, y, c)
-            elif forced < 0 or y.mode[c] == STICK or plane(mech, c):
+            elif freely or y.mode[c] == STICK or plane(mech, c):
                 hold(mech, y, c, anew)
     for _ in range(4 * count + 4):
         if not ease(mech, k, w, y):
@@ -55,7 +63,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
         worst = find_wrong(mech, k, y, part, forced)
         if worst < 0:
             # what breaks away takes along whom it will; what arrives may have been released for another's sake
-            if forced < 0 and not hold_again(mech, k, w, y, part):
+            if freely and not hold_again(mech, k, w, y, part):
                 break
             set_out(mech, y)
             return FOUND
@@ -75,11 +83,14 @@ def find_wrong(mech: Mech, k: Moving, y: State, part: Codes, forced: int) -> int
     for c in range(y.mode.shape[0]):
         if at_rest(mech, y, c, part):
             beyond = wrong(mech, k, y, c, scale)
-            if c == forced and y.mode[c] != STICK and beyond < 1e-6:
+            if (c == forced or part[c] == LETS_GO) and y.mode[c] != STICK and beyond < 1e-6:
                 beyond = 0.0
             first = worst < 0 or part[c] < part[worst]
             if beyond > 0.0 and (first or (part[c] == part[worst] and beyond > most)):
                 worst, most = c, beyond
+    for c in range(y.mode.shape[0] if worst < 0 else 0):
+        if at_rest(mech, y, c, part) and c != forced and part[c] != LETS_GO and still(mech, k, y, c, scale):
+            return c
     return worst
 
 

@@ -5,7 +5,17 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.friction_share import react_by_shares
-from fricmb.integrate.constrained.mode_trial import at_rest, ease, hold, largest_acceleration, release, set_out, wrong
+from fricmb.integrate.constrained.mode_trial import (
+    LETS_GO,
+    at_rest,
+    ease,
+    hold,
+    largest_acceleration,
+    release,
+    set_out,
+    still,
+    wrong,
+)
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import plane
@@ -76,7 +86,9 @@ def enumerate_modes(
         scale = largest_acceleration(mech, k, y)
         holds = True
         for c in range(n_c):
-            if at_rest(mech, y, c, part) and wrong(mech, k, y, c, scale) > 0.0:
+            if not at_rest(mech, y, c, part):
+                continue
+            if wrong(mech, k, y, c, scale) > 0.0 or (part[c] != LETS_GO and still(mech, k, y, c, scale)):
                 holds = False
         if holds and number < 3**count and not (found > 0 and moves_alike(w, y, scale)):
             found += 1

@@ -13,8 +13,8 @@ from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 
 #: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT to rest while
-#: round-off of its slip is taken away (``transition``).
-SLIPS_ON, ARRIVES, RESTED, LENT = 0, 1, 2, 3
+#: round-off of its slip is taken away (``transition``); LETS_GO with the others of a loop.
+SLIPS_ON, ARRIVES, RESTED, LENT, LETS_GO = 0, 1, 2, 3, 4
 #: Round-off of forces beside the limit of sticking.
 SLACK = 1e-10
 #: Round-off of slip accelerations beside the largest: in trees, and in loops, whose Jacobians are softened.
@@ -39,6 +39,14 @@ def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
         return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
     against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne[0])
     return against if against > (CREEP_IN_LOOPS if mech.port.soft[c] > 0.0 else CREEP) else 0.0
+
+
+@kernel
+def still(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> bool:
+    """Whether others hold port c, which would slip but cannot without them: then it sticks."""
+    if y.mode[c] != SLIP or k.looped[c] == 0 or lack(y.N[c], k.borne[0]) > 0.0:
+        return False
+    return bool(slip_speed(mech.port.row, c, y.n, y.F, y.ga) < CREEP_IN_LOOPS * a_scale)
 
 
 @kernel

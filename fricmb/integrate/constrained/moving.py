@@ -24,7 +24,8 @@ class Moving(NamedTuple):
     decision that has found nothing: the largest share reached, and how many combinations have no solution;
     ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached;
     ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
-    matrices for slip of 0, which leaves forces along directions that joints block open.
+    matrices for slip of 0, which leaves forces along directions that joints block open;
+    ``way`` (m_p,) the motion in which contacts in loops give way, ``looped`` (n_c,) 1 of those that cannot slip alone.
     """
 
     s: Scratch
@@ -45,6 +46,8 @@ class Moving(NamedTuple):
     search: Floats
     borne: Floats
     slight: Floats
+    way: Floats
+    looped: Codes
 
 
 class Lengths(NamedTuple):
@@ -98,4 +101,5 @@ def moving_of(problem: Problem) -> Moving:
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
         np.zeros(problem.n_c), np.ones(1), np.ones(1), np.zeros(2), np.zeros(2), np.zeros(problem.n_c),
+        np.zeros(problem.m), np.zeros(problem.n_c, np.int8),
     )  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block_address
-from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_STEPS, PLACES
+from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_LOOPS, MECHANISM_STEPS, PLACES
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.loop_softness import softness
@@ -202,7 +202,7 @@ def _blocks() -> tuple[str, ...]:
     """Names of this package's blocks, their modules imported."""
     from fricmb.integrate.constrained import time_loop  # noqa: F401  (its import makes the blocks known)
 
-    return MECHANISM + MECHANISM_STEPS
+    return MECHANISM + MECHANISM_STEPS + MECHANISM_LOOPS
 
 
 def add_blocks(*names: str) -> None:

@@ -6,9 +6,10 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, react
 from fricmb.integrate.constrained.forces import move
+from fricmb.integrate.constrained.load_share import give_way, join_rest
 from fricmb.integrate.constrained.mode_decision import decide
 from fricmb.integrate.constrained.mode_enumeration import FOUND, SEVERAL
-from fricmb.integrate.constrained.mode_trial import ARRIVES, LENT, RESTED, SLIPS_ON
+from fricmb.integrate.constrained.mode_trial import ARRIVES, LENT, LETS_GO, RESTED, SLIPS_ON
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
@@ -93,7 +94,7 @@ def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
 def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
     """Take the round-off of slip away from what sticks, and from what has been at rest and sets out from there."""
     for i in range(part.shape[0]):
-        if part[i] in (ARRIVES, RESTED) and y.mode[i] == SLIP and not plane(mech, i):
+        if part[i] in (ARRIVES, RESTED, LETS_GO) and y.mode[i] == SLIP and not plane(mech, i):
             y.mode[i] = STICK
             part[i] = LENT
     done = project_velocities(mech, k, w, y, False, True, mech.address)
@@ -144,13 +145,14 @@ def change_modes(
                     y.n[a] = y.g[a] / speed if speed > 0.0 else y.n[a]
                 part[port] = ARRIVES if speed <= 1e-11 * out.size[0] else SLIPS_ON
         elif y.mode[port] == STICK:
-            forced = port
+            forced = -1 if give_way(mech, k, y, part, LETS_GO) else port
         elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.size[0]:
             part[port] = ARRIVES
         else:
             # one that had no load to speak of has gone on through rest
             part[port] = SLIPS_ON
             y.n[row[port]] = -y.n[row[port]]
+    join_rest(mech, k, y, part, 1e-9 * out.size[0], ARRIVES)
     code = decide(mech, k, w, y, part, forced, mech.address)
     if code != FOUND:
         margins(mech, k, w, y, out, True, mech.address)

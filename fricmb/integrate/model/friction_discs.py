@@ -12,8 +12,8 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.model.problem_structs import Ports
 from fricmb.integrate.problem import STICK, Codes, Floats
+from fricmb.integrate.run.room_protocols import Mobility
 from fricmb.integrate.run.stop import stopped
 
 #: Gradients taken at most, residual at which they end and at which they will do, in parts of the largest force.
@@ -32,7 +32,7 @@ def largest(x: Floats) -> float:
 
 
 @kernel
-def relative_acceleration(ports: Ports, a0: Floats, F: Floats, a: int) -> float:
+def relative_acceleration(ports: Mobility, a0: Floats, F: Floats, a: int) -> float:
     """Row a of a0 + D F."""
     value = a0[a]
     for b in range(F.shape[0]):
@@ -41,7 +41,7 @@ def relative_acceleration(ports: Ports, a0: Floats, F: Floats, a: int) -> float:
 
 
 @kernel
-def units(ports: Ports, part: Codes, scale: Floats) -> float:
+def units(ports: Mobility, part: Codes, scale: Floats) -> float:
     """Compliances of the contacts that take part (0: not) into ``scale`` (m,); returns a bound of D in these units."""
     steep = 1e-300
     for k in range(part.shape[0]):
@@ -58,7 +58,9 @@ def units(ports: Ports, part: Codes, scale: Floats) -> float:
 
 
 @kernel
-def least_energy(ports: Ports, a0: Floats, part: Codes, limit: Floats, scale: Floats, steep: float, F: Floats) -> bool:
+def least_energy(
+    ports: Mobility, a0: Floats, part: Codes, limit: Floats, scale: Floats, steep: float, F: Floats
+) -> bool:  # fmt: skip
     """Forces within discs of radius ``limit`` (n_c,) that make F D F/2 + a0 F least, from those that stand in F."""
     m = F.shape[0]
     ahead, last, step = F.copy(), F.copy(), np.zeros(m)
@@ -93,7 +95,7 @@ def least_energy(ports: Ports, a0: Floats, part: Codes, limit: Floats, scale: Fl
 
 
 @kernel
-def share(ports: Ports, mode: Codes, limit: Floats, F: Floats, g: Floats) -> float:
+def share(ports: Mobility, mode: Codes, limit: Floats, F: Floats, g: Floats) -> float:
     """Share what stuck contacts hold together so that the one most loaded, against its ``limit``, is loaded least.
 
     Only where one of them is beyond its limit; the sums that are determined stay what they are.  Returns the common

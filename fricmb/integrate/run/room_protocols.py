@@ -61,3 +61,15 @@ class Laws(Protocol):
     @property
     def row(self) -> Ints:
         """Where the rows of each contact begin."""
+
+
+class Mobility(Protocol):
+    """Contacts whose rows ``row[k]:row[k+1]`` accelerate by D F under forces F (m,)."""
+
+    @property
+    def row(self) -> Ints:
+        """Where the rows of each contact begin."""
+
+    @property
+    def D(self) -> Floats2:
+        """W^T M^-1 W (m, m)."""
