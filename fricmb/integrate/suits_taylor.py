@@ -10,6 +10,10 @@ from fricmb.integrate.run.problem_cache import once_per_problem
 
 def against_taylor(problem: Problem) -> str | None:
     """What stands against Taylor steps in the structure and the laws, or None."""
+    return once_per_problem(problem, "against taylor", lambda: _against_taylor(problem))
+
+
+def _against_taylor(problem: Problem) -> str | None:
     if problem.mechanism is not None:
         return "this scene has bodies that turn, or joints"
     contacts, linear = problem.contacts, problem.linear

@@ -80,9 +80,6 @@ def free_weights(run: Any, z: int, modal: bool, h: float, stiff: float, slot: in
     Blocks beyond ``stiff`` (w h) take Radau's own answer throughout; terms = 0 marks them.
     """
     for j in range(run.blk.shape[2]):
-        for q in range(6):
-            for i in range(run.tb.shape[3]):
-                run.tb[slot, q, j, i] = 0.0
         if max(math.sqrt(abs(run.blk[z, W2, j])), abs(run.blk[z, DAMP, j])) * h > stiff:
             run.terms[j] = 0
             stiff_tables(run, run.blk[z, W2, j], run.blk[z, DAMP, j], j, h, slot)
@@ -119,6 +116,7 @@ def exact_tables(run: Any, modal: bool, j: int, h: float, slot: int) -> None:
             set_lanes(tb[IIS, j], at, once)
             set_lanes(tb[Q3, j], at, force)
     if modal:
+        tb[IIS, j, end] = 0.0
         for m in range(run.terms[j]):
             tb[IIS, j, end] += h * h * h * kappa[m] * mo[m + 2, s, end]
 
@@ -129,6 +127,9 @@ def stiff_tables(run: Any, w2: float, d: float, j: int, h: float, slot: int) -> 
     s = run.mo.shape[1] - 1
     end = s - 1
     radau_block(run, h, w2, d)
+    for q in range(run.tb.shape[1]):
+        for i in range(run.tb.shape[3]):
+            run.tb[slot, q, j, i] = 0.0
     for i in range(s):
         for l in range(s):
             run.tb[slot, S, j, i] += run.wk[RADAU, i, l]

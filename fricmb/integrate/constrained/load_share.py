@@ -20,14 +20,12 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.friction_cone import friction_size, stick_limit
-from fricmb.integrate.model.friction_discs import share
+from fricmb.integrate.model.friction_discs import NEARLY, least_slip, share
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Codes, Floats, Floats2, Ints
 
 #: What is left of a row, of its own size, once it has been told by the others: no more than round-off.
 DEPENDENT = 1e-9
-#: Part of the cones beyond which shares are found where a contact reaches its own, so that what gives way is told.
-NEARLY = 1.0 - 1e-6
 
 
 class Loops(NamedTuple):
@@ -154,32 +152,34 @@ def give_way(mech: Mech, k: Moving, y: State, part: Codes, code: int) -> bool:
     k.way[:] = 0.0
     if share_load(mech, k, y.mode, y.N, y.F, NEARLY, mech.address) <= 0.0:
         return False
-    row, most = mech.port.row, 0.0
-    for c in range(part.shape[0]):
-        most = max(most, magnitude(row, c, k.way))
-    for c in range(part.shape[0] if most > 0.0 else 0):
-        if y.mode[c] == STICK and magnitude(row, c, k.way) > 1e-3 * most:
+    slips = least_slip(mech.port.row, k.way)
+    for c in range(part.shape[0] if slips > 0.0 else 0):
+        if y.mode[c] == STICK and magnitude(mech.port.row, c, k.way) > slips:
             part[c] = code
-    return most > 0.0
+    return slips > 0.0
+
+
+@kernel
+def at_rest_in_loops(mech: Mech, part: Codes) -> Codes:
+    """STICK (n_c,) for the contacts in loops that are at rest by ``part``, SLIP for all others."""
+    held = np.full(part.shape[0], SLIP, np.int8)
+    for c in range(part.shape[0]):
+        if part[c] != 0 and may_share(mech, c):
+            held[c] = STICK
+    return held
 
 
 @kernel
 def mark_loops(mech: Mech, k: Moving, y: State, part: Codes) -> None:
     """Mark in ``k.looped`` the contacts at rest whose slip the others at rest prevent: they cannot slip alone."""
-    n_c = part.shape[0]
-    held = np.full(n_c, SLIP, np.int8)
-    some = False
-    for c in range(n_c):
-        k.looped[c] = 0
-        if part[c] != 0 and may_share(mech, c):
-            held[c] = STICK
-            some = True
-    if not some:
+    k.looped[:] = 0
+    held = at_rest_in_loops(mech, part)
+    if not (held == STICK).any():
         return
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     D = mobility(mech, k, held)
     whole = rank(D)
-    for c in range(n_c):
+    for c in range(part.shape[0]):
         if held[c] == STICK:
             rest = D.copy()
             for a in range(mech.port.row[c], mech.port.row[c + 1]):
@@ -194,18 +194,16 @@ def join_rest(mech: Mech, k: Moving, y: State, part: Codes, small: float, code: 
 
     Their slip is made of those of the others, each of which is round-off; ``small``: what it then is at most.
     """
-    n_c = part.shape[0]
-    held = np.full(n_c, SLIP, np.int8)
-    for c in range(n_c):
-        held[c] = STICK if part[c] != 0 and may_share(mech, c) else SLIP
-    for c in range(n_c):
+    held, whole = at_rest_in_loops(mech, part), -1
+    for c in range(part.shape[0]):
         slips = part[c] == 0 and y.mode[c] == SLIP and may_share(mech, c) and mech.port.law[c] != LAW_SMOOTH
         if not slips or y.N[c] <= 0.0 or magnitude(mech.port.row, c, y.g) > small:
             continue
-        move(mech, k, y.t[0], y.q, y.v, mech.address)
-        before = rank(mobility(mech, k, held))
+        if whole < 0:
+            move(mech, k, y.t[0], y.q, y.v, mech.address)
+            whole = rank(mobility(mech, k, held))
         held[c] = STICK
-        if rank(mobility(mech, k, held)) > before:
+        if rank(mobility(mech, k, held)) > whole:
             held[c] = SLIP
         else:
             part[c] = code

@@ -10,6 +10,7 @@ from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, s
 from fricmb.integrate.model.accelerations import share_load, slip_rate
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.friction_cone import stick_limit
+from fricmb.integrate.model.friction_discs import NEARLY, least_slip
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
@@ -90,21 +91,17 @@ def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool
 
     They reach their cones as one: none can hold the load without the others.  False where there is no such motion.
     """
-    nc = y.mode.shape[0]
-    kept = y.F.copy()
-    load = share_load(packed, s, y.mode, y.N, kept, y.way, 1.0 - 1e-6)
-    most = 0.0
-    for c in range(nc if load > 0.0 else 0):
-        row0 = packed.ports.row[c]
-        most = max(most, magnitude(packed.ports.row, c, y.way))
-    for c in range(nc if most > 0.0 else 0):
-        row0 = packed.ports.row[c]
-        speed = magnitude(packed.ports.row, c, y.way)
-        if old.mode[c] == STICK and r.part[c] == 1 and speed > 1e-3 * most:
+    row = packed.ports.row
+    if share_load(packed, s, y.mode, y.N, y.F.copy(), y.way, NEARLY) <= 0.0:
+        return False
+    slips = least_slip(row, y.way)
+    for c in range(y.mode.shape[0] if slips > 0.0 else 0):
+        speed = magnitude(row, c, y.way)
+        if old.mode[c] == STICK and r.part[c] == 1 and speed > slips:
             r.part[c] = 2
-            for a in range(row0, packed.ports.row[c + 1]):
+            for a in range(row[c], row[c + 1]):
                 y.n[a] = y.way[a] / speed
-    return most > 0.0
+    return slips > 0.0
 
 
 @block

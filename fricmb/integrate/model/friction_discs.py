@@ -12,7 +12,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.problem import STICK, Codes, Floats
+from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.run.room_protocols import Mobility
 from fricmb.integrate.run.stop import stopped
 
@@ -20,6 +20,10 @@ from fricmb.integrate.run.stop import stopped
 MOST, FINE, COARSE = 20000, 1e-13, 1e-7
 #: Bounds of the common load found at most, and the part by which a new one has to be higher.
 CUTS, RISE = 30, 1e-14
+#: Part of the cones beyond which shares are found where a contact reaches its own, so that what gives way is told.
+NEARLY = 1.0 - 1e-6
+#: Speed of a contact that does not take part in the motion by which others give way, against the fastest.
+SLIGHT = 1e-3
 
 
 @kernel
@@ -145,3 +149,12 @@ def share(ports: Mobility, mode: Codes, limit: Floats, F: Floats, g: Floats) -> 
         if scale[a] > 0.0:
             F[a] = X[a]
     return float(load)
+
+
+@kernel
+def least_slip(row: Ints, way: Floats) -> float:
+    """Speed above which a contact slips in a motion ``way`` (m,) by which contacts give way; 0 where none does."""
+    most = 0.0
+    for c in range(row.shape[0] - 1):
+        most = max(most, magnitude(row, c, way))
+    return float(SLIGHT * most)

@@ -13,7 +13,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK, Floats, Ints
 from fricmb.integrate.step.crossing import lowest_between, root_between
-from fricmb.integrate.taylor.layout import N_SEARCHES, NOISE, SHIFTED, STEP, WATCH, WORK2, WORK3
+from fricmb.integrate.taylor.layout import LASTS, N_SEARCHES, NOISE, SHIFTED, STEP, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import lands
 from fricmb.integrate.taylor.polynomials import force_row, relative_row, shift_one
@@ -188,7 +188,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         return end_of_hold(net, c, low)
     if planar >= 0 and lands(net, c):
         # rest comes where the landing ends: behind this step, or where it ends
-        part = net.groups.landing[planar, 0] / h
+        part = net.groups.landing[planar, LASTS] / h
         return min(part, 1.0) if part < 1.0 + LANDED else math.inf
     if net.mode[c] == STICK:
         last -= 1

@@ -7,7 +7,7 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.layout import FASTEST, FRESH, MADE, STEP, TOL
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import relative_row
 from fricmb.integrate.taylor.series import taylor_series
 
@@ -63,13 +63,15 @@ def largest_off(net: Net) -> float:
 def all_series(net: Net, h: float) -> bool:
     """Polynomials for a step h, by as many passes as they take; whether anything accelerates."""
     net.x[MADE] = h
+    if not has_planes(net):
+        return taylor_series(net, h, net.places)
     forget_directions(net)
     busy = taylor_series(net, h, net.places)
     for _ in range(PASSES - 1 if largest_off(net) >= 0.0 else 0):
         busy = taylor_series(net, h, net.places)
         if largest_off(net) <= ENOUGH * net.x[TOL] * net.x[FASTEST]:
             break
-    return bool(busy)
+    return busy
 
 
 @kernel
@@ -77,7 +79,7 @@ def lose_fresh(net: Net) -> bool:
     """Contacts whose slip the last pass of the step has changed too much slip as others do; whether there are any."""
     lost = False
     part = net.x[STEP] / net.x[MADE]
-    for c in range(net.mode.shape[0]):
+    for c in range(net.mode.shape[0] if has_planes(net) else 0):
         if is_fresh(net, c) and not slip_off(net, c, part) <= net.x[TOL] * net.x[FASTEST]:
             net.since[c + 1] = -1.0
             lost = True

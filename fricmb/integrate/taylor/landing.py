@@ -24,7 +24,20 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.friction_curve import friction_at
-from fricmb.integrate.taylor.layout import AT_END, EPS, LONGEST, REACHED, TIME, TOL
+from fricmb.integrate.taylor.landing_path import ways_to_rest
+from fricmb.integrate.taylor.layout import (
+    AT_END,
+    BEGUN,
+    BENDS,
+    EPS,
+    LASTS,
+    LONGEST,
+    PULL,
+    REACHED,
+    SLOWS,
+    TIME,
+    TOL,
+)  # fmt: skip
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import is_still, lands
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row
@@ -45,7 +58,7 @@ def set_planar(net: Net, c: int, mode: int) -> None:
     """Mode of contact c in two directions."""
     net.mode[c] = net.mode[c + 1] = mode
     net.since[c + 1] = -1.0
-    net.groups.landing[net.groups.planar[c], 0] = 0.0
+    net.groups.landing[net.groups.planar[c], LASTS] = 0.0
 
 
 @kernel
@@ -74,20 +87,19 @@ def plan_landing(net: Net, c: int, x: float, y: float, ax: float, ay: float) -> 
     if slows <= pull:
         return math.inf
     along = (x * ax + y * ay) / pull if pull > 0.0 else 0.0
-    left = slows * slows - pull * pull
-    time = (slows * speed + pull * along) / left
+    time = (slows * speed + pull * along) / (slows * slows - pull * pull)
     if time > SHORT * math.sqrt(net.x[TOL]) * net.x[LONGEST]:
         return math.inf
-    across = speed * (2.0 * slows + pull * along / speed) / (4.0 * slows * slows - pull * pull)
-    far = (2.0 * slows * along * speed + pull * (speed * speed + along * along)) / (4.0 * left)
+    far = ways_to_rest(speed, along / speed, pull, slows, True)
+    across = ways_to_rest(speed, along / speed, pull, slows, False)
     plan = net.groups.landing[net.groups.planar[c]]
-    plan[0], plan[1], plan[2] = time, x, y
-    plan[5], plan[6], plan[7] = ax, ay, slows
+    plan[LASTS], plan[BEGUN], plan[BEGUN + 1] = time, x, y
+    plan[PULL], plan[PULL + 1], plan[SLOWS] = ax, ay, slows
     for i in range(2):
         u, e = (x, ax) if i == 0 else (y, ay)
         e = e / pull if pull > 0.0 else 0.0
         way = far * e + across * (u - along * e)
-        plan[3 + i] = 6.0 * (way / time - 0.5 * u)
+        plan[BENDS + i] = 6.0 * (way / time - 0.5 * u)
     return float(time)
 
 
@@ -101,11 +113,11 @@ def pushed_slope(net: Net, row: int, k: int, h: float) -> float:
 def is_even(net: Net, c: int, h: float) -> bool:
     """Whether relative acceleration without friction is as good as constant on the way to rest that is planned."""
     plan = net.groups.landing[net.groups.planar[c]]
-    time, slows = plan[0], plan[7]
+    time, slows = plan[LASTS], plan[SLOWS]
     part = time / h
     changes = part * math.hypot(pushed_slope(net, c, 1, h), pushed_slope(net, c + 1, 1, h))
     changes += part * part * math.hypot(pushed_slope(net, c, 2, h), pushed_slope(net, c + 1, 2, h))
-    longer = time * changes * slows * slows / (slows * slows - plan[5] * plan[5] - plan[6] * plan[6])
+    longer = time * changes * slows * slows / (slows * slows - plan[PULL] ** 2 - plan[PULL + 1] ** 2)
     return bool(longer <= UNEVEN * net.x[TOL] * net.x[REACHED])
 
 
@@ -126,7 +138,7 @@ def land(net: Net, c: int, h: float) -> float:
         return math.inf
     time = 0.0 if is_still(net, speed) else plan_landing(net, c, x, y, ax, ay)
     if 0.0 < time < math.inf and not is_even(net, c, h):
-        net.groups.landing[net.groups.planar[c], 0] = 0.0
+        net.groups.landing[net.groups.planar[c], LASTS] = 0.0
         return math.inf
     if time > 4.0 * EPS * abs(net.x[TIME]):
         return time
@@ -151,7 +163,7 @@ def land_all(net: Net, h: float) -> float:
 def take_off(net: Net) -> None:
     """No contact comes to rest for now."""
     for at in range(net.groups.landing.shape[0]):
-        net.groups.landing[at, 0] = 0.0
+        net.groups.landing[at, LASTS] = 0.0
 
 
 @kernel

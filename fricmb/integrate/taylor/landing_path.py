@@ -13,16 +13,11 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats
-from fricmb.integrate.taylor.layout import STEP
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.layout import AT, BEGUN, BENDS, LASTS, PULL, SLOWS, STEP, UNIT, WAY
+from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands
-from fricmb.integrate.taylor.polynomials import relative
+from fricmb.integrate.taylor.polynomials import relative, shift_slip
 
-#: A plan, ``groups.landing[at]``: how long the way takes; slip velocity where it begins; what the parabola of velocity
-#: has beside the straight line to rest; relative acceleration without friction; what friction brings.
-TIME, U, BENDS, A, B = 0, 1, 3, 5, 7
-#: Behind it: slip velocity, way and direction at the time last asked for.
-AT, WAY, UNIT = 8, 10, 12
 #: Parts of an acceleration, and sines of angles, that are none; most steps towards a root, and the last of them.
 STRAIGHT, MOST, CLOSE = 1e-12, 100, 1e-14
 
@@ -55,10 +50,10 @@ def half_tangent(first: float, left: float, pull: float, slows: float) -> float:
 @kernel
 def follow_landing(plan: Floats, t: float) -> None:
     """Slip velocity, way and direction a time t behind the beginning, into the plan."""
-    speed, pull, slows = math.hypot(plan[U], plan[U + 1]), math.hypot(plan[A], plan[A + 1]), plan[B]
-    left = max(0.0, 1.0 - t / plan[TIME])
-    ux, uy = plan[U] / speed, plan[U + 1] / speed
-    ex, ey = (plan[A] / pull, plan[A + 1] / pull) if pull > STRAIGHT * slows else (ux, uy)
+    speed, pull = math.hypot(plan[BEGUN], plan[BEGUN + 1]), math.hypot(plan[PULL], plan[PULL + 1])
+    slows, left = plan[SLOWS], max(0.0, 1.0 - t / plan[LASTS])
+    ux, uy = plan[BEGUN] / speed, plan[BEGUN + 1] / speed
+    ex, ey = (plan[PULL] / pull, plan[PULL + 1] / pull) if pull > STRAIGHT * slows else (ux, uy)
     cosine = ux * ex + uy * ey
     # across a, to that side on which slip is
     sine = abs(ex * uy - ey * ux)
@@ -82,23 +77,16 @@ def follow_landing(plan: Floats, t: float) -> None:
 
 
 @kernel
-def shift_relative(net: Net, row: int, by: float, x: Floats) -> None:
-    """Change values x (n,) of the dofs of a row, which shares them with no other, by ``by`` between its ends."""
-    for e in range(net.row_start[row], net.row_start[row + 1]):
-        x[net.row_dof[e]] += net.push[e] * by / net.compliance[row]
-
-
-@kernel
 def leave_landings(net: Net) -> None:
     """The state where a step ends before contacts have come to rest, to which their polynomials lead as a whole."""
     h = net.x[STEP]
-    for c in range(net.mode.shape[0]):
+    for c in range(net.mode.shape[0] if has_planes(net) else 0):
         if net.mode[c] != SLIP or not lands(net, c):
             continue
         plan = net.groups.landing[net.groups.planar[c]]
         follow_landing(plan, h)
-        part = h / plan[TIME]
+        part = h / plan[LASTS]
         for i in range(2):
-            gone = plan[U + i] * (1.0 - 0.5 * part) + plan[BENDS + i] * part * (0.5 - part / 3.0)
-            shift_relative(net, c + i, plan[WAY + i] - h * gone, net.q)
-            shift_relative(net, c + i, plan[AT + i] - relative(net, c + i, 1.0, h), net.v)
+            gone = plan[BEGUN + i] * (1.0 - 0.5 * part) + plan[BENDS + i] * part * (0.5 - part / 3.0)
+            shift_slip(net, c + i, plan[WAY + i] - h * gone, net.q)
+            shift_slip(net, c + i, plan[AT + i] - relative(net, c + i, 1.0, h), net.v)

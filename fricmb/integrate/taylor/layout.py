@@ -23,3 +23,8 @@ FRESH = 3.0
 GOES_ON = 4.0
 # relative round-off of one operation
 EPS = 2.3e-16
+# groups.landing[.]: how long the way to rest takes (0: none is planned); slip velocity where it begins; what its
+# parabola has beside the straight line to rest; relative acceleration without friction; what friction slows it by
+LASTS, BEGUN, BENDS, PULL, SLOWS = 0, 1, 3, 5, 7
+# behind it: slip velocity, way and direction at the time last asked for; how many numbers that makes
+AT, WAY, UNIT, PLAN = 8, 10, 12, 14

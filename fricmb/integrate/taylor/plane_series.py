@@ -19,9 +19,9 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Floats2
 from fricmb.integrate.taylor.friction_curve import friction_row
-from fricmb.integrate.taylor.layout import AT_END, FRESH, NOISE, REACHED
+from fricmb.integrate.taylor.layout import AT_END, BEGUN, BENDS, FRESH, LASTS, NOISE, REACHED
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.polynomials import drop_slip, push_row, relative_row
+from fricmb.integrate.taylor.polynomials import push_row, relative_row, shift_slip, slip_speed
 from fricmb.integrate.taylor.signals import belt_rate
 
 #: Slip speeds below that, relative to the largest speed, are the round-off of none.
@@ -122,13 +122,13 @@ def slip_row(net: Net, c: int, k: int, h: float, factor: float) -> None:
 def landing_row(net: Net, c: int, k: int, h: float, factor: float) -> None:
     """Coefficient k of the force that brings contact c to rest along its landing (see ``landing``)."""
     plan = net.groups.landing[net.groups.planar[c]]
-    time = plan[0]
+    time = plan[LASTS]
     for i in range(2):
         wanted = 0.0
         if k == 0:
-            wanted = (plan[3 + i] - plan[1 + i]) / time
+            wanted = (plan[BENDS + i] - plan[BEGUN + i]) / time
         elif k == 1:
-            wanted = -2.0 * plan[3 + i] * h / (time * time)
+            wanted = -2.0 * plan[BENDS + i] * h / (time * time)
         net.groups.F[k, c + i] = (wanted - pushed_row(net, c + i, k, h, factor)) / net.compliance[c]
 
 
@@ -137,15 +137,15 @@ def start_from_belts(net: Net) -> None:
     """Contacts that have just broken away move as their belts do, which powers of s have followed to the tolerance."""
     for c in range(net.mode.shape[0]):
         if net.groups.planar[c] >= 0 and net.mode[c] == SLIP and net.since[c] == AT_END:
-            drop_slip(net, c)
-            drop_slip(net, c + 1)
+            for row in range(c, c + 2):
+                shift_slip(net, row, -slip_speed(net, row, net.v, 0.0), net.v)
 
 
 @kernel
 def lands(net: Net, c: int) -> bool:
     """Whether contact c has two directions, and comes to rest along its landing."""
     at = net.groups.planar[c]
-    return bool(at >= 0 and net.groups.landing[at, 0] > 0.0)
+    return bool(at >= 0 and net.groups.landing[at, LASTS] > 0.0)
 
 
 @kernel

@@ -99,9 +99,9 @@ def push_row(net: Net, row: int, force: float, out: Floats) -> None:
 
 
 @kernel
-def drop_slip(net: Net, row: int) -> None:
-    """Take the relative velocity of a row, which shares its dofs with no other, out of the state."""
-    push_row(net, row, -slip_speed(net, row, net.v, 0.0) / net.compliance[row], net.v)
+def shift_slip(net: Net, row: int, by: float, x: Floats) -> None:
+    """Change values x (n,) of the dofs of a row, which shares them with no other, by ``by`` between its ends."""
+    push_row(net, row, by / net.compliance[row], x)
 
 
 @kernel

@@ -15,6 +15,7 @@ from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.taylor.groups import SECOND, Groups
+from fricmb.integrate.taylor.layout import PLAN
 
 #: Most contacts of a group: its matrix is factorised as a full one whenever one of them changes its mode.
 LARGEST = 200
@@ -196,7 +197,7 @@ def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
         "local_b": z((most if lawful else 0, *sums)), "first": z(most, i), "along": z((2, 12)),
         "unit": z((planes, 2, P + 1)), "speed": z((planes, P + 1)), "rubbing": z((planes, P + 1)),
         "begins": z(planes, np.int8), "first_speed": z(planes), "turned": z((planes, P + 1)),
-        "landing": z((planes, 14)), "square": z(2 * P + 3),
+        "landing": z((planes, PLAN)), "square": z(2 * P + 3),
     }  # fmt: skip
     return Groups(**{name: solid(array) for name, array in arrays.items()})
 

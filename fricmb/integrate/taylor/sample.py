@@ -8,12 +8,12 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.account import displacement, pay_groups
 from fricmb.integrate.taylor.friction_curve import friction_at
-from fricmb.integrate.taylor.landing_path import AT, UNIT, follow_landing, shift_relative
-from fricmb.integrate.taylor.layout import DAMPING, INPUT, N_SAMPLES, STEP, WORK
+from fricmb.integrate.taylor.landing_path import follow_landing
+from fricmb.integrate.taylor.layout import AT, DAMPING, INPUT, N_SAMPLES, STEP, UNIT, WORK
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands
-from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate, slip_speed
+from fricmb.integrate.taylor.polynomials import hold_force, horner, horner_rate, shift_slip, slip_speed
 from fricmb.integrate.taylor.rubbing import is_lost, rubbing_at
 
 
@@ -60,7 +60,7 @@ def sample_landing(net: Net, c: int, s: float, at: int) -> None:
     follow_landing(plan, s * net.x[STEP])
     rubs = friction_at(net, c, math.hypot(plan[AT], plan[AT + 1]))
     for i in range(2):
-        shift_relative(net, c + i, plan[AT + i] - net.out_g[at, c + i], net.out_v[at])
+        shift_slip(net, c + i, plan[AT + i] - net.out_g[at, c + i], net.out_v[at])
         net.out_g[at, c + i], net.out_F[at, c + i] = plan[AT + i], -rubs * plan[UNIT + i]
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import fricmb as fm
 from fricmb.errors import SceneError
@@ -245,6 +246,62 @@ def test_any_number_of_nodes(nodes):
     trajectory = run_brake("2", 1e-7, nodes=nodes)
     assert len(trajectory.transitions.t) == len(ref["t_event"])
     assert worst_error(ref, trajectory.sample(ref["t"])) <= 1e-5
+
+
+def by_phases(M, K, C, w, N, mu_s, q, v, t_end):
+    """The first mass on a belt of speed w, phase by phase with SciPy: state at the end, times of transitions."""
+    n = len(q)
+    y, t, times = np.concatenate([q, v]), 0.0, []
+    stuck, side = False, np.sign(v[0] - w)
+
+    def free(y):
+        return -(K @ y[:n] + C @ y[n:])
+
+    def rate(t, y):
+        force = free(y)
+        force[0] = 0.0 if stuck else force[0] - side * N
+        return np.concatenate([y[n:], force / M])
+
+    def changes(t, y):
+        return mu_s * N - abs(free(y)[0]) if stuck else (y[n] - w) * side
+
+    changes.terminal, changes.direction = True, -1.0
+    while t < t_end:
+        found = solve_ivp(rate, (t, t_end), y, method="DOP853", rtol=1e-12, atol=1e-13, events=changes)
+        t, y = found.t[-1], found.y[:, -1].copy()
+        if found.status == 0:
+            break
+        times.append(t)
+        if stuck:
+            side, stuck = np.sign(free(y)[0]), False
+        else:
+            y[n] = w
+            stuck = abs(free(y)[0]) <= mu_s * N
+            side = np.sign(free(y)[0])
+    return y, np.array(times)
+
+
+@pytest.mark.parametrize("nodes", [4, 5, 6, 7, 8, 9])
+@pytest.mark.parametrize("n", [3, 8, 9, 17])
+def test_a_contact_on_many_masses_moves_as_by_another_method(n, nodes):
+    # numbers of masses and of nodes that do and do not fill the rows of tables
+    rng = np.random.default_rng(100 * n + nodes)
+    M, w, N, mu_s, t_end = rng.uniform(0.5, 2.0, n), 0.5, 1.0, 1.4, 20.0
+    k = rng.uniform(1.0, 3.0, n)
+    K = np.diag(k + np.append(k[1:], 0.0)) - np.diag(k[1:], 1) - np.diag(k[1:], -1)
+    C = 0.001 * K
+    q, v = rng.normal(0.0, 0.5, n), rng.normal(0.0, 0.5, n)
+    W = np.zeros((n, 1))
+    W[0] = 1.0
+    y, times = by_phases(M, K, C, w, N, mu_s, q, v, t_end)
+    assert len(times) >= 2
+    made = run(problem(np.diag(M), K, C, W, w=w, mu_s=mu_s, mu_k=1.0, N=N), q, v, t_end, 1e-8, nodes=nodes)
+    assert made.failure is None
+    assert len(made.transitions.t) == len(times)
+    assert np.abs(made.transitions.t - times).max() <= 1e-6
+    end = made.sample([t_end])
+    assert np.abs(end.q[:, 0] - y[:n]).max() <= 1e-7
+    assert np.abs(end.v[:, 0] - y[n:]).max() <= 1e-7
 
 
 @pytest.mark.parametrize("options", [{"nodes": 3}, {"nodes": 10}, {"safety": 0.0}, {"exact_up_to": -1.0}])
