@@ -129,7 +129,7 @@ def hold_rows(ex: Exact, w: PortState, place: int, mode: Codes, free: Codes, fir
         w.rhs[x] = dot(w.G[x], first)
     for x in range(n_s * m):
         gb[x] += w.rhs[x]
-    w.G[:, :] = ex.held[place, 2]
+    w.G[:] = ex.held[place, 2]
     for k in range(mode.shape[0]):
         free[k] = OPEN if mode[k] == STICK else mode[k]
 

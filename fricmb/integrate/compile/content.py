@@ -20,7 +20,10 @@ from typing import Any
 import numpy as np
 
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
-_COMPILER = ("room", "lanes", "block", "template", "kernel", "linked", "short_lowering", "array_view")
+_COMPILER = (
+    "room", "lanes", "block", "template", "kernel", "linked", "kernel_library", "quick_typing", "short_lowering",
+    "array_view",
+)  # fmt: skip
 
 
 @lru_cache(maxsize=1)

@@ -82,5 +82,6 @@ def cached_on_disk(compiled: Any) -> Any:
     function = getattr(compiled, "py_func", None) or compiled._pyfunc
     options = repr(sorted(getattr(compiled, "targetoptions", {}).items()))
     options += f" {function.__module__}"  # a kept kernel imports the module that it was compiled in
+    options += " long loops" if hasattr(function, "long_loops") else ""
     compiled._cache = KernelCache(function, function.__name__, options)
     return compiled

@@ -13,25 +13,15 @@ from contextlib import contextmanager
 from typing import Any
 
 from numba import _dynfunc
-from numba.core.codegen import JITCodeLibrary
+from numba.core import ir, types
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, _LowerResult
-from numba.core.compiler_machinery import register_pass
-from numba.core.typed_passes import NativeLowering
+from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites, NopythonTypeInference
+from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, MakeFunctionToJitFunction, WithLifting
 
+from fricmb.integrate.compile.kernel_library import LinkedLibrary, MachineLibrary
+from fricmb.integrate.compile.quick_typing import TypeInference
 from fricmb.integrate.compile.short_lowering import ShortLower
-
-
-class _LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """The code of one kernel with that of the kernels it calls, to be linked into callers."""
-
-    def finalize(self) -> None:
-        """Gather the code; leave it as it is, since the caller's is optimised with it."""
-        self._raise_if_finalized()
-        for library in dict.fromkeys(self._linking_libraries):
-            self._reload_init.update(library._reload_init)
-            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
-        self._finalize_dynamic_globals()
-        self._finalized = True
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -40,10 +30,19 @@ class _LowerShort(NativeLowering):  # type: ignore[misc]
 
     _name = "lower_short"
 
+    _library: type[MachineLibrary] = MachineLibrary
+
     @property
     def lowering_class(self) -> type[ShortLower]:
         """What writes the instructions."""
         return ShortLower
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower into a library of ours."""
+        state.library = self._library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.long_loops = hasattr(state.func_id.func, "long_loops")
+        state.library.enable_object_caching()
+        return bool(super().run_pass(state))
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -51,11 +50,10 @@ class _LowerForLinking(_LowerShort):
     """The same without the machine code at its end."""
 
     _name = "lower_for_linking"
+    _library = LinkedLibrary
 
     def run_pass(self, state: Any) -> bool:
         """Lower, and make the kernel known to callers under a function that Python cannot call."""
-        state.library = _LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
         state.flags.no_compile = True
         super().run_pass(state)
         made = state["cr"]
@@ -66,6 +64,22 @@ class _LowerForLinking(_LowerShort):
         state.reload_init.extend(state.library._reload_init)
         state["cr"] = _LowerResult(known, made.call_helper, cfunc=handle, env=made.env)
         return True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Rewrites(NopythonRewrites):  # type: ignore[misc]
+    """Numba's rewriting of expressions of arrays, where there are any."""
+
+    _name = "rewrites_of_arrays"
+
+    def run_pass(self, state: Any) -> bool:
+        """Rewrite, if an operator makes an array."""
+        for block in state.func_ir.blocks.values():
+            for made in block.find_insts(ir.Assign):
+                operator = getattr(made.value, "op", "") in ("binop", "inplace_binop", "unary")
+                if operator and isinstance(state.typemap[made.target.name], types.Array):
+                    return bool(super().run_pass(state))
+        return False
 
 
 @contextmanager
@@ -85,10 +99,25 @@ class _Compiler(CompilerBase):  # type: ignore[misc]
             return super()._compile_core()
 
 
+class _Passes(PassManager):  # type: ignore[misc]
+    def _runPass(self, index: int, pss: Any, internal_state: Any) -> None:
+        """Run a pass, and tell nobody: numba describes each to whoever may listen, and takes its time."""
+        pss.analysis = self._analysis
+        pss.run_initialization(internal_state)
+        pss.run_pass(internal_state)
+        pss.run_finalizer(internal_state)
+
+
+#: Passes for what kernels do not contain: blocks of ``with``, functions within functions, functions to be inlined.
+_IDLE = (WithLifting, InlineClosureLikes, MakeFunctionToJitFunction, InlineInlinables, InlineOverloads)
+
+
 def _lowered_by(kind: type[NativeLowering], state: Any) -> list[Any]:
-    """Numba's passes, in their order, with another one in the place of its lowering."""
-    passes = DefaultPassBuilder.define_nopython_pipeline(state)
-    passes.passes = [(kind if made is NativeLowering else made, about) for made, about in passes.passes]
+    """Numba's passes, in their order, without idle ones and with others in the place of its typing and lowering."""
+    others = {NativeLowering: kind, NopythonTypeInference: TypeInference, NopythonRewrites: _Rewrites}
+    passes = _Passes("kernels")
+    all_passes = DefaultPassBuilder.define_nopython_pipeline(state).passes
+    passes.passes = [(others.get(made, made), about) for made, about in all_passes if made not in _IDLE]
     passes.finalize()
     return [passes]
 

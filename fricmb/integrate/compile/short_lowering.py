@@ -12,6 +12,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.core import ir as numba_ir
 from numba.core.lowering import Lower
 
@@ -26,10 +27,14 @@ class ShortLower(Lower):  # type: ignore[misc]
         """See whether the function owns no array: then none of its references is counted."""
         super().pre_lower()
         self._views: dict[str, View] = {}
+        self._known_counts: dict[Any, bool] = {}
         self._only_borrows = self._owns_nothing()
 
     def _counted(self, kind: Any) -> bool:
-        return bool(self.context.data_model_manager[kind].contains_nrt_meminfo())
+        known = self._known_counts.get(kind)
+        if known is None:
+            known = self._known_counts[kind] = bool(self.context.data_model_manager[kind].contains_nrt_meminfo())
+        return known
 
     def _owns_nothing(self) -> bool:
         """Whether all arrays are arguments, fields of rooms, or parts of those."""
@@ -76,6 +81,10 @@ class ShortLower(Lower):  # type: ignore[misc]
                 self._views[name] = value
                 return
             value = value.built(self.context, self.builder)
+        if self._only_borrows and argidx is None and name not in self._singly_assigned_vars:
+            self._alloca_var(name, self.typeof(name))
+            self.builder.store(value, self.getvar(name))
+            return
         super().storevar(value, name, argidx)
 
     def loadvar(self, name: str) -> Any:
@@ -87,9 +96,14 @@ class ShortLower(Lower):  # type: ignore[misc]
         return super().loadvar(name)
 
     def delvar(self, name: str) -> None:
-        """Forget a name; a view holds no reference."""
-        if name not in self._views:
+        """Forget a name; there is nothing to do where it holds no reference."""
+        known = name in self._blk_local_varmap or name in self.varmap
+        if name not in self._views and not (self._only_borrows and known):
             super().delvar(name)
+
+    def alloca_lltype(self, name: str, lltype: Any, datamodel: Any = None) -> Any:
+        """Room for a variable; there is no debugger to tell of it."""
+        return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
 
     def lower_inst(self, inst: Any) -> Any:
         """Lower a statement; one that fills an array with another one copies."""

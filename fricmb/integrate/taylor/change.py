@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel import kernel, long_loops
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints
 from fricmb.integrate.taylor.account import lose_sliding, pay, pay_touched
 from fricmb.integrate.taylor.correction import add_correction, correct, plain_force_change, plain_source
@@ -174,6 +174,7 @@ def change_at_end(net: Net, c: int, tau: float) -> None:
 
 
 @block
+@long_loops
 def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     """Contact c changes its mode at tau; returns 0, or 1 where the correction would touch too many dofs."""
     if has_planes(net):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import entry, kernel, long_loops
 from fricmb.integrate.problem import STICK
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.taylor.account import pay_groups
@@ -194,6 +194,7 @@ def list_may_be_full(net: Net) -> bool:
 
 
 @entry
+@long_loops
 def drive_taylor(net: Net, t_pause: float, most: int) -> int:
     """Step until the end, until an array is full, until t_pause, or until ``most`` steps are done."""
     until = net.i[N_STEPS] + most

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import entry, kernel, long_loops
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._error import doubtful, step_error
 from fricmb.integrate.timestepping._free import set_window
@@ -122,6 +122,7 @@ def arrive(run: Run, t: float) -> None:
 
 
 @entry
+@long_loops
 def drive(run: Run) -> int:
     """Step until the end, or until there is no space for rows or transitions."""
     while True:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel import kernel, long_loops
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece
@@ -81,6 +81,7 @@ def add_forces(run: Run, h: float, P: Floats, r: Floats) -> None:
 
 
 @block
+@long_loops
 def newton_band(run: Run, h: float, F: Floats, g: Floats, places: Ints) -> bool:
     """Minimise the merit over dv."""
     n = run.dv.shape[0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.block_places import PLACES
-from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel import kernel, long_loops
 from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.stop import stopped
@@ -31,6 +31,7 @@ def condensed_merit(run: Run, F: Floats, D: Floats2, phi: Floats, g: Floats) -> 
 
 
 @block
+@long_loops
 def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -> bool:
     """Minimise the merit over phi."""
     m = run.phi.shape[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel import kernel, long_loops
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import (
     EVENT_CLOSE,
@@ -50,6 +50,7 @@ ROUNDS = 16
 
 
 @block
+@long_loops
 def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) -> bool:
     """Step from slot one at t to slot two at t + h; whether all that is lagged has settled."""
     n = run.load.shape[0]
