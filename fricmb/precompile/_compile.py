@@ -10,8 +10,11 @@ from typing import Any
 
 from fricmb.errors import FricmbError
 from fricmb.integrate.compile.cache_files import find_file
-from fricmb.precompile._crew import work_off
+from fricmb.precompile._crew import Crew
 from fricmb.precompile._tasks import kernels, runs
+
+#: Processes at once: each lowers kernels that others lower too, and holds a quarter of a gigabyte.
+_MOST = 8
 
 
 def compile_all(
@@ -22,7 +25,7 @@ def compile_all(
     Parameters
     ----------
     processes : int, optional
-        How many at once; as many as there are processors where it is not given.
+        How many at once; as many as there are processors, but at most 8, where it is not given.
     into : pathlib.Path, optional
         A folder that gets a copy of all files, in the folders "kernels" and "templates".
     report : callable, optional
@@ -38,9 +41,8 @@ def compile_all(
     FricmbError
         A process that compiles died, or what it made could not be kept.
     """
-    workers = processes or os.cpu_count() or 1
-    stages = (kernels(), runs())
-    total, done = sum(map(len, stages)), 0
+    workers = processes or min(os.cpu_count() or 1, _MOST)
+    total = done = 0
     found: dict[str, set[str]] = {}
 
     def take(task: str, answer: dict[str, Any]) -> None:
@@ -51,8 +53,10 @@ def compile_all(
         if report is not None:
             report(task, done, total)
 
-    for tasks in stages:  # the runs find the kernels there
-        work_off(tasks, min(workers, len(tasks)), take)
+    with Crew(workers) as crew:
+        tasks, later = kernels(), runs()
+        total = len(tasks) + len(later)
+        crew.work_off(tasks, take, later)  # the runs find the kernels there
     if into is not None:
         for kind, names in found.items():
             _copy(kind, names, Path(into) / kind)

@@ -8,7 +8,9 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from itertools import pairwise
+from types import TracebackType
 from typing import Any
 
 from fricmb.errors import FricmbError
@@ -20,12 +22,14 @@ Report = Callable[[str, dict[str, Any]], None]
 class Shares:
     """Tasks in as many stretches as there are workers; who is done takes from the end of the longest one left.
 
-    Neighbours in the list call the same kernels, which each process lowers once: so each keeps to its stretch.
+    Neighbours in the list call the same kernels, which each process lowers once: so each keeps to its stretch.  What is
+    to be done ``later`` comes in its order once all others are taken.
     """
 
-    def __init__(self, tasks: Sequence[str], workers: int) -> None:
+    def __init__(self, tasks: Sequence[str], workers: int, later: Sequence[str] = ()) -> None:
         ends = [len(tasks) * k // workers for k in range(workers + 1)]
         self._left = [list(tasks[a:b]) for a, b in pairwise(ends)]
+        self._later = list(later)
         self._lock = threading.Lock()
 
     def next(self, worker: int) -> str | None:
@@ -34,22 +38,42 @@ class Shares:
             if self._left[worker]:
                 return self._left[worker].pop(0)
             longest = max(self._left, key=len)
-            return longest.pop() if longest else None
+            if longest:
+                return longest.pop()
+            return self._later.pop(0) if self._later else None
 
 
-def work_off(tasks: Sequence[str], workers: int, report: Report) -> None:
-    """Do all tasks in ``workers`` processes.
+class Crew:
+    """Processes that load while their tasks are listed."""
 
-    Raises
-    ------
-    FricmbError
-        A process died; the message names the task that it was at.
-    """
-    shares, lock = Shares(tasks, workers), threading.Lock()
-    failed: list[str] = []
+    def __init__(self, workers: int) -> None:
+        self._stack = ExitStack()
+        self._processes = [self._stack.enter_context(_worker()) for _ in range(workers)]
 
-    def serve(number: int) -> None:
-        with _worker() as process:
+    def __enter__(self) -> Crew:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for process in self._processes:
+            assert process.stdin is not None
+            process.stdin.close()
+        self._stack.__exit__(kind, error, trace)
+
+    def work_off(self, tasks: Sequence[str], report: Report, later: Sequence[str] = ()) -> None:
+        """Do all tasks, then those for ``later``.
+
+        Raises
+        ------
+        FricmbError
+            A process died; the message names the task that it was at.
+        """
+        shares, lock = Shares(tasks, len(self._processes), later), threading.Lock()
+        failed: list[str] = []
+
+        def serve(number: int) -> None:
+            process = self._processes[number]
             assert process.stdin is not None
             assert process.stdout is not None
             while not failed and (task := shares.next(number)) is not None:
@@ -60,15 +84,14 @@ def work_off(tasks: Sequence[str], workers: int, report: Report) -> None:
                     return
                 with lock:
                     report(task, json.loads(answer))
-            process.stdin.close()
 
-    threads = [threading.Thread(target=serve, args=(number,)) for number in range(workers)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    if failed:
-        raise FricmbError(failed[0])
+        threads = [threading.Thread(target=serve, args=(number,)) for number in range(len(self._processes))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        if failed:
+            raise FricmbError(failed[0])
 
 
 def _worker() -> subprocess.Popen[str]:

@@ -29,10 +29,13 @@ def kernels() -> list[str]:
 
 
 def runs() -> list[str]:
-    """Tasks that run each built-in model, and the solver of given equations, for a moment; kernels are there."""
+    """Tasks that run each built-in model, and the solver of given equations, for a moment; kernels are there.
+
+    The last of the catalogue are the largest: they come first, so that nobody waits for one of them alone.
+    """
     import fricmb as fm
 
-    return [*(f"model {name}" for name in fm.models.catalogue), "dae linear"]
+    return ["dae linear", *(f"model {name}" for name in reversed(fm.models.catalogue))]
 
 
 def do(task: str) -> None:

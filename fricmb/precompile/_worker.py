@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import sys
@@ -19,6 +20,9 @@ def main() -> None:
     from fricmb.precompile._tasks import do, kernels
 
     kernels()
+    # compiling makes millions of objects that stay: looking through them for what can go costs more than it brings
+    gc.freeze()
+    gc.set_threshold(200_000, 20, 50)
     for line in sys.stdin:
         start = time.perf_counter()
         do(line.strip())

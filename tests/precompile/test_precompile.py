@@ -11,7 +11,7 @@ from fricmb.integrate.compile import cache_files
 from fricmb.integrate.compile.kernel import _entries
 from fricmb.integrate.compile.room import argument_types
 from fricmb.precompile import _compile, _tasks, compile_all
-from fricmb.precompile._crew import Shares, work_off
+from fricmb.precompile._crew import Crew, Shares
 
 TASKS = ["block find_open", "block mark_rest", "entry fricmb.system._evaluate:_each"]
 SHIPPED = """
@@ -40,6 +40,11 @@ def test_each_task_is_taken_once_and_the_idle_help_from_the_end():
     assert [shares.next(0) for _ in range(3)] == ["0", "1", "2"]
     assert [shares.next(0), shares.next(1), shares.next(0)] == ["6", "3", "5"]
     assert [shares.next(1), shares.next(1), shares.next(0)] == ["4", None, None]
+
+
+def test_what_is_for_later_comes_in_its_order_when_all_else_is_taken():
+    shares = Shares(["a", "b"], workers=2, later=["x", "y"])
+    assert [shares.next(0) for _ in range(5)] == ["a", "b", "x", "y", None]
 
 
 @pytest.mark.slow
@@ -74,8 +79,8 @@ def test_what_the_package_carries_is_copied_too(monkeypatch, tmp_path):
 
 
 def test_a_process_that_dies_is_named_by_its_task(capfd):
-    with pytest.raises(fm.FricmbError, match="block no_such_block"):
-        work_off(["block no_such_block"], 1, lambda task, answer: None)
+    with Crew(1) as crew, pytest.raises(fm.FricmbError, match="block no_such_block"):
+        crew.work_off(["block no_such_block"], lambda task, answer: None)
     assert "no_such_block" in capfd.readouterr().err
 
 
