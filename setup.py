@@ -1,4 +1,4 @@
-"""What the build adds to pyproject.toml: with FRICMB_COMPILE=1, kernels compiled when the package is built."""
+"""What the build adds to pyproject.toml: kernels are compiled when the package is built, unless FRICMB_COMPILE=0."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ from setuptools.command.build_py import build_py
 PROJECT = tomllib.loads(Path(__file__).with_name("pyproject.toml").read_text())["project"]
 NEEDED = [need for need in PROJECT["dependencies"] if not need.startswith("matplotlib")]
 #: Otherwise each kernel is compiled at its first use.
-WANTED = os.environ.get("FRICMB_COMPILE") == "1"
+WANTED = os.environ.get("FRICMB_COMPILE", "1") != "0"
 
 
 class BuildWithKernels(build_py):
