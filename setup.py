@@ -12,6 +12,8 @@ from setuptools.command.build_py import build_py
 #: What is needed to compile: what is needed to run, but for pictures.
 PROJECT = tomllib.loads(Path(__file__).with_name("pyproject.toml").read_text())["project"]
 NEEDED = [need for need in PROJECT["dependencies"] if not need.startswith("matplotlib")]
+#: Seconds after which compiling is given up.
+LIMIT = 1800
 #: Otherwise each kernel is compiled at its first use.
 WANTED = os.environ.get("FRICMB_COMPILE", "1") != "0"
 
@@ -30,7 +32,8 @@ class BuildWithKernels(build_py):
             command = [sys.executable, "-m", "fricmb", "compile", "--into", str(built / "fricmb" / "_made")]
             paths = [str(built), *filter(None, [os.environ.get("PYTHONPATH")])]
             try:
-                subprocess.run(command, cwd=built, env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, check=True)
+                env = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+                subprocess.run(command, cwd=built, env=env, check=True, timeout=LIMIT)
             except (OSError, subprocess.SubprocessError) as error:
                 print(f"kernels are not compiled ahead of use: {error}", file=sys.stderr)
 
