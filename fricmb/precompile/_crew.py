@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any
 
 from fricmb.errors import FricmbError
+from fricmb.integrate.compile.parallel_compile import ALONE
 
 #: What is called after each task: the task, and its answer.
 Report = Callable[[str, dict[str, Any]], None]
@@ -95,8 +96,6 @@ class Crew:
 
 
 def _worker() -> subprocess.Popen[str]:
-    # numba tries overloads by letting them fail, and would set each message in colours
-    plain = {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
-    alone = {**os.environ, "FRICMB_COMPILE_PROCESSES": "1", "FRICMB_QUIET": "1", **plain}
     command = [sys.executable, "-m", "fricmb.precompile._worker"]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=alone)
+    env = {**os.environ, **ALONE, "FRICMB_QUIET": "1"}
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=env)
