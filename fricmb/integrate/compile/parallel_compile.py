@@ -14,7 +14,7 @@ import sys
 
 from fricmb.integrate.compile.block import block_address, block_module, was_compiled
 
-#: The environment of a process that compiles for another one.  Numba tries overloads by letting them fail, and would set
+#: The environment of a process that compiles for another one; numba tries overloads by letting them fail, and would set
 #: each message in colours.
 ALONE = {"FRICMB_COMPILE_PROCESSES": "1", "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
 _COMMAND = f"import sys; from {__name__} import compile_blocks; compile_blocks(sys.argv[1:])"
