@@ -7,8 +7,8 @@ from typing import Any, TypeVar, cast
 
 from numba import njit
 
+from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.compile.kernel_cache import cached_on_disk
-from fricmb.integrate.compile.linked import MachineCompiler
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 

@@ -7,8 +7,8 @@ import pytest
 from numba import njit
 from numba.core.errors import TypingError
 
+from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.compile.kernel import entry, long_loops
-from fricmb.integrate.compile.linked import MachineCompiler
 from fricmb.integrate.problem import Floats
 
 compiled = njit(error_model="numpy", pipeline_class=MachineCompiler)

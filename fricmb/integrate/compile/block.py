@@ -14,9 +14,9 @@ from numba import config, njit, types
 from numba.extending import intrinsic
 
 from fricmb.integrate.compile.block_places import PLACES
+from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.compile.content import describe_signature
 from fricmb.integrate.compile.kernel_cache import cached_on_disk
-from fricmb.integrate.compile.linked import MachineCompiler
 from fricmb.integrate.compile.room import annotations_of, argument_types
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])

@@ -7,8 +7,8 @@ from typing import Any, TypeVar, cast
 
 from numba import njit
 
+from fricmb.integrate.compile.compilers import LinkedCompiler, MachineCompiler
 from fricmb.integrate.compile.kernel_cache import cached_on_disk
-from fricmb.integrate.compile.linked import LinkedCompiler, MachineCompiler
 from fricmb.integrate.compile.room import argument_types
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -19,7 +19,7 @@ def kernel(function: _Function) -> _Function:
     """Compile ``function`` for calls from other kernels; division by zero gives inf, as in numpy.
 
     Neither cached by itself nor callable from Python, where it would end the process: what is optimised, made machine
-    code and cached is the entry or block that calls it (:mod:`fricmb.integrate.compile.linked`).
+    code and cached is the entry or block that calls it (:mod:`fricmb.integrate.compile.compilers`).
     """
     inner = njit(error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=LinkedCompiler)
     return cast(_Function, inner(function))

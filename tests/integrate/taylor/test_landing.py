@@ -9,7 +9,7 @@ from numba import njit
 from scipy.integrate import solve_ivp
 
 import fricmb as fm
-from fricmb.integrate.compile.linked import MachineCompiler
+from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.taylor.landing_path import AT, UNIT, WAY, follow_landing
 
 PULL, RUB = 0.2, 0.5

@@ -1,20 +1,12 @@
-"""Compilation of kernels that only other kernels call: to LLVM's intermediate code, and no further.
-
-Numba makes machine code of every function that it compiles, also of those that are only ever linked into others, and
-optimises each of them again inside each of its callers.  Here such a function is lowered and handed on; what is
-optimised, and becomes machine code, is the entry or block at the top, once.
-"""
+"""Numba's passes over a kernel, some of them replaced by quicker ones, and none that kernels have no use for."""
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from numba import _dynfunc
 from numba.core import ir, types
-from numba.core.compiler import CompilerBase, DefaultPassBuilder, _LowerResult
+from numba.core.compiler import DefaultPassBuilder, _LowerResult
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites, NopythonTypeInference
 from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, MakeFunctionToJitFunction, WithLifting
@@ -25,7 +17,7 @@ from fricmb.integrate.compile.short_lowering import ShortLower
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class _LowerShort(NativeLowering):  # type: ignore[misc]
+class LowerShort(NativeLowering):  # type: ignore[misc]
     """Numba's lowering in fewer instructions."""
 
     _name = "lower_short"
@@ -46,7 +38,7 @@ class _LowerShort(NativeLowering):  # type: ignore[misc]
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class _LowerForLinking(_LowerShort):
+class LowerForLinking(LowerShort):
     """The same without the machine code at its end."""
 
     _name = "lower_for_linking"
@@ -82,23 +74,6 @@ class _Rewrites(NopythonRewrites):  # type: ignore[misc]
         return False
 
 
-@contextmanager
-def _few_collections() -> Iterator[None]:
-    """Let Python look for unreachable objects less often: compilation makes millions that stay, a fifth of its time."""
-    before = gc.get_threshold()
-    gc.set_threshold(200_000, 20, 50)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*before)
-
-
-class _Compiler(CompilerBase):  # type: ignore[misc]
-    def _compile_core(self) -> Any:
-        with _few_collections():
-            return super()._compile_core()
-
-
 class _Passes(PassManager):  # type: ignore[misc]
     def _runPass(self, index: int, pss: Any, internal_state: Any) -> None:
         """Run a pass, and tell nobody: numba describes each to whoever may listen, and takes its time."""
@@ -112,7 +87,7 @@ class _Passes(PassManager):  # type: ignore[misc]
 _IDLE = (WithLifting, InlineClosureLikes, MakeFunctionToJitFunction, InlineInlinables, InlineOverloads)
 
 
-def _lowered_by(kind: type[NativeLowering], state: Any) -> list[Any]:
+def lowered_by(kind: type[NativeLowering], state: Any) -> list[Any]:
     """Numba's passes, in their order, without idle ones and with others in the place of its typing and lowering."""
     others = {NativeLowering: kind, NopythonTypeInference: TypeInference, NopythonRewrites: _Rewrites}
     passes = _Passes("kernels")
@@ -120,19 +95,3 @@ def _lowered_by(kind: type[NativeLowering], state: Any) -> list[Any]:
     passes.passes = [(others.get(made, made), about) for made, about in all_passes if made not in _IDLE]
     passes.finalize()
     return [passes]
-
-
-class MachineCompiler(_Compiler):
-    """Compiles entries and blocks."""
-
-    def define_pipelines(self) -> list[Any]:
-        """Numba's passes, with :class:`_LowerShort`."""
-        return _lowered_by(_LowerShort, self.state)
-
-
-class LinkedCompiler(_Compiler):
-    """Compiles kernels that only kernels call."""
-
-    def define_pipelines(self) -> list[Any]:
-        """Numba's passes, with :class:`_LowerForLinking`."""
-        return _lowered_by(_LowerForLinking, self.state)
