@@ -13,8 +13,8 @@ from fricmb.integrate.compile.cache_files import find_file
 from fricmb.precompile._crew import Crew
 from fricmb.precompile._tasks import kernels, runs
 
-#: Processes at once: each lowers kernels that others lower too, and holds a quarter of a gigabyte.
-_MOST = 8
+#: Processes at once: each lowers kernels that others lower too, and comes to hold half a gigabyte.
+_MOST = 4
 
 
 def compile_all(
@@ -25,7 +25,7 @@ def compile_all(
     Parameters
     ----------
     processes : int, optional
-        How many at once; as many as there are processors, but at most 8, where it is not given.
+        How many at once; as many as there are processors, but at most 4, where it is not given.
     into : pathlib.Path, optional
         A folder that gets a copy of all files, in the folders "kernels" and "templates".
     report : callable, optional
