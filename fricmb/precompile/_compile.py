@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from fricmb.errors import FricmbError
-from fricmb.integrate.compile.cache_files import find_file
+from fricmb.integrate.compile.cache_files import cache_folder, can_be_written, find_file
 from fricmb.precompile._crew import Crew
 from fricmb.precompile._tasks import kernels, runs
 
@@ -41,7 +43,16 @@ def compile_all(
     FricmbError
         A process that compiles died, or what it made could not be kept.
     """
-    workers = processes or min(os.cpu_count() or 1, _MOST)
+    with _folder_to_copy_from() if into is not None else nullcontext():
+        found = _work_off(processes or min(os.cpu_count() or 1, _MOST), report)
+        if into is not None:
+            for kind, names in found.items():
+                _copy(kind, names, Path(into) / kind)
+    return sorted(f"{kind}/{name}" for kind, names in found.items() for name in names)
+
+
+def _work_off(workers: int, report: Callable[[str, int, int], None] | None) -> dict[str, set[str]]:
+    """Compile in so many processes; the files that were used, kind by kind."""
     total = done = 0
     found: dict[str, set[str]] = {}
 
@@ -57,10 +68,24 @@ def compile_all(
         tasks, later = kernels(), runs()
         total = len(tasks) + len(later)
         crew.work_off(tasks, take, later)  # the runs find the kernels there
-    if into is not None:
-        for kind, names in found.items():
-            _copy(kind, names, Path(into) / kind)
-    return sorted(f"{kind}/{name}" for kind, names in found.items() for name in names)
+    return found
+
+
+@contextmanager
+def _folder_to_copy_from() -> Iterator[None]:
+    """A temporary folder in the place of a cache that cannot be written: a copy is made of what outlives a process."""
+    if all(can_be_written(cache_folder(kind)) for kind in ("kernels", "templates")):
+        yield
+        return
+    names = ("FRICMB_CACHE_DIR", "NUMBA_CACHE_DIR")
+    before = {name: os.environ.pop(name) for name in names if name in os.environ}
+    try:
+        with TemporaryDirectory(prefix="fricmb-") as folder:
+            os.environ["FRICMB_CACHE_DIR"] = folder
+            yield
+    finally:
+        os.environ.pop("FRICMB_CACHE_DIR", None)
+        os.environ.update(before)
 
 
 def _copy(kind: str, names: set[str], target: Path) -> None:

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from itertools import pairwise
 from types import TracebackType
 from typing import Any
@@ -48,8 +48,9 @@ class Crew:
     """Processes that load while their tasks are listed."""
 
     def __init__(self, workers: int) -> None:
-        self._stack = ExitStack()
-        self._processes = [self._stack.enter_context(_worker()) for _ in range(workers)]
+        with ExitStack() as begun:
+            self._processes = [begun.enter_context(_worker()) for _ in range(workers)]
+            self._stack = begun.pop_all()  # had one of them not begun, those before it would be ended here
 
     def __enter__(self) -> Crew:
         return self
@@ -59,7 +60,8 @@ class Crew:
     ) -> None:
         for process in self._processes:
             assert process.stdin is not None
-            process.stdin.close()
+            with suppress(BrokenPipeError):  # of a worker that died
+                process.stdin.close()
         self._stack.__exit__(kind, error, trace)
 
     def work_off(self, tasks: Sequence[str], report: Report, later: Sequence[str] = ()) -> None:
@@ -74,12 +76,8 @@ class Crew:
         failed: list[str] = []
 
         def serve(number: int) -> None:
-            process = self._processes[number]
-            assert process.stdin is not None
-            assert process.stdout is not None
             while not failed and (task := shares.next(number)) is not None:
-                print(task, file=process.stdin, flush=True)
-                answer = process.stdout.readline()
+                answer = _answer(self._processes[number], task)
                 if not answer:
                     failed.append(f"compile: the process that was at {task!r} ended; its last words are above")
                     return
@@ -93,6 +91,15 @@ class Crew:
             thread.join()
         if failed:
             raise FricmbError(failed[0])
+
+
+def _answer(process: subprocess.Popen[str], task: str) -> str:
+    """What a worker says of a task; nothing where it died."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    with suppress(BrokenPipeError):
+        print(task, file=process.stdin, flush=True)
+    return process.stdout.readline()
 
 
 def _worker() -> subprocess.Popen[str]:

@@ -17,12 +17,12 @@ def main() -> None:
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever else is printed is no answer
     from fricmb.integrate.compile.cache_files import used_files
+    from fricmb.integrate.compile.compilers import SELDOM
     from fricmb.precompile._tasks import do, kernels
 
     kernels()
-    # compiling makes millions of objects that stay: looking through them for what can go costs more than it brings
     gc.freeze()
-    gc.set_threshold(200_000, 20, 50)
+    gc.set_threshold(*SELDOM)
     for line in sys.stdin:
         start = time.perf_counter()
         do(line.strip())

@@ -78,10 +78,29 @@ def test_what_the_package_carries_is_copied_too(monkeypatch, tmp_path):
         _compile._copy("kernels", {"two.nbc"}, tmp_path / "copy")
 
 
+@pytest.mark.slow
+def test_a_copy_is_made_where_the_cache_cannot_be_written(few, monkeypatch):
+    """A file stands where its folder would be: nobody, not even root, can write into it."""
+    (few / "file").write_text("")
+    monkeypatch.setenv("FRICMB_CACHE_DIR", str(few / "file"))
+    files = compile_all(processes=1, into=few / "made")
+    assert os.environ["FRICMB_CACHE_DIR"] == str(few / "file")
+    assert {f"{path.parent.name}/{path.name}" for path in (few / "made").rglob("*") if path.is_file()} == set(files)
+    assert {name.partition("-")[0] for name in files} >= {"kernels/find_open", "kernels/mark_rest", "kernels/_each"}
+
+
 def test_a_process_that_dies_is_named_by_its_task(capfd):
     with Crew(1) as crew, pytest.raises(fm.FricmbError, match="block no_such_block"):
         crew.work_off(["block no_such_block"], lambda task, answer: None)
     assert "no_such_block" in capfd.readouterr().err
+
+
+def test_a_process_that_died_before_its_first_task_is_told():
+    with Crew(2) as crew:
+        crew._processes[1].kill()
+        crew._processes[1].wait()
+        with pytest.raises(fm.FricmbError, match="block mark_rest"):
+            crew.work_off(["block find_open", "block mark_rest"], lambda task, answer: None)
 
 
 def test_all_kernels_are_listed():

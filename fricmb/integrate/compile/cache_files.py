@@ -50,6 +50,16 @@ def find_file(kind: str, name: str) -> Path | None:
     return next((path for path in places if path.is_file()), None)
 
 
+def can_be_written(folder: Path) -> bool:
+    """Whether a file can be put into a folder, which is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
 @cache
 def _folder(kind: str, numba: str | None, ours: str | None) -> Path:
     if numba:

@@ -33,12 +33,6 @@ def entry(function: _Function) -> _Function:
     return cast(_Function, compiled)
 
 
-def long_loops(function: _Function) -> _Function:
-    """Mark, below ``@entry`` or ``@block``, what walks along all masses of large scenes: its loops are vectorised."""
-    function.long_loops = True  # type: ignore[attr-defined]
-    return function
-
-
 def entry_names() -> list[str]:
     """Module and name of all entries whose modules are imported."""
     return list(_entries)

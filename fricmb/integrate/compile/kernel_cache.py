@@ -15,6 +15,7 @@ from numba.core.runtime import rtsys
 
 from fricmb.integrate.compile.cache_files import CacheFiles, remove, say
 from fricmb.integrate.compile.content import content_digest
+from fricmb.integrate.compile.kernel_library import has_long_loops
 
 _DIGEST = 32
 
@@ -82,6 +83,6 @@ def cached_on_disk(compiled: Any) -> Any:
     function = getattr(compiled, "py_func", None) or compiled._pyfunc
     options = repr(sorted(getattr(compiled, "targetoptions", {}).items()))
     options += f" {function.__module__}"  # a kept kernel imports the module that it was compiled in
-    options += " long loops" if hasattr(function, "long_loops") else ""
+    options += " long loops" if has_long_loops(function) else ""
     compiled._cache = KernelCache(function, function.__name__, options)
     return compiled

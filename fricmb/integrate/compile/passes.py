@@ -11,7 +11,7 @@ from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites, NopythonTypeInference
 from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, MakeFunctionToJitFunction, WithLifting
 
-from fricmb.integrate.compile.kernel_library import LinkedLibrary, MachineLibrary
+from fricmb.integrate.compile.kernel_library import LinkedLibrary, MachineLibrary, has_long_loops
 from fricmb.integrate.compile.quick_typing import TypeInference
 from fricmb.integrate.compile.short_lowering import ShortLower
 
@@ -32,7 +32,7 @@ class LowerShort(NativeLowering):  # type: ignore[misc]
     def run_pass(self, state: Any) -> bool:
         """Lower into a library of ours."""
         state.library = self._library(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.long_loops = hasattr(state.func_id.func, "long_loops")
+        state.library.long_loops = has_long_loops(state.func_id.func)
         state.library.enable_object_caching()
         return bool(super().run_pass(state))
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel, long_loops
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints
 from fricmb.integrate.taylor.account import lose_sliding, pay, pay_touched
 from fricmb.integrate.taylor.correction import add_correction, correct, plain_force_change, plain_source

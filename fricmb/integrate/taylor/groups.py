@@ -39,7 +39,7 @@ class Groups(NamedTuple):
     row, -1 for a contact in one; by that number powers of s of d = u/|u| in ``unit`` (., 2, .), of |u| in ``speed``, of
     mu N in ``rubbing``; ``begins``: slip begins with the step (1), or a short time before it (2) with ``first_speed``,
     so that ``speed`` is of (|u| - |u_0|)/s; ``turned``: how far a pass of series has changed ``unit``; ``landing``
-    (., 14): how long it takes to come to rest (0: it does not), and what its velocity follows (see ``layout``);
+    (., PLAN): how long it takes to come to rest (0: it does not), and what its velocity follows (see ``layout``);
     ``square``: |F|^2.
     """
 

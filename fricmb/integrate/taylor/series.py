@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel, long_loops
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import SLIP, Floats, Ints
 from fricmb.integrate.taylor.curve_check import curve_part
 from fricmb.integrate.taylor.friction_curve import friction_row, slip_law

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.compile.kernel import entry, kernel, long_loops
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import STICK
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.taylor.account import pay_groups

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.compile.kernel import entry, kernel, long_loops
+from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._error import doubtful, step_error
 from fricmb.integrate.timestepping._free import set_window

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel, long_loops
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.block_places import PLACES
-from fricmb.integrate.compile.kernel import kernel, long_loops
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.stop import stopped

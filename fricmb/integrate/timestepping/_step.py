@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import kernel, long_loops
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import (
     EVENT_CLOSE,
