@@ -16,7 +16,8 @@ from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
-from fricmb.scene import Scene, SpaceBody
+from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
+from fricmb.scene._family import of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
 
@@ -155,7 +156,12 @@ class SceneMechanics:
 
     @cached_property
     def names(self) -> Names:
-        """Names of what the arrays hold."""
+        """Names of what the arrays hold; stiffness, damping and loads are in none of them."""
+        parts = [part for part in self.placed.parts if not isinstance(part, Element | MatrixElement)]
+        key = "names", self.plan.dofs, self.plan.parts
+        return of_same_parts(self.placed, key, parts, self._names)
+
+    def _names(self) -> Names:
         held = set(self.plan.parts)
         contacts = [contact for contact in self.placed.frictional if contact.name in held]
         labels = [contact_names(contact) for contact in contacts]

@@ -14,7 +14,9 @@ from.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -250,24 +252,50 @@ class Elements:
     spread_coefficient: Floats = field(default_factory=lambda: _f(0))
 
 
+def _no_spectrum() -> tuple[Floats, Floats]:
+    """Of what is no linear structure."""
+    return _f(0), _f(0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Problem:
     """A scene as arrays: linear structure, signals, contacts, nonlinear elements; each but the first may be empty.
 
-    ``omega``, ``zeta``: angular frequencies and damping ratios of the linear structure without friction.
-    ``contact_names``, ``dof_names`` serve messages alone.  ``mechanism``: bodies that turn and joints; then ``linear``
-    is empty, and everything else sees extended coordinates (see :mod:`~fricmb.integrate.mechanism`).
+    ``spectrum``: what finds ``omega`` and ``zeta`` when they are asked for.  ``contact_names``, ``dof_names`` serve
+    messages alone.  ``mechanism``: bodies that turn and joints; then ``linear`` is empty, and everything else sees
+    extended coordinates (see :mod:`~fricmb.integrate.mechanism`).
     """
 
     linear: Linear
     signals: Signals
     contacts: Contacts
     elements: Elements
-    omega: Floats = field(default_factory=lambda: _f(0))
-    zeta: Floats = field(default_factory=lambda: _f(0))
+    spectrum: Callable[[], tuple[Floats, Floats]] = _no_spectrum
     dof_names: tuple[str, ...] = ()
     contact_names: tuple[str, ...] = ()
     mechanism: Mechanism | None = None
+
+    @cached_property
+    def kept(self) -> dict[Any, Any]:
+        """What was made of these arrays (see :func:`~fricmb.integrate.run.problem_cache.once_per_problem`)."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name in self.__dataclass_fields__}
+
+    @cached_property
+    def _spectrum(self) -> tuple[Floats, Floats]:
+        return self.spectrum()
+
+    @property
+    def omega(self) -> Floats:
+        """Angular frequencies of the linear structure without friction, rising; empty where they are not known."""
+        return self._spectrum[0]
+
+    @property
+    def zeta(self) -> Floats:
+        """Its damping ratios."""
+        return self._spectrum[1]
 
     @property
     def n(self) -> int:

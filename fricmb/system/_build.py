@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
-from fricmb.scene import Body, Element, Gravity, MatrixElement, ModalBody
+from fricmb.integrate.problem import Contacts, Floats, Linear, Problem, Start
+from fricmb.integrate.problem import Signals as SignalArrays
+from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
 from fricmb.scene._lines import lines_of
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
-from fricmb.system._lined import add_lines, choose
+from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
+from fricmb.system._same_parts import half_of
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
@@ -56,13 +59,22 @@ def build(scene: Any, plan: Any = None) -> System:
 SPECTRUM = 500
 
 
-def _spectrum(linear: Linear, n: int, dofs: Sequence[str]) -> tuple[Floats, Floats]:
-    """Frequencies and damping ratios, none for large coupled structures, after a check of the mass matrix."""
-    if n <= SPECTRUM or not linear.csr("M").is_diagonal():
+def _check_mass(linear: Linear, dofs: Sequence[str]) -> None:
+    if _is_small(linear, len(dofs)):
         check_mass(linear.M, dofs)
+    else:
+        check_masses(linear.csr("M").diagonal(), dofs)
+
+
+def _is_small(linear: Linear, n: int) -> bool:
+    return n <= SPECTRUM or not linear.csr("M").is_diagonal()
+
+
+def _spectrum(linear: Linear, n: int) -> tuple[Floats, Floats]:
+    """Frequencies and damping ratios; none for large coupled structures."""
+    if _is_small(linear, n):
         return spectrum(linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n])
     M = linear.csr("M")
-    check_masses(M.diagonal(), dofs)
     K, C = (linear.csr(name).block(slice(0, n), slice(0, n)) for name in ("Kx", "Cx"))
     if K.is_diagonal() and C.is_diagonal():
         return uncoupled_spectrum(M.diagonal(), K.diagonal(), C.diagonal())
@@ -73,41 +85,61 @@ def _build(scene: Any, plan: Any) -> System:
     if scene.is_mechanism:
         return build_mechanism(scene, plan)
     dofs = scene.dof_names if plan is None else plan.dofs
-    index = {name: i for i, name in enumerate(dofs)}
     signals = _motions.Signals()
-    motions = _motions.Motions(scene, index, signals)
-    structure = Structure(n=len(dofs), motions=motions)
-    contacts = ContactArrays(motions=motions)
+    motions = _motions.Motions(scene, {name: i for i, name in enumerate(dofs)}, signals)
     parts = scene.parts if plan is None else [scene[name] for name in plan.parts]
     chosen = choose(scene, parts, dofs)
+    standing = [part for part in parts if not isinstance(part, Contact)]
+    touching = [part for part in parts if not isinstance(part, Element | MatrixElement | Gravity)]
+    structure = half_of(
+        scene, ("structure", dofs), standing, signals, lambda: _structure(scene, motions, parts, chosen)
+    )
+    contacts = half_of(scene, ("contacts", dofs), touching, signals, lambda: _contacts(scene, motions, chosen))
+    return _system(scene, dofs, structure, contacts, signals)
+
+
+def _structure(scene: Any, motions: _motions.Motions, parts: Sequence[Any], chosen: Chosen) -> Structure:
+    structure = Structure(motions=motions)
     odd = add_lines(structure.lined, scene, chosen)
     for part in (*chosen.single, *odd):
         if isinstance(part, Body | ModalBody):
-            structure.add_body(part, index)
+            structure.add_body(part)
         elif isinstance(part, MatrixElement):
-            structure.add_matrix(part, index)
+            structure.add_matrix(part)
         elif isinstance(part, Element):
             structure.add_element(part)
         elif isinstance(part, Gravity):
-            add_gravity(part, parts, structure, index)
+            add_gravity(part, parts, structure)
+    return structure
+
+
+def _contacts(scene: Any, motions: _motions.Motions, chosen: Chosen) -> tuple[ContactArrays, Contacts]:
+    contacts = ContactArrays(motions=motions)
     for run, lined in chosen.runs:
         if lined is not None:
             contacts.add_lined(run, lined, lines_of(scene).motions, chosen.place)
             continue
         for contact in run:
             contacts.add(contact)
+    return contacts, contacts.build(len(motions.dofs), len(motions.signals.held))
+
+
+def _system(
+    scene: Any, dofs: tuple[str, ...], structure: Structure, touching: tuple[ContactArrays, Contacts],
+    signals: _motions.Signals,
+) -> System:  # fmt: skip
     n, n_u = len(dofs), len(signals.held)
-    linear = structure.linear(n_u)
-    omega, zeta = _spectrum(linear, n, dofs)
+    contacts, contact_arrays = touching
+    linear, elements = structure.arrays(n_u)
+    _check_mass(linear, dofs)
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)
     problem = Problem(
         linear=linear,
-        signals=Signals(table=signals.table.build(n, n_u), breakpoints=known, uniform=signals.uniform()),
-        contacts=contacts.build(n, n_u),
-        elements=structure.elements(n_u),
-        omega=omega,
-        zeta=zeta,
+        signals=SignalArrays(table=signals.table.build(n, n_u), breakpoints=known, uniform=signals.uniform()),
+        contacts=contact_arrays,
+        elements=elements,
+        spectrum=partial(_spectrum, linear, n),
         dof_names=dofs,
         contact_names=tuple(contacts.names),
     )

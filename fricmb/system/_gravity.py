@@ -11,9 +11,10 @@ from fricmb.system._tables import Row
 from fricmb.values import value_of
 
 
-def add_gravity(gravity: Gravity, parts: Iterable[Any], structure: Structure, index: dict[str, int]) -> None:
+def add_gravity(gravity: Gravity, parts: Iterable[Any], structure: Structure) -> None:
     """Constant forces on all bodies among the parts, and their potential."""
     rows: list[Row] = []
+    index = structure.motions.dofs
     f: list[tuple[int, int, float]] = []
     for body in parts:
         if not isinstance(body, Body | RigidBody | SpaceBody):

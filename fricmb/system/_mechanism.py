@@ -110,13 +110,13 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     index = {name: i for i, name in enumerate(extended)}
     signals = _motions.Signals()
     motions = _motions.Motions(scene, index, signals)
-    structure = Structure(n=len(extended), motions=motions)
+    structure = Structure(motions=motions)
     contacts = ContactArrays(motions=motions)
     joints = JointArrays(motions=motions, contacts=contacts)
     for part in parts:
         _add(part, structure, contacts, joints, index)
     for gravity in (part for part in parts if isinstance(part, Gravity)):
-        add_gravity(gravity, parts, structure, index)
+        add_gravity(gravity, parts, structure)
     n_y, n_u = len(extended), len(signals.held)
     elements = structure.elements(n_u)
     mechanism = Mechanism(
@@ -211,9 +211,9 @@ def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: Joint
     elif isinstance(part, SpaceBody):
         structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, part.masses(), strict=True))
     elif isinstance(part, Body | ModalBody):
-        structure.add_body(part, index)
+        structure.add_body(part)
     elif isinstance(part, MatrixElement):
-        structure.add_matrix(part, index)
+        structure.add_matrix(part)
     elif isinstance(part, Element):
         structure.add_element(part)
     elif isinstance(part, Contact):

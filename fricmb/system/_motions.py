@@ -89,11 +89,14 @@ class Signals:
     def add(self, name: str, make: Callable[[], Signal]) -> int:
         """Index of the signal called ``name``, made if it is new."""
         if name not in self.index:
-            signal = make()
-            self.index[name] = len(self.held)
-            self.held.append(signal)
-            self.table.add(signal.template.address, signal.parameters)
+            self.put(name, make())
         return self.index[name]
+
+    def put(self, name: str, signal: Signal) -> None:
+        """Append a signal of a new name."""
+        self.index[name] = len(self.held)
+        self.held.append(signal)
+        self.table.add(signal.template.address, signal.parameters)
 
     def uniform(self) -> Codes:
         """Which signals are linear in time, by their derivation."""
@@ -115,7 +118,7 @@ class Motions:
 
     def __init__(self, scene: Any, dof_index: dict[str, int], signals: Signals) -> None:
         self._scene = scene
-        self._dofs = dof_index
+        self.dofs = dof_index
         self.signals = signals
         self.driven = driven_motions([p for p in scene.parts if isinstance(p, Driven)])
 
@@ -125,8 +128,8 @@ class Motions:
         u: list[tuple[int, float]] = []
         constant = form.constant
         for name, coefficient in self._scene.expand(form).terms:
-            if name in self._dofs:
-                q.append((self._dofs[name], coefficient))
+            if name in self.dofs:
+                q.append((self.dofs[name], coefficient))
                 continue
             motion = self.driven[name]
             if motion.rate == 0.0:

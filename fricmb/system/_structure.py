@@ -38,9 +38,8 @@ class Store:
 
 @dataclass(frozen=True, kw_only=True)
 class Structure:
-    """Arrays under construction; places in [dofs, signals]."""
+    """Arrays under construction; places in [dofs, signals].  ``made``: what came of them, by the number of signals."""
 
-    n: int
     motions: Motions
     M: list[tuple[int, int, float]] = field(default_factory=list)
     K: list[tuple[int, int, float]] = field(default_factory=list)
@@ -53,11 +52,17 @@ class Structure:
     spread: list[list[Row]] = field(default_factory=list)
     nonlinear: list[tuple[Element, tuple[Row, ...]]] = field(default_factory=list)
     timed: list[tuple[Template, tuple[float, ...]]] = field(default_factory=list)
+    made: dict[int, tuple[Linear, Elements]] = field(default_factory=dict)
+
+    @property
+    def n(self) -> int:
+        """Number of degrees of freedom."""
+        return len(self.motions.dofs)
 
     # -- bodies -------------------------------------------------------------------------------------------------
-    def add_body(self, body: Body | ModalBody, index: dict[str, int]) -> None:
+    def add_body(self, body: Body | ModalBody) -> None:
         """Masses; of a modal body also modal stiffness and damping."""
-        names = body.dof_names
+        names, index = body.dof_names, self.motions.dofs
         built = [i for i, name in enumerate(names) if name in index]
         places = [index[names[i]] for i in built]
         if isinstance(body, Body):
@@ -80,9 +85,9 @@ class Structure:
         diagonal = [(i, i, float(v)) for i, v in enumerate(stiffness) if v != 0.0]
         self.stores.append(Store(name=body.name, rows=rows, K=diagonal, f=()))
 
-    def add_matrix(self, part: MatrixElement, index: dict[str, int]) -> None:
+    def add_matrix(self, part: MatrixElement) -> None:
         """Matrices over named dofs."""
-        places = np.array([index[name] for name in part.dofs])
+        places = np.array([self.motions.dofs[name] for name in part.dofs])
         for target in ("M", "C", "K"):
             value = getattr(part, target)
             if value is None:
@@ -179,6 +184,13 @@ class Structure:
         return len(self.table) - 1
 
     # -- arrays -------------------------------------------------------------------------------------------------
+    def arrays(self, n_u: int) -> tuple[Linear, Elements]:
+        """The constant matrices and the nonlinear elements for so many signals, once."""
+        found = self.made.get(n_u)
+        if found is None:
+            found = self.made[n_u] = self.linear(n_u), self.elements(n_u)
+        return found
+
     def linear(self, n_u: int) -> Linear:
         """The constant matrices."""
         n = self.n

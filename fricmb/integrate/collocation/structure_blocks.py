@@ -11,6 +11,7 @@ modes where damping is proportional (then forces enter v alone), else one block 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import scipy.linalg
@@ -86,29 +87,32 @@ def _held(M: Floats, W: Floats, stuck: tuple[int, ...]) -> tuple[Floats, Floats]
     return _null_basis(Linv, Wz), G
 
 
-def _off_diagonal(matrix: Floats) -> Floats:
-    rest = matrix.copy()
-    np.fill_diagonal(rest, 0.0)
-    return rest
+def _size(matrix: Floats) -> float:
+    """Largest magnitude of an entry."""
+    return float(np.abs(matrix).max()) if matrix.size else 0.0
+
+
+@lru_cache(maxsize=64)
+def _off_diagonal(n: int) -> Floats:
+    """A factor for each entry of a matrix: 0 on the diagonal."""
+    return 1.0 - np.eye(n)
 
 
 def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
     """Modes that diagonalise K and C together: (w2, d, vectors), or None."""
-    size_k, size_c = float(np.abs(K).max(initial=0.0)), float(np.abs(C).max(initial=0.0))
-    if np.abs(K - K.T).max(initial=0.0) > 1e-14 * size_k or np.abs(C - C.T).max(initial=0.0) > 1e-14 * size_c:
+    size_k, size_c = _size(K), _size(C)
+    if _size(K - K.T) > 1e-14 * size_k or _size(C - C.T) > 1e-14 * size_c:
         return None
     mixed = K if size_c == 0.0 else K + C * (0.6180339887 * size_k / size_c if size_k else 1.0)
-    if not _off_diagonal(mixed).any():
-        E = np.eye(len(K))
-    else:
-        E = scipy.linalg.eigh(0.5 * (mixed + mixed.T))[1]
+    off = _off_diagonal(len(K))
+    E = np.linalg.eigh(0.5 * (mixed + mixed.T))[1] if (off * mixed).any() else np.eye(len(K))
     Km, Cm = E.T @ K @ E, E.T @ C @ E
     for matrix, size in ((Km, size_k), (Cm, size_c)):
-        if np.abs(_off_diagonal(matrix)).max(initial=0.0) > 1e-13 * max(size, 1e-300) * len(K):
+        if _size(off * matrix) > 1e-13 * max(size, 1e-300) * len(K):
             return None
-    w2 = np.diag(Km).copy()
+    w2 = Km.diagonal().copy()
     w2[np.abs(w2) < 1e-14 * size_k] = 0.0
-    return w2, np.diag(Cm).copy(), E
+    return w2, Cm.diagonal().copy(), E
 
 
 def _pair_basis(A: Floats, first: Pole, second: Pole) -> tuple[float, float, Floats]:
@@ -176,10 +180,10 @@ def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -
     solid = np.ascontiguousarray
     if proportional is not None:
         w2, d, E = proportional
-        shapes, nothing = solid(N @ E), np.zeros((n, b))
+        shapes, nothing = N @ E, np.zeros((n, b))
         return Blocks(
-            w2=w2, d=d, q_u=shapes, q_v=nothing, v_u=nothing, v_v=shapes, force_0=nothing.T.copy(),
-            force_1=solid(E.T @ N.T), stuck_motion=G, modal=True,
+            w2=w2, d=d, q_u=shapes, q_v=nothing, v_u=nothing, v_v=shapes, force_0=np.zeros((b, n)),
+            force_1=solid(shapes.T), stuck_motion=G, modal=True,
         )  # fmt: skip
     w2, d, T = _general(Kz, Cz)
     Tinv = np.linalg.inv(T)

@@ -7,8 +7,19 @@ from typing import NamedTuple
 import numpy as np
 
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.model.structure import Structure, inverse_mass, pack_structure
-from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Floats2, Ints, Problem, Templates
+from fricmb.integrate.csr import Csr
+from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
+from fricmb.integrate.problem import (
+    NORMAL_CONSTANT,
+    NORMAL_LAW,
+    Codes,
+    Floats,
+    Floats2,
+    Ints,
+    Problem,
+    SparseLinear,
+    Templates,
+)
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.problem_cache import once_per_problem
 
@@ -85,9 +96,20 @@ def mobility_at_contacts(problem: Problem) -> Floats:
 
     def make() -> Floats:
         W = np.ascontiguousarray(problem.contacts.W)
-        return np.ascontiguousarray(W.T @ (inverse_mass(problem) @ W))
+        if isinstance(problem.linear, SparseLinear):
+            return _mobility(inverse_mass(problem), W)
+        return _mobility_by_mass(problem.linear.M, W)
 
     return once_per_problem(problem, "mobility at contacts", make)
+
+
+@cached_by_content
+def _mobility_by_mass(M: Floats, W: Floats) -> Floats:
+    return _mobility(dense_inverse(np.asarray(M, dtype=float)), W)
+
+
+def _mobility(inverse: Csr, W: Floats) -> Floats:
+    return np.ascontiguousarray(W.T @ (inverse @ W))
 
 
 def softness(problem: Problem) -> float:

@@ -57,7 +57,7 @@ def inverse_mass(problem: Problem) -> Csr:
 
 def _inverse_mass(problem: Problem) -> Csr:
     if not isinstance(problem.linear, SparseLinear):
-        return _dense_inverse(np.asarray(problem.linear.M, dtype=float))
+        return dense_inverse(np.asarray(problem.linear.M, dtype=float))
     M = problem.linear.csr("M")
     if M.is_diagonal():
         places = np.arange(problem.n)
@@ -66,7 +66,8 @@ def _inverse_mass(problem: Problem) -> Csr:
 
 
 @cached_by_content
-def _dense_inverse(M: Floats) -> Csr:
+def dense_inverse(M: Floats) -> Csr:
+    """Inverse of a mass matrix, by its content; a diagonal where it is one."""
     places, diagonal = np.arange(len(M)), np.diagonal(M)
     if np.count_nonzero(M) == np.count_nonzero(diagonal):
         return Csr(M.shape, np.arange(len(M) + 1), places, 1.0 / diagonal)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.nodes import RUNGS, Z_EXACT, nodes
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
-from fricmb.integrate.collocation.structure_blocks import blocks
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.friction_cone import stick_limits
@@ -83,34 +83,64 @@ def _model(problem: Problem) -> Model:
     W = np.ascontiguousarray(contacts.W)
     m = W.shape[1]
     slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
+    Minv, MW, D, Dinv, hold = _port(M, W)
+    blk, mat = _blocks_by_mode(M, slip, stick)
+    row = np.zeros((4, m, n))
+    _hold_row(row[:2], hold, K, C, stick)
+    row[2], row[3] = W.T, MW.T
+    co, ci, linked = _port_weights(W, slip)
+    coupled = bool(m == 2 and (linked[0, 1] or linked[1, 0]))
     start, rate = linear_part(problem)
     Ku = linear.B - linear.Kx[:n, n:]
-    Minv, MW, D, Dinv, hold = _port(M, W)
     w = contacts.w + contacts.Wu @ rate
-    blk, mat = np.zeros((2, 2, n)), np.zeros((2, 8, n, n))
-    row = np.zeros((4, m, n))
-    for z, part in enumerate((slip, stick)):
-        b = len(part.w2)
-        blk[z, :, :b] = part.w2, part.d
-        mat[z, :4, :, :b] = part.q_u, part.q_v, part.v_u, part.v_v
-        mat[z, 4:, :b] = part.force_0, part.force_1, part.force_0 @ M, part.force_1 @ M
-        if z:
-            row[0, :, :b], row[1, :, :b] = hold @ (K @ part.q_u + C @ part.v_u), hold @ (K @ part.q_v + C @ part.v_v)
-    row[2:] = W.T, MW.T
-    co = np.stack([W.T @ slip.v_u, W.T @ slip.v_v])
-    ci = np.stack([(slip.force_0 @ W).T, (slip.force_1 @ W).T])
-    linked = (np.abs(co).sum(axis=0) @ np.abs(ci).sum(axis=0).T > 0).astype(float)
-    coupled = bool(m == 2 and (linked[0, 1] or linked[1, 0]))
     f0 = linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate
-    N = contacts.N[0]
-    fastest = np.sqrt(np.abs(slip.w2)).max(initial=0.0)
+    fastest = math.sqrt(np.abs(slip.w2).max()) if n else 0.0
+    lim = [stick_limits(contacts)[0], contacts.mu_0[0] * contacts.N[0], fastest, *w]
     arrays = [
-        blk, mat, co, ci, linked, row, np.stack([K, C, Minv]), np.stack([f0, Ku @ rate, stick.stuck_motion @ w]),
-        np.stack([D, Dinv]), np.array([stick_limits(contacts)[0], contacts.mu_0[0] * N, fastest, *w]),
+        blk, mat, co, ci, linked, row, np.array([K, C, Minv]), np.array([f0, Ku @ rate, stick.stuck_motion @ w]),
+        np.array([D, Dinv]), np.array(lim),
     ]  # fmt: skip
     flags = np.array([m, len(stick.w2), slip.modal, stick.modal, coupled], dtype=np.int64)
-    solid: list[Any] = [np.ascontiguousarray(x, dtype=float) for x in arrays]
-    return Model._make([*solid, flags])
+    return Model._make([*arrays, flags])
+
+
+def _blocks_by_mode(M: Floats, slip: Blocks, stick: Blocks) -> tuple[Floats, Floats]:
+    """Coefficients of the blocks (2, 2, n), and what turns states into motion and forces into inputs (2, 8, n, n).
+
+    Of each mode q_u, q_v, v_u, v_v, then force_0, force_1 by force and by momentum; see :class:`Blocks`.
+    """
+    n = len(M)
+    blk, mat = np.zeros((2, 2, n)), np.zeros((2, 8, n, n))
+    for z, part in enumerate((slip, stick)):
+        b = len(part.w2)
+        blk[z, 0, :b], blk[z, 1, :b] = part.w2, part.d
+        mat[z, 0, :, :b], mat[z, 3, :, :b] = part.q_u, part.v_v
+        mat[z, 5, :b], mat[z, 7, :b] = part.force_1, part.force_1 @ M
+        if not part.modal:
+            mat[z, 1, :, :b], mat[z, 2, :, :b] = part.q_v, part.v_u
+            mat[z, 4, :b], mat[z, 6, :b] = part.force_0, part.force_0 @ M
+    return blk, mat
+
+
+def _hold_row(row: Floats, hold: Floats, K: Floats, C: Floats, stick: Blocks) -> None:
+    """The force that holds the contact (2, m, b) by the states u, v of the blocks in stick."""
+    b = len(stick.w2)
+    if stick.modal:
+        row[0, :, :b], row[1, :, :b] = hold @ (K @ stick.q_u), hold @ (C @ stick.v_v)
+        return
+    row[0, :, :b] = hold @ (K @ stick.q_u + C @ stick.v_u)
+    row[1, :, :b] = hold @ (K @ stick.q_v + C @ stick.v_v)
+
+
+def _port_weights(W: Floats, slip: Blocks) -> tuple[Floats, Floats, Floats]:
+    """Relative velocity by the states of the blocks and their inputs by the contact force, (2, m, b) each.
+
+    Also which row (m, m) moves at all by the force of which.
+    """
+    co = np.array([W.T @ slip.v_u, W.T @ slip.v_v])
+    ci = np.array([(slip.force_0 @ W).T, (slip.force_1 @ W).T])
+    size_o, size_i = np.abs(co), np.abs(ci)
+    return co, ci, ((size_o[0] + size_o[1]) @ (size_i[0] + size_i[1]).T > 0).astype(float)
 
 
 def model(problem: Problem) -> Model:
@@ -175,9 +205,9 @@ def _nothing(s: int) -> Run:
     return room(Run(**(empty | nodes(s)._asdict())))
 
 
-def run_of(problem: Problem, s: int) -> Run:
+def run_of(problem: Problem, s: int, held: Rows) -> Run:
     """The constants of a one-contact problem with s nodes, to look at rows with: there is nothing to work in."""
-    return once_per_problem(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)._asdict()))
+    return with_arrays(_nothing(s), **model(problem)._asdict(), **held._asdict())
 
 
 def with_rows(run: Run, new: Rows) -> Run:

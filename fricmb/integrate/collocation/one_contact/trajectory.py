@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, has_ledger, powers
-from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of, with_rows
+from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
 from fricmb.integrate.compile.lanes import padded
@@ -33,7 +33,7 @@ class SingleRun(Trajectory):
     def _run(self) -> Run:
         """The arrays of the problem with the rows of this run."""
         if self._arrays is None:
-            self._arrays = with_rows(run_of(self.problem, self._s), self._rows)
+            self._arrays = run_of(self.problem, self._s, self._rows)
         return self._arrays
 
     def attach(self, problem: Problem) -> None:

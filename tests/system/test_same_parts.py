@@ -1,0 +1,85 @@
+"""Scenes that differ in one value share what they have the same parts of."""
+
+import numpy as np
+import sympy
+
+import fricmb as fm
+from fricmb.scene._family import MANY, of_same_parts
+from fricmb.system import build
+
+M = fm.models
+
+
+def halves(scene):
+    problem = build(scene).problem
+    return problem.linear, problem.contacts
+
+
+def test_a_stiffness_leaves_the_contacts_and_a_coefficient_the_structure():
+    scene = M.brake4dof()
+    linear, contacts = halves(scene)
+    stiff = scene.replace("k1x", stiffness=2.0)
+    stiffer, same_contacts = halves(stiff)
+    assert same_contacts is contacts
+    assert stiffer is not linear
+    assert stiffer.Kx[0, 0] == linear.Kx[0, 0] + 1.0
+    same_linear, slower = halves(stiff.with_parameters({"lining.normal_force": 0.5}))
+    assert same_linear is stiffer
+    assert slower.N[0] == 0.5
+
+
+def test_a_mass_leaves_nothing():
+    scene = M.brake4dof()
+    linear, contacts = halves(scene)
+    heavier, others = halves(scene.with_parameters({"pad.mass": 2.0}))
+    assert heavier is not linear
+    assert others is not contacts
+    np.testing.assert_array_equal(others.W, contacts.W)
+
+
+def test_signals_of_what_is_shared_are_there():
+    shaken = fm.Driven("shaken", position={"x": 0.1 * sympy.sin(3 * fm.t)})
+    belt = fm.Driven("belt", velocity={"x": 1 + 0.1 * sympy.cos(2 * fm.t)})
+    body = fm.Body("body", mass=1.0)
+    scene = fm.Scene("signals", [
+        shaken, belt, body, fm.Spring("k", body, shaken, axis="x", stiffness=2.0),
+        fm.Force("push", body, axis="x", value=0.3 * sympy.sin(fm.t)),
+        fm.Contact("rub", body, belt, law=fm.laws.Coulomb(mu_s=0.4, mu_k=0.3), normal_force=1.0),
+    ])  # fmt: skip
+    build(scene)
+    for values in ({"k.stiffness": 3.0}, {"rub.law.mu_k": 0.2}, {"rub.normal_force": 2.0}):
+        changed = scene.with_parameters(values)
+        anew = fm.Scene(changed.name, changed.parts)
+        found, wanted = build(changed).problem, build(anew).problem
+        assert found.n_u == wanted.n_u == 3
+        for part in ("linear", "contacts"):
+            for name, value in vars(getattr(wanted, part)).items():
+                if isinstance(value, np.ndarray):
+                    np.testing.assert_array_equal(getattr(getattr(found, part), name), value)
+        np.testing.assert_array_equal(found.signals.table.address, wanted.signals.table.address)
+        np.testing.assert_array_equal(found.signals.uniform, wanted.signals.uniform)
+        times = np.linspace(0.0, 2.0, 5)
+        np.testing.assert_array_equal(build(changed).signals(times), build(anew).signals(times))
+
+
+def test_equal_parts_that_are_not_the_same_are_looked_at_again():
+    scene, made = M.belt_oscillator(), []
+    (body, *_) = scene.bodies
+
+    def make():
+        made.append(1)
+        return len(made)
+
+    twin = fm.Body(body.name, mass=body.mass, axes=body.axes, position=body.position, velocity=body.velocity)
+    assert [of_same_parts(scene, "k", [body], make) for _ in range(2)] == [1, 1]
+    assert of_same_parts(scene, "k", [twin], make) == 2
+    assert of_same_parts(scene, "other", [body], make) == 3
+    assert of_same_parts(scene, "k", [twin, body], make) == 4
+
+
+def test_large_scenes_keep_nothing():
+    scene = M.stick_slip_chain(MANY // 2)
+    assert len(scene.parts) > MANY
+    first = build(scene).problem.contacts
+    name = next(part.name for part in scene.parts if isinstance(part, fm.Spring))
+    assert build(scene.with_parameters({f"{name}.stiffness": 3.0})).problem.contacts is not first
