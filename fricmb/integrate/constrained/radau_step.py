@@ -29,7 +29,7 @@ class Control(NamedTuple):
     that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c
     for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts`` work done; ``longest`` (1,) step of all;
     ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
-    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s+1, n_z) space of
+    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z) space of
     ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter.
     """
 
@@ -61,7 +61,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         np.zeros(1), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), np.array([1.0, 0.0, 0.0]),
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), np.zeros(1), np.zeros(stops), np.zeros(n),
         np.zeros(2), np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros((s + 1, problem.n_z)), np.zeros(problem.n_z),
+        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z),
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.transition import turned
+from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
 from fricmb.integrate.model.accelerations import complete
@@ -18,21 +18,8 @@ from fricmb.integrate.model.friction_cone import cone_margin
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
-from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record, record_event
-from fricmb.integrate.problem import (
-    EVENT_CLOSE,
-    EVENT_OPEN,
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    LAW_SMOOTH,
-    OPEN,
-    SLIP,
-    STICK,
-    Codes,
-    Floats,
-    Ints,
-)
+from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances
@@ -123,27 +110,6 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
     return changed
 
 
-@kernel
-def note_changes(packed: Packed, y: State, last: Last, mode: Codes, n: Floats, t: float, out: Rows) -> bool:
-    """Record what has changed against the last step; True where anything has."""
-    some = False
-    for k in range(mode.shape[0]):
-        was, now = last.mode[k], mode[k]
-        kind = -1
-        if was != now:
-            kind = EVENT_STICK if now == STICK else EVENT_SLIP
-            if now == OPEN:
-                kind = EVENT_OPEN
-            elif was == OPEN:
-                kind = EVENT_CLOSE
-        elif turned(packed.ports, k, now, n, last.n):
-            kind = EVENT_REVERSAL
-        if kind >= 0:
-            record_event(out, t, k, kind)
-            some = True
-    return some
-
-
 @entry
 def drive_paper(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, last: Last, out: Rows, h: float,
@@ -189,7 +155,7 @@ def drive_paper(
         # the published scheme takes the force from the step's own equations
         for a in range(y.F.shape[0]):
             end.F[a] = one.w.F[0, a]
-        if note_changes(packed, y, last, last.trial, end.n, end.t[0], out):
+        if record_changes(packed.ports, end.t[0], end, last, out):
             for k in range(y.mode.shape[0]):
                 end.mode[k] = y.mode[k]
             record(out, end, BEFORE)
