@@ -18,7 +18,7 @@ from fricmb.integrate.collocation.nonlinear_ports import exact_ports
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Ints
@@ -97,9 +97,7 @@ def guess_forces(packed: Packed, y: State, one: OneStep, ratio: float) -> None:
                 for i in range(n_s):
                     w.F[i, a] = w.F[i, a] * (ratio * ex.nd[VECTORS, NODE, i]) + c
         for i in range(n_s if turns else 0):
-            size = magnitude(packed.ports.row, k, w.F[i])
-            for a in range(row0, end):
-                w.n[i, a] = -w.F[i, a] / size if size > 0.0 else y.n[a]
+            point_along(packed.ports.row, k, w.F[i], -1.0, w.n[i])
 
 
 @kernel

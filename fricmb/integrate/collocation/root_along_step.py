@@ -18,7 +18,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import complete, slip_rate
 from fricmb.integrate.model.forces import Scratch, belt_velocity, set_time
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import along, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Floats2, Ints
@@ -58,9 +58,7 @@ def unit_directions(packed: Packed, end: State) -> None:
     row = packed.ports.row
     for k in range(end.mode.shape[0]):
         if end.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH:
-            size = magnitude(row, k, end.n)
-            for a in range(row[k], row[k + 1]):
-                end.n[a] /= size
+            point_along(row, k, end.n, 1.0, end.n)
 
 
 @kernel
@@ -109,10 +107,7 @@ def move_to(
 @kernel
 def distance(packed: Packed, s: Scratch, y: State, end: State, k: int, found: Floats) -> float:
     """Distance of contact k from its transition at ``end``."""
-    speed = 0.0
-    for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-        speed += end.n[a] * end.g[a]
-    return float(margin(packed, s, y, end, speed, k, found))
+    return float(margin(packed, s, y, end, along(packed.ports.row, k, end.n, end.g), k, found))
 
 
 @kernel

@@ -12,8 +12,9 @@ from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.output.hermite_output import point_along_slip, relative_velocity, set_window_around, write_sample
+from fricmb.integrate.output.hermite_output import point_against_forces, point_along_slip, state_of_row, write_sample
 from fricmb.integrate.problem import Codes2, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.run.breakpoints import set_window_around
 from fricmb.integrate.step.exact_structure import Exact
 
 
@@ -92,17 +93,6 @@ def inside_step(
             y.F[a] = y.F[a] * theta + c
 
 
-@kernel
-def force_directions(packed: Packed, y: State) -> None:
-    """Directions of slip against the forces."""
-    for c in range(y.mode.shape[0]):
-        force = 0.0
-        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-            force += y.F[a] ** 2
-        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-            y.n[a] = -y.F[a] / np.sqrt(force) if force > 0.0 else 0.0
-
-
 @entry
 def sample_exact(
     packed: Packed, s: Scratch, y: State, ex: Exact, values: Floats2, modes: Codes2, stops: Floats, index: Ints,
@@ -128,29 +118,19 @@ def sample_exact(
         right = values[min(k + 1, values.shape[0] - 1)]
         tau = t[j] - left[0]
         inside = tau > 0.0 and right[0] > left[0]
-        set_window_around(stops, s, side[j])
-        for c in range(nc):
-            y.mode[c] = modes[k, c]
-            y.N[c] = left[at_F + m + c]
+        set_window_around(stops, s.window, side[j])
         if inside:
+            for c in range(nc):
+                y.mode[c] = modes[k, c]
+                y.N[c] = left[at_F + m + c]
             if k != opened:
                 open_step(packed, s, y, ex, left, right, at, P, series, gain)
             inside_step(packed, s, y, ex, left, right, at, tau, P, series, dq, dv)
             y.t[0] = t[j]
-            force_directions(packed, y)
+            point_against_forces(packed, y)
             point_along_slip(packed, s, y)
             complete(packed, s, y, sizes, pivots, address)
         else:
-            y.t[0] = t[j]
-            for i in range(n):
-                y.q[i] = left[1 + i]
-                y.v[i] = left[1 + n + i]
-            for i in range(nz):
-                y.z[i] = left[1 + 3 * n + i]
-            for i in range(width):
-                y.work[i] = left[at - 2 * width + i]
-            for a in range(m):
-                y.F[a] = left[at_F + a]
-            relative_velocity(packed, s, y)
+            state_of_row(packed, s, y, left, modes[k], t[j])
         opened = k if inside else -1
         write_sample(packed, y, out[j], out_mode[j])

@@ -11,7 +11,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.model.forces import gather
 from fricmb.integrate.model.friction_cone import cone_margin
-from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
@@ -82,12 +82,9 @@ def keep_held(mech: Mech, mode: Codes, now: Floats, F: Floats) -> None:
 @kernel
 def aim(mech: Mech, mode: Codes, F: Floats, n: Floats) -> None:
     """Directions of ports that slip in a plane: against their forces."""
-    row = mech.port.row
     for c in range(mode.shape[0]):
         if mode[c] == SLIP and plane(mech, c):
-            size = magnitude(row, c, F)
-            for a in range(row[c], row[c + 1]):
-                n[a] = -F[a] / size if size > 0.0 else n[a]
+            point_along(mech.port.row, c, F, -1.0, n)
 
 
 @block

@@ -11,7 +11,7 @@ from fricmb.integrate.model.accelerations import share_load, slip_rate
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.friction_discs import NEARLY, least_slip
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import AFTER, BEFORE, Rows, record, record_event
@@ -113,11 +113,9 @@ def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool
         return False
     slips = least_slip(row, y.way)
     for c in range(y.mode.shape[0] if slips > 0.0 else 0):
-        speed = magnitude(row, c, y.way)
-        if old.mode[c] == STICK and r.part[c] == 1 and speed > slips:
+        if old.mode[c] == STICK and r.part[c] == 1 and magnitude(row, c, y.way) > slips:
             r.part[c] = 2
-            for a in range(row[c], row[c + 1]):
-                y.n[a] = y.way[a] / speed
+            point_along(row, c, y.way, 1.0, y.n)
     return slips > 0.0
 
 
@@ -154,9 +152,7 @@ def transition(
             pass
         elif old.mode[contact] == STICK:
             r.part[contact] = 2
-            size = magnitude(ports.row, contact, y.F)
-            for a in range(ports.row[contact], ports.row[contact + 1]):
-                y.n[a] = -y.F[a] / size
+            point_along(ports.row, contact, y.F, -1.0, y.n)
         else:
             r.part[contact] = 1
     code = settle(packed, s, y, r, address)

@@ -34,6 +34,7 @@ from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import arrive, crowded
 from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.law_values import along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
@@ -53,10 +54,7 @@ def calm(packed: Packed, y: State, h: float) -> bool:
     for k in range(y.mode.shape[0]):
         if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
             continue
-        r = 0.0
-        for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-            r += y.n[a] * y.g[a]
-        if r < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
+        if along(packed.ports.row, k, y.n, y.g) < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
             return False
     return True
 

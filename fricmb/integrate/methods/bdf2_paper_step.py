@@ -15,7 +15,7 @@ from fricmb.integrate.methods.time_loop import crowded
 from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
 from fricmb.integrate.model.friction_cone import cone_margin
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
@@ -91,8 +91,6 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
     set_time(packed.signals, s, one.st.t[0], y.q.shape[0])
     set_state(s, one.st.Q[0], one.st.V[0])
     for k in range(mode.shape[0]):
-        row0 = ports.row[k]
-        d = ports.row[k + 1] - row0
         if ports.var[k] >= 0:
             N = normal_force(ports, packed.normals, k, s)
             if (N <= 0.0) != (mode[k] == OPEN):
@@ -104,9 +102,7 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
         if cone_margin(ports, packed.laws, k, s, w.F[0], w.N[0, k]) < 0.0:
             mode[k] = SLIP
             changed = True
-            size = magnitude(ports.row, k, w.F[0])
-            for a in range(row0, row0 + d):
-                y.n[a] = -w.F[0, a] / size
+            point_along(ports.row, k, w.F[0], -1.0, y.n)
     return changed
 
 
