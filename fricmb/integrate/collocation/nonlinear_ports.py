@@ -17,7 +17,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_rows
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.forces import Scratch, gather
+from fricmb.integrate.model.forces import Scratch, evaluate
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats3, Ints
@@ -45,8 +45,7 @@ def first_inputs(packed: Packed, s: Scratch, y: State, one: OneStep) -> None:
                 w.Fin[i, m + packed.ports.var[k]] = w.N[i, k]
                 ex.P[m + packed.ports.var[k], i] = w.N[i, k] - packed.ports.N0[k]
     for k in range(packed.elements.address.shape[0]):
-        gather(packed.elements, k, s.X, s.x)
-        call(packed.elements.address[k], s.x, 0, packed.elements.p, packed.elements.p_start[k], s.out, 0)
+        evaluate(packed.elements, k, s)
         first = packed.spread.f_start[k]
         for b in range(first, packed.spread.f_start[k + 1]):
             for i in range(n_s):

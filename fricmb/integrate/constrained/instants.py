@@ -73,7 +73,7 @@ def follow(mech: Mech, k: Moving, y: State, small: float) -> None:
     if not some:
         return
     move(mech, k, y.t[0], y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     for c in range(y.mode.shape[0]):
         if y.mode[c] == SLIP and plane(mech, c) and magnitude(mech.port.row, c, y.g) > small:
             point_along(mech.port.row, c, y.g, 1.0, y.n)
@@ -86,12 +86,12 @@ def constraints(
 ) -> int:  # fmt: skip
     """Constraints (m,), their rates (m,) and entries of their Jacobian G at an instant; the number of entries."""
     move(mech, k, t, q, v, mech.address)
-    forces(mech, k, lam, F, 0, 0, N, g, mech.address)
+    forces(mech, k, lam, F, N, g, mech.address)
     joint, table, place = mech.joint, mech.joint.table, mech.place
     n_y = k.ddy.shape[0]
     count = 0
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        n_x = call_joint(mech, k, j, lam, mech.address)
         m = joint.row[j + 1] - joint.row[j]
         for r in range(m):
             row = joint.row[j] + r

@@ -156,7 +156,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), y.mode, mech.address)
+    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), mech.address)
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
@@ -236,5 +236,5 @@ def end_step(
 def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int) -> None:
     """Powers at stage i into ``c.power[i]``."""
     move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-    forces(mech, k, st.lam[i], st.F[i], 0, 0, st.N[i], st.g[i], mech.address)
+    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i], mech.address)

@@ -64,7 +64,7 @@ def run_mechanism(
         given = (mech, k, w, y, end, before, st, control, out, record, part)
         go_on = _bdf_loop(problem, start, t_end, stages, given) if multistep else partial(drive, *given)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
-        code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
+        code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
             _settle(workspace, problem, start, t_end, reach)
             code = chunks.fill(go_on, y.t, memory, progress)
@@ -94,7 +94,7 @@ def _set_up(
     c.v[:], c.z[:] = np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
-    c.stops[:] = np.sort(problem.signals.breakpoints)
+    c.stops[:] = mech_of(problem).breakpoints
     workspace.out.opened[0] = (m.joints.dropped == 2).sum()
     reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
     small = 1e-12 * max(top, reach)

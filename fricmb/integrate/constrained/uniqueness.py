@@ -63,7 +63,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
                 for i in range(rows):
                     angle = 2.0 * np.pi * (d + 0.13) / AROUND
                     out.lam[joint.row[j] + i] = np.cos(angle) if i == 0 else np.sin(angle)
-            call_joint(mech, k, j, out.lam, 0, mech.address)
+            call_joint(mech, k, j, out.lam, mech.address)
             answer = 0.0
             for i in range(rows):
                 answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
@@ -115,7 +115,7 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
             c = out.contacts[i]
             owner = port.joint[c]
             rows = joint.row[owner + 1] - joint.row[owner]
-            n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
+            n_x = call_joint(mech, k, owner, y.lam, mech.address)
             at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
             mu, _, by_load = coefficient(port, port.laws, c, k.s, along(port.row, c, y.n, y.g), max(y.N[c], 0.0))
             answer = 0.0
