@@ -17,7 +17,7 @@ from fricmb.integrate.collocation.layout import MONOMIAL, NODE, TABLEAU, VECTORS
 from fricmb.integrate.collocation.nonlinear_ports import exact_ports
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, set_instant
 from fricmb.integrate.model.law_values import point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
@@ -176,8 +176,7 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
 def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
     """Solve a step h from y on an exact structure (stands in for :func:`attempt`).  False without convergence."""
     ex = one.exact
-    set_time(packed.signals, s, y.t[0], y.q.shape[0])
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, y.t[0], y.q, y.v)
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
     slot = slot_of(one, h, address)

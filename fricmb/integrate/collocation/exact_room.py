@@ -69,7 +69,7 @@ def free_blocks(problem: Problem) -> Blocks:
     return once_per_problem(problem, "free blocks", lambda: blocks(M, K, C, np.zeros((n, 0)), ()))
 
 
-def _has_ledger(problem: Problem) -> bool:
+def has_ledger(problem: Problem) -> bool:
     """Whether anything but friction takes or brings energy."""
     n, linear, contacts = problem.n, problem.linear, problem.contacts
     K = linear.Kx[:n, :n]
@@ -105,7 +105,7 @@ def _exact(problem: Problem, s: int) -> Exact:
     wide = s * problem.m
     # with nonlinear elements or normal forces the equations of contacts change from one iteration to the next
     held = 0 if nv or nf else int(np.clip(HELD_NUMBERS // (3 * wide * wide + 1), 0, 256))
-    flags = [n_in, n_o, part.modal and not co[0].any(), _has_ledger(problem), forms.unknown, xs, ys, nf]
+    flags = [n_in, n_o, part.modal and not co[0].any(), has_ledger(problem), forms.unknown, xs, ys, nf]
     made: dict[str, Any] = {
         "flags": np.array(flags, np.int64),
         "par": np.array([1.0, Z_EXACT[s] * 1.0001, np.inf, fastest, 0.0]),

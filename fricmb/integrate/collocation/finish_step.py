@@ -24,8 +24,9 @@ from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.exact_structure import CAP, FASTEST_BLOCK, INPUTS, LENGTH, SAFETY, STIFF_AT
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, update_port_scales, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
+from fricmb.integrate.step.step_error import state_error
 
 #: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
 SMOOTH = 0.03
@@ -47,23 +48,6 @@ def input_error(one: OneStep) -> float:
             before += ex.nd[VECTORS, TAIL_BEFORE, x] * ex.P[c, x]
             largest = max(largest, abs(ex.P[c, x]))
         worst = max(worst, ex.weight[c] * (max(abs(last), 0.2 * abs(before)) - 1e-15 * largest))
-    return worst
-
-
-@kernel
-def state_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
-    """Largest scaled tail of the laws' internal states."""
-    tab = one.tab
-    worst = 0.0
-    if y.z.shape[0] > 0:
-        state_noise(packed, one, acc, h)
-    for a in range(y.z.shape[0]):
-        tail = tab.top[0, 0] * y.z[a]
-        size = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
-        for j in range(tab.c.shape[0]):
-            tail += tab.top[0, j + 1] * one.w.z[j, a]
-            size = max(size, abs(one.w.z[j, a]))
-        worst = max(worst, abs(tail) / size)
     return worst
 
 
@@ -194,11 +178,7 @@ def scales_of_step(packed: Packed, y: State, end: State, one: OneStep, acc: Accu
     for i in range(y.q.shape[0]):
         acc.q[i] = max(acc.q[i], abs(y.q[i]), abs(end.q[i]))
         acc.v[i] = max(acc.v[i], abs(y.v[i]), abs(end.v[i]))
-    for j in range(one.tab.c.shape[0]):
-        for a in range(y.z.shape[0]):
-            acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
-        for k in range(y.mode.shape[0]):
-            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, one.w.g[j]))
+    update_port_scales(packed, one, acc)
 
 
 @block

@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate.collocation.layout import MONOMIAL, NODE, VECTORS
 from fricmb.integrate.collocation.motion_in_step import gains_at_nodes, input_series
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats, Floats2
@@ -34,8 +34,7 @@ def powers_on_motion(
         for i in range(n):
             ex.node[0, j, i] += y.q[i]
             ex.node[1, j, i] += y.v[i]
-        set_time(packed.signals, s, y.t[0] + tau, n)
-        set_state(s, ex.node[0, j], ex.node[1, j])
+        set_instant(packed.signals, s, y.t[0] + tau, ex.node[0, j], ex.node[1, j])
         if whole:
             powers(packed, s, w.F[j], w.N[j], w.g[j], power[j])
             continue

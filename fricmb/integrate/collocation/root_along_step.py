@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.collocation.block_motion import two_sum
-from fricmb.integrate.collocation.finish_step import input_error, state_error, stiff_error
+from fricmb.integrate.collocation.finish_step import input_error, stiff_error
 from fricmb.integrate.collocation.layout import MONOMIAL
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.block import block
@@ -27,6 +27,7 @@ from fricmb.integrate.step.crossing import evaluate, polynomial
 from fricmb.integrate.step.event_functions import margin
 from fricmb.integrate.step.exact_structure import SAFETY
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, finish
+from fricmb.integrate.step.step_error import state_error
 
 #: Growth of a polynomial's error behind the last node, by the part of the step: s (s + 1) / 2 for its last coefficient.
 GROWTH = 36.0

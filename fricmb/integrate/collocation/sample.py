@@ -9,7 +9,7 @@ from fricmb.integrate.collocation.layout import MONOMIAL, WITH_START
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.hermite_output import point_against_forces, point_along_slip, state_of_row, write_sample
@@ -28,8 +28,7 @@ def open_step(
     for i in range(n):
         y.q[i] = left[1 + i]
         y.v[i] = left[1 + n + i]
-    set_time(packed.signals, s, left[0], n)
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, left[0], y.q, y.v)
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
     for c in range(P.shape[0]):

@@ -13,7 +13,7 @@ from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
 from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, normal_force, set_instant
 from fricmb.integrate.model.friction_cone import cone_margin
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
@@ -69,8 +69,7 @@ def solve_with(
     beta_h = formula(y, one, last, h, same)
     again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
     if again:
-        set_time(packed.signals, s, y.t[0], y.q.shape[0])
-        set_state(s, y.q, y.v)
+        set_instant(packed.signals, s, y.t[0], y.q, y.v)
     if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
         return False
     st.t[0] = y.t[0] + h
@@ -88,8 +87,7 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
     """Change the modes that the solution just found contradicts; True where there are any."""
     ports, w = packed.ports, one.w
     changed = False
-    set_time(packed.signals, s, one.st.t[0], y.q.shape[0])
-    set_state(s, one.st.Q[0], one.st.V[0])
+    set_instant(packed.signals, s, one.st.t[0], one.st.Q[0], one.st.V[0])
     for k in range(mode.shape[0]):
         if ports.var[k] >= 0:
             N = normal_force(ports, packed.normals, k, s)

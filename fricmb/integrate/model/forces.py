@@ -60,9 +60,10 @@ def set_time(signals: Table, s: Scratch, t: float, n: int) -> None:
 
 
 @kernel
-def set_state(s: Scratch, q: Floats, v: Floats) -> None:
-    """Put the state into X."""
+def set_instant(signals: Table, s: Scratch, t: float, q: Floats, v: Floats) -> None:
+    """Put time, prescribed signals and state into X."""
     n = q.shape[0]
+    set_time(signals, s, t, n)
     for i in range(n):
         s.X[1 + i] = q[i]
         s.X[1 + n + i] = v[i]

@@ -54,6 +54,23 @@ def grain(packed: Packed, y: State, w: PortState, acc: Accuracy, h: float, i: in
     return float(acc.grain[i])
 
 
+@kernel
+def state_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Largest scaled tail of the laws' internal states."""
+    tab = one.tab
+    worst = 0.0
+    if y.z.shape[0] > 0:
+        state_noise(packed, one, acc, h)
+    for a in range(y.z.shape[0]):
+        tail = tab.top[0, 0] * y.z[a]
+        size = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
+        for j in range(tab.c.shape[0]):
+            tail += tab.top[0, j + 1] * one.w.z[j, a]
+            size = max(size, abs(one.w.z[j, a]))
+        worst = max(worst, abs(tail) / size)
+    return worst
+
+
 @block
 def step_error(
     packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
@@ -78,15 +95,7 @@ def step_error(
         # a position that has only begun to move is measured by what its velocity brings within the step
         size_q = max(size_q, acc.floor_q[i], 1e-10 * top_q, h * size_v)
         worst = max(worst, abs(e_v) / size_v, abs(e_q) / size_q)
-    state_noise(packed, one, acc, h)
-    for a in range(y.z.shape[0]):
-        e_z = tab.top[0, 0] * y.z[a]
-        size_z = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
-        for j in range(n_s):
-            e_z += tab.top[0, j + 1] * one.w.z[j, a]
-            size_z = max(size_z, abs(one.w.z[j, a]))
-        worst = max(worst, abs(e_z) / size_z)
-    worst = max(worst, law_defect(packed, s, y, one, acc, h))
+    worst = max(worst, state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
     worst = max(worst / acc.rtol[0], too_long(growth(packed, s, y, one, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     return float(max(worst, unseen_force(packed, y, one, acc, h)))

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, has_ledger, powers
+from fricmb.integrate.collocation.exact_room import has_ledger
+from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, powers
 from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
@@ -138,7 +139,7 @@ class SingleRun(Trajectory):
     def _energies(self, row: Ints, tau: Floats) -> Floats:
         """Damping loss and input (2, n_t) since the start of the run."""
         start, rate = linear_part(self.problem)
-        if not has_ledger(self.problem, rate):
+        if not has_ledger(self.problem):
             return np.zeros((2, len(row)))
         p = model(self.problem)
         fastest = float(np.sqrt(np.abs(p.blk[:, 0])).max(initial=0.0)) + float(np.abs(p.blk[:, 1]).max(initial=0.0))
