@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.collocation.blocks_in_step import load_at_start, start_blocks
-from fricmb.integrate.collocation.layout import MONOMIAL, WITH_START
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.accelerations import complete
@@ -40,12 +39,12 @@ def open_step(
 @kernel
 def through_nodes(ex: Exact, start: float, row: Floats, at: int, width: int, theta: float) -> float:
     """Polynomial through ``start`` and the node values ``row[at + x width]``."""
-    n_s = ex.nd.shape[1] - 1
+    n_s = ex.tab.c.shape[0]
     value = 0.0
     for r in range(n_s, -1, -1):
-        c = ex.nd[WITH_START, r, 0] * start
+        c = ex.tab.basis[r, 0] * start
         for x in range(n_s):
-            c += ex.nd[WITH_START, r, x + 1] * row[at + x * width]
+            c += ex.tab.basis[r, x + 1] * row[at + x * width]
         value = value * theta + c
     return value
 
@@ -53,12 +52,12 @@ def through_nodes(ex: Exact, start: float, row: Floats, at: int, width: int, the
 @kernel
 def integral_of_nodes(ex: Exact, row: Floats, at: int, width: int, theta: float) -> float:
     """Integral from 0 to theta of the polynomial through the node values."""
-    n_s = ex.nd.shape[1] - 1
+    n_s = ex.tab.c.shape[0]
     value = 0.0
     for r in range(n_s - 1, -1, -1):
         c = 0.0
         for x in range(n_s):
-            c += ex.nd[MONOMIAL, r, x] * row[at + x * width]
+            c += ex.monomial[r, x] * row[at + x * width]
         value = value * theta + c / (r + 1.0)
     return value * theta
 
@@ -88,7 +87,7 @@ def inside_step(
         for r in range(P.shape[1] - 1, -1, -1):
             c = 0.0
             for x in range(P.shape[1]):
-                c += ex.nd[MONOMIAL, r, x] * P[a, x]
+                c += ex.monomial[r, x] * P[a, x]
             y.F[a] = y.F[a] * theta + c
 
 
@@ -105,9 +104,9 @@ def sample_exact(
     width = nc + 2
     at = 1 + 3 * n + 2 * nz + m + nc + 2 * width
     at_F = 1 + 3 * n + 2 * nz
-    n_s = ex.nd.shape[1] - 1
+    n_s = ex.tab.c.shape[0]
     P = np.zeros((ex.P.shape[0], n_s))
-    series = np.zeros((2 * ex.blk.shape[2], n_s + 1))
+    series = np.zeros((2 * ex.w2.shape[1], n_s + 1))
     gain = np.zeros((2, n_s + 1))
     dq, dv = np.zeros(n), np.zeros(n)
     opened = -1

@@ -19,7 +19,8 @@ from fricmb.integrate.constrained.slip_rows import lightness
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats2, Ints
-from fricmb.integrate.step.law_defect import ask_between, between, force_off, largest_in_step, rate_off
+from fricmb.integrate.step.law_defect import ask_between, force_off, rate_off
+from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 
 @kernel
@@ -67,7 +68,7 @@ def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float
         for j in range(tab.c.shape[0]):
             gap = h * (tab.c[j] - (tab.c[j - 1] if j > 0 else 0.0))
             line = tab.mid[j]
-            load = between(line, y.N[p], st.N, p)
+            load = by_line(line, y.N[p], st.N, p)
             load = load if port.joint[p] >= 0 else max(load, 0.0)
             ask_between(port, port.laws, k.s, p, line, y.g, st.g, load, y.z, st.Z)
             for a in range(d if y.mode[p] != OPEN else 0):

@@ -20,6 +20,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.stage_predictor import lagrange
+from fricmb.integrate.step.tableau import by_line
 
 
 class Control(NamedTuple):
@@ -171,10 +172,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
     for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.Z)):
         for a in range(start.shape[0]):
             scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), c.noise_z[a], 1e-290)
-            high, low = tab.top[0, 0] * start[a], tab.top[1, 0] * start[a]
-            for j in range(s):
-                high += tab.top[0, j + 1] * part[j, a]
-                low += tab.top[1, j + 1] * part[j, a]
+            high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
             last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
     ratio = min(1.0, last / before) if before > 0.0 else 1.0
     return float(last * ratio / c.rtol[0])

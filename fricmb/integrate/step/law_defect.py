@@ -15,29 +15,12 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
 from fricmb.integrate.run.room_protocols import LawsWithStates
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, widest
+from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 #: Relative round-off of forces and rates beside their polynomials.
 ROUND_OFF = 1e-14
 #: Velocities below so many floors of theirs are creep.
 CREEP = 1e3
-
-
-@kernel
-def between(line: Floats, start: float, values: Floats2, column: int) -> float:
-    """Value of the polynomial through ``start`` and a column of stage values, by a line of the tableau's ``mid``."""
-    value = line[0] * start
-    for i in range(values.shape[0]):
-        value += line[i + 1] * values[i, column]
-    return float(value)
-
-
-@kernel
-def largest_in_step(start: float, values: Floats2, column: int) -> float:
-    """The largest magnitude of a quantity at the start of a step and at its nodes."""
-    size = abs(start)
-    for i in range(values.shape[0]):
-        size = max(size, abs(values[i, column]))
-    return float(size)
 
 
 @kernel
@@ -52,10 +35,10 @@ def ask_between(
     first, states = ports.row[k], ports.z_start[k]
     d = ports.row[k + 1] - first
     for a in range(d):
-        s.x[a] = between(line, g0[first + a], g, first + a)
+        s.x[a] = by_line(line, g0[first + a], g, first + a)
     s.x[d] = N
     for a in range(ports.z_start[k + 1] - states):
-        s.x[d + 1 + a] = between(line, z0[states + a], z, states + a)
+        s.x[d + 1 + a] = by_line(line, z0[states + a], z, states + a)
     call(laws.address[k], s.x, 0, laws.p, laws.p_start[k], s.out, 0)
 
 
@@ -70,7 +53,7 @@ def force_off(
     row, is ``stiff`` makes forces of it.  What it would take back at once does not count.
     """
     d, nz, row = ports.row[k + 1] - ports.row[k], ports.z_start[k + 1] - ports.z_start[k], ports.row[k] + a
-    off = abs(s.out[a] - between(line, F0[row], F, row))
+    off = abs(s.out[a] - by_line(line, F0[row], F, row))
     stiff = 0.0
     for b in range(d):
         stiff += abs(s.out[d + nz + a * (d + 1 + nz) + b])
@@ -89,7 +72,7 @@ def rate_off(
     at = d + nz + (d + a) * (d + 1 + nz)
     for b in range(d + 1 + nz):
         size = max(size, abs(s.out[at + b] * s.x[b]))
-    off = abs(s.out[d + a] - between(line, rates0[state], rates, state))
+    off = abs(s.out[d + a] - by_line(line, rates0[state], rates, state))
     return float(gap * max(off - ROUND_OFF * size, 0.0) / (1.0 + gap * abs(s.out[at + d + 1 + a])))
 
 
@@ -121,7 +104,7 @@ def law_defect(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy
         for j in range(c.shape[0]):
             gap = h * (c[j] - (c[j - 1] if j > 0 else 0.0))
             line = one.tab.mid[j]
-            load = max(between(line, y.N[k], w.N, k), 0.0) if y.mode[k] != OPEN else 0.0
+            load = max(by_line(line, y.N[k], w.N, k), 0.0) if y.mode[k] != OPEN else 0.0
             ask_between(ports, packed.laws, s, k, line, y.g, w.g, load, y.z, w.z)
             for a in range(ports.row[k + 1] - ports.row[k]):
                 D = ports.D[ports.row[k] + a, ports.row[k] + a]

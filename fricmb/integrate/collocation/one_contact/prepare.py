@@ -14,7 +14,7 @@ from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import blocks
 from fricmb.integrate.compile.exchange import with_arrays
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import annotations_of, array_type, room
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
@@ -42,20 +42,8 @@ def linear_part(problem: Problem) -> tuple[Floats, Floats]:
     return found if found is not None else (np.zeros(problem.n_u), np.zeros(problem.n_u))
 
 
-class Model(NamedTuple):
-    """Constants of a one-contact problem as kernels take them (see :mod:`~fricmb.integrate.collocation.layout`)."""
-
-    blk: Floats
-    mat: Floats
-    co: Floats
-    ci: Floats
-    linked: Floats
-    row: Floats
-    dof: Floats
-    vec: Floats
-    con: Floats
-    lim: Floats
-    flags: Ints
+#: Constants of a one-contact problem under their names in :class:`Run`.
+Model = dict[str, Any]
 
 
 class Rows(NamedTuple):
@@ -87,30 +75,39 @@ def _model(problem: Problem) -> Model:
     Ku = linear.B - linear.Kx[:n, n:]
     Minv, MW, D, Dinv, hold = _port(M, W)
     w = contacts.w + contacts.Wu @ rate
-    blk, mat = np.zeros((2, 2, n)), np.zeros((2, 8, n, n))
-    row = np.zeros((4, m, n))
+    by_mass = ("start_0", "force_0"), ("start_1", "force_1")
+    parts: Model = {name: np.zeros((2, n, n)) for name in ("q_u", "q_v", "v_u", "v_v", *by_mass[0], *by_mass[1])}
+    parts |= {"w2": np.zeros((2, n)), "damp": np.zeros((2, n))}
     for z, part in enumerate((slip, stick)):
         b = len(part.w2)
-        blk[z, :, :b] = part.w2, part.d
-        mat[z, :4, :, :b] = part.q_u, part.q_v, part.v_u, part.v_v
-        mat[z, 4:, :b] = part.force_0, part.force_1, part.force_0 @ M, part.force_1 @ M
-        if z:
-            row[0, :, :b], row[1, :, :b] = hold @ (K @ part.q_u + C @ part.v_u), hold @ (K @ part.q_v + C @ part.v_v)
-    row[2:] = W.T, MW.T
-    co = np.stack([W.T @ slip.v_u, W.T @ slip.v_v])
-    ci = np.stack([(slip.force_0 @ W).T, (slip.force_1 @ W).T])
-    linked = (np.abs(co).sum(axis=0) @ np.abs(ci).sum(axis=0).T > 0).astype(float)
-    coupled = bool(m == 2 and (linked[0, 1] or linked[1, 0]))
-    f0 = linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate
+        parts["w2"][z, :b], parts["damp"][z, :b] = part.w2, part.d
+        for name in ("q_u", "q_v", "v_u", "v_v"):
+            parts[name][z, :, :b] = getattr(part, name)
+        for start_of, name in by_mass:
+            parts[name][z, :b], parts[start_of][z, :b] = getattr(part, name), getattr(part, name) @ M
+    b = len(stick.w2)
+    hold_u, hold_v = np.zeros((m, n)), np.zeros((m, n))
+    hold_u[:, :b], hold_v[:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u), hold @ (K @ stick.q_v + C @ stick.v_v)
+    c0, c1, b0, b1 = W.T @ slip.v_u, W.T @ slip.v_v, (slip.force_0 @ W).T, (slip.force_1 @ W).T
+    linked = ((np.abs(c0) + np.abs(c1)) @ (np.abs(b0) + np.abs(b1)).T > 0).astype(float)
     N = contacts.N[0]
-    fastest = np.sqrt(np.abs(slip.w2)).max(initial=0.0)
-    arrays = [
-        blk, mat, co, ci, linked, row, np.stack([K, C, Minv]), np.stack([f0, Ku @ rate, stick.stuck_motion @ w]),
-        np.stack([D, Dinv]), np.array([stick_limits(contacts)[0], contacts.mu_0[0] * N, fastest, *w]),
-    ]  # fmt: skip
-    flags = np.array([m, len(stick.w2), slip.modal, stick.modal, coupled], dtype=np.int64)
-    solid: list[Any] = [np.ascontiguousarray(x, dtype=float) for x in arrays]
-    return Model._make([*solid, flags])
+    numbers = {
+        "mu_s_N": stick_limits(contacts)[0], "mu_0_N": contacts.mu_0[0] * N,
+        "fastest": np.sqrt(np.abs(slip.w2)).max(initial=0.0),
+    }  # fmt: skip
+    floats = parts | {name: np.array([value]) for name, value in numbers.items()} | {
+        "c0": c0, "c1": c1, "b0": b0, "b1": b1, "linked": linked, "hold_u": hold_u, "hold_v": hold_v, "wt": W.T,
+        "mw": MW.T, "D": D, "D_inv": Dinv, "belt": w, "stiff": K, "visc": C, "minv": Minv,
+        "load_0": linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate, "load_1": Ku @ rate,
+        "stuck_v": stick.stuck_motion @ w,
+    }  # fmt: skip
+    whole = {
+        "modal": [slip.modal, stick.modal], "stuck_blocks": [b],
+        "coupled": [m == 2 and bool(linked[0, 1] or linked[1, 0])],
+    }  # fmt: skip
+    return {name: np.ascontiguousarray(x, dtype=float) for name, x in floats.items()} | {
+        name: np.array(x, dtype=np.int64) for name, x in whole.items()
+    }
 
 
 def model(problem: Problem) -> Model:
@@ -120,7 +117,7 @@ def model(problem: Problem) -> Model:
 
 def fastest_block(problem: Problem) -> float:
     """Largest frequency or decay rate of a one-contact problem in slip."""
-    w2, d = model(problem).blk[0]
+    w2, d = model(problem)["w2"][0], model(problem)["damp"][0]
     return float(max(np.sqrt(np.abs(w2)).max(initial=0.0), np.abs(d).max(initial=0.0)))
 
 
@@ -142,7 +139,7 @@ MANY_STEPS, FAR_LONGER = 2000.0, 10.0
 
 def is_stiff(problem: Problem, s: int, span: float) -> bool:
     """Whether blocks that are damped out would force short steps on the kernels for one contact."""
-    w2, d = model(problem).blk[0]
+    w2, d = model(problem)["w2"][0], model(problem)["damp"][0]
     rates = np.maximum(np.sqrt(np.abs(w2)), np.abs(d))
     ringing = rates[d <= 2.0 * CALM * np.sqrt(np.abs(w2))].max(initial=0.0)
     fastest = rates.max(initial=0.0)
@@ -167,17 +164,17 @@ def rows(n: int, m: int, s: int, size: int) -> Rows:
 @lru_cache(maxsize=64)
 def _nothing(s: int) -> Run:
     """Empty arrays, and the tables for s nodes."""
-    kinds = dict.fromkeys(("flags", "slots", "terms", "si", "kinds", "places"), np.int64)
-    axes = dict.fromkeys(("mat", "tb", "tk", "answers"), 4)
-    axes |= dict.fromkeys(("blk", "co", "ci", "row", "dof", "con", "nx", "wk"), 3)
-    axes |= dict.fromkeys(("lim", "flags", "ladder", "slots", "terms", "sx", "si", "places"), 1)
-    empty = {name: np.zeros((0,) * axes.get(name, 2), kinds.get(name, float)) for name in Run._fields}
+    kinds = {"Ints": np.int64, "Ints2": np.int64}
+    empty: dict[str, Any] = {
+        name: np.zeros((0,) * (2 if note == "Ints2" else array_type(note).ndim), kinds.get(note, float))
+        for name, note in annotations_of(Run).items() if note != "Tableau"
+    }  # fmt: skip
     return room(Run(**(empty | nodes(s)._asdict())))
 
 
 def run_of(problem: Problem, s: int) -> Run:
     """The constants of a one-contact problem with s nodes, to look at rows with: there is nothing to work in."""
-    return once_per_problem(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)._asdict()))
+    return once_per_problem(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)))
 
 
 def with_rows(run: Run, new: Rows) -> Run:

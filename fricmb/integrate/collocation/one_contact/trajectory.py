@@ -120,9 +120,9 @@ class SingleRun(Trajectory):
         problem = self.problem
         p = model(problem)
         n, m, k = problem.n, problem.m, len(row)
-        stiff, visc, _ = p.dof
-        inverse = p.con[1] @ p.row[3]
-        hold, load = np.stack([inverse @ stiff, inverse @ visc]), p.vec[:2] @ inverse.T
+        inverse = p["D_inv"] @ p["mw"]
+        hold = np.stack([inverse @ p["stiff"], inverse @ p["visc"]])
+        load = np.stack([p["load_0"], p["load_1"]]) @ inverse.T
         q, v, F, g = np.empty((n, k)), np.empty((n, k)), np.empty((m, k)), np.empty((m, k))
         mode, loss = np.empty(k, dtype=np.int64), np.empty(k if with_loss else 0)
         sample_rows(
@@ -142,7 +142,7 @@ class SingleRun(Trajectory):
         if not has_ledger(self.problem):
             return np.zeros((2, len(row)))
         p = model(self.problem)
-        fastest = float(np.sqrt(np.abs(p.blk[:, 0])).max(initial=0.0)) + float(np.abs(p.blk[:, 1]).max(initial=0.0))
+        fastest = float(np.sqrt(np.abs(p["w2"])).max(initial=0.0)) + float(np.abs(p["damp"]).max(initial=0.0))
         since = partial(from_row_starts, self._power_states, partial(powers, self.problem, start, rate))
         tau = np.maximum(tau, 0.0)
         if self._totals is not None:
