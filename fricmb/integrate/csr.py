@@ -112,14 +112,6 @@ class Csr:
         result[filled] = np.add.reduceat(value * x[self.index], self.start[filled], axis=0)
         return result
 
-    def column_sums(self) -> _Floats:
-        """Sum of the magnitudes in each column."""
-        return np.bincount(self.index, np.abs(self.value), self.shape[1]).astype(float)
-
-    def row_sums(self) -> _Floats:
-        """Sum of the magnitudes in each row."""
-        return np.bincount(self.rows, np.abs(self.value), self.shape[0]).astype(float)
-
 
 def on_one_pattern(matrices: Sequence[Csr], *also: tuple[_Ints, _Ints]) -> tuple[_Ints, _Ints, list[_Floats]]:
     """Matrices of one shape over their joint pattern, places ``also`` in it: start, index, values of each."""

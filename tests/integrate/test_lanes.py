@@ -7,12 +7,11 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from fricmb.integrate.collocation.layout import DIRECTION, FREE, RELATIVE
 from fricmb.integrate.collocation.one_contact.slip_directions import eliminate, slip_directions
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, padded, roots, set_lanes
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
+from fricmb.integrate.problem import Floats, Floats2, Floats4, Ints
 
 
 class Contact(NamedTuple):
@@ -20,19 +19,21 @@ class Contact(NamedTuple):
 
     basis: Floats2
     answers: Floats4
-    nx: Floats3
+    free: Floats2
+    direction: Floats2
+    relative: Floats2
     jacobian: Floats2
     unit: Floats2
-    lim: Floats
-    flags: Ints
+    mu_0_N: Floats
+    coupled: Ints
 
 
 def contact(s, coupled=1):
     wide = padded(s)
-    flags = np.array([2, 0, 0, 0, coupled], np.int64)
+    free, direction, relative = (np.zeros((2, wide)) for _ in range(3))
     return Contact(
-        np.zeros((s, wide)), np.zeros((1, 4, s, wide)), np.zeros((3, 2, wide)), np.zeros((s + 2, wide)),
-        np.eye(s, wide), np.array([0.0, 0.7]), flags,
+        np.zeros((s, wide)), np.zeros((1, 4, s, wide)), free, direction, relative, np.zeros((s + 2, wide)),
+        np.eye(s, wide), np.array([0.7]), np.array([coupled]),
     )  # fmt: skip
 
 
@@ -99,12 +100,12 @@ def test_directions_are_along_slip(s, coupled):
         for b in range(2):
             run.answers[0, 2 * a + b, :, :s] = T[a, b].T
     angle = np.linspace(0.3, 1.2, s)
-    run.nx[FREE, :, :s] = 5.0 * np.array([np.cos(angle), np.sin(angle)]) + 0.1 * rng.normal(size=(2, s))
-    run.nx[DIRECTION, 0, :s] = 1.0
+    run.free[:, :s] = 5.0 * np.array([np.cos(angle), np.sin(angle)]) + 0.1 * rng.normal(size=(2, s))
+    run.direction[0, :s] = 1.0
     assert directions(room(run), 1e-24) > 0
-    n, g = run.nx[DIRECTION, :, :s], run.nx[RELATIVE, :, :s]
+    n, g = run.direction[:, :s], run.relative[:, :s]
     np.testing.assert_allclose(np.hypot(*n), 1.0, rtol=1e-14)
-    np.testing.assert_allclose(g, run.nx[FREE, :, :s] - 0.7 * np.einsum("abil,bl->ai", T, n), atol=1e-13)
+    np.testing.assert_allclose(g, run.free[:, :s] - 0.7 * np.einsum("abil,bl->ai", T, n), atol=1e-13)
     np.testing.assert_allclose(n[0] * g[1] - n[1] * g[0], 0.0, atol=1e-11)
     assert (n * g).sum(axis=0).min() > 0.0
-    assert not run.nx[:, :, s:].any()
+    assert not any(x[:, s:].any() for x in (run.free, run.direction, run.relative))

@@ -13,17 +13,15 @@ from fricmb.integrate.collocation.blocks_in_step import (
     start_blocks,
 )
 from fricmb.integrate.collocation.held_rows import give_held_forces, hold_rows, pattern_of, place_of
-from fricmb.integrate.collocation.layout import MONOMIAL, NODE, TABLEAU, VECTORS
 from fricmb.integrate.collocation.nonlinear_ports import exact_ports
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.forces import Scratch, set_state, set_time
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.forces import Scratch, set_instant
+from fricmb.integrate.model.law_values import point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Ints
 from fricmb.integrate.step.contact_newton import solve_ports
-from fricmb.integrate.step.exact_structure import INPUTS, LENGTH, OUTPUTS, UNKNOWN
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, widest
 from fricmb.integrate.step.stage_predictor import contacts_from_start
 
@@ -51,7 +49,7 @@ def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
     for i in range(y.q.shape[0]):
         scale = max(acc.v[i], abs(y.v[i]), acc.floor_v[i])
         one.scale[i] = scale if scale > 2.0 * acc.floor_v[i] else max(scale, h * held_at_rest(packed, y, one, i))
-    for c in range(ex.flags[INPUTS]):
+    for c in range(ex.b1.shape[0]):
         worst = 0.0
         for i in range(y.q.shape[0]):
             size = abs(ex.MB[c, i])
@@ -69,9 +67,9 @@ def guess_ports(packed: Packed, y: State, one: OneStep, h: float) -> None:
     for a in range(y.z.shape[0]):
         w.psi_z[a] = y.z[a]
     for i in range(n_s):
-        st.t[i] = y.t[0] + ex.nd[VECTORS, NODE, i] * h
+        st.t[i] = y.t[0] + ex.tab.c[i] * h
         for j in range(n_s):
-            st.hA[i, j] = h * ex.nd[TABLEAU, i, j]
+            st.hA[i, j] = h * ex.tab.A[i, j]
         contacts_from_start(packed, y, w, i)
         for k in range(y.mode.shape[0]):
             one.N[i, k] = y.N[k]
@@ -93,13 +91,11 @@ def guess_forces(packed: Packed, y: State, one: OneStep, ratio: float) -> None:
             for r in range(n_s - 1, -1, -1):
                 c = 0.0
                 for x in range(n_s):
-                    c += ex.nd[MONOMIAL, r, x] * ex.P[a, x]
+                    c += ex.monomial[r, x] * ex.P[a, x]
                 for i in range(n_s):
-                    w.F[i, a] = w.F[i, a] * (ratio * ex.nd[VECTORS, NODE, i]) + c
+                    w.F[i, a] = w.F[i, a] * (ratio * ex.tab.c[i]) + c
         for i in range(n_s if turns else 0):
-            size = magnitude(packed.ports.row, k, w.F[i])
-            for a in range(row0, end):
-                w.n[i, a] = -w.F[i, a] / size if size > 0.0 else y.n[a]
+            point_along(packed.ports.row, k, w.F[i], -1.0, w.n[i])
 
 
 @kernel
@@ -150,7 +146,7 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
     """The equations of contacts alone, on a structure that answers linearly."""
     w, ex = one.w, one.exact
     m = y.g.shape[0]
-    n_in = ex.flags[INPUTS]
+    n_in = ex.b1.shape[0]
     n_s = w.F.shape[0]
     for a in range(m):
         for i in range(n_s):
@@ -178,21 +174,20 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
 def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
     """Solve a step h from y on an exact structure (stands in for :func:`attempt`).  False without convergence."""
     ex = one.exact
-    set_time(packed.signals, s, y.t[0], y.q.shape[0])
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, y.t[0], y.q, y.v)
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
     slot = slot_of(one, h, address)
-    ex.par[LENGTH] = h
+    ex.length[0] = h
     outputs_at_start(packed, s, y, one, h)
-    free_outputs(ex, slot, h, ex.flags[UNKNOWN])
+    free_outputs(ex, slot, h, ex.unknown[0])
     guess_ports(packed, y, one, h)
     if one.last[0] == y.t[0] and h <= one.last[1]:
         guess_forces(packed, y, one, h / one.last[1])
     weigh_inputs(packed, y, one, acc, h)
     newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
-    if ex.flags[OUTPUTS] > y.g.shape[0]:
+    if ex.c1.shape[0] > y.g.shape[0]:
         solved = exact_ports(packed, s, y, one, acc, slot, address)
     else:
         solved = solve_linear(packed, s, y, one, slot, h, address)

@@ -2,27 +2,6 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.collocation.layout import (
-    B0,
-    B1,
-    C0,
-    C1,
-    DAMP,
-    IIS,
-    IS,
-    NODE,
-    Q1,
-    Q2,
-    Q3,
-    Q_U,
-    Q_V,
-    TABLEAU,
-    V_U,
-    V_V,
-    VECTORS,
-    W2,
-    S,
-)
 from fricmb.integrate.collocation.moment_weights import free_weights, port_weights
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
@@ -30,22 +9,17 @@ from fricmb.integrate.model.forces import Scratch, belt_velocity, gather, set_ti
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import STICK, Floats, Ints
-from fricmb.integrate.step.exact_structure import INPUTS, IS_MODAL, OUTPUTS, RUNGS, STIFF_AT, UNKNOWN, Exact, rung_below
+from fricmb.integrate.step.exact_structure import RUNGS, Exact, rung_below
 from fricmb.integrate.step.radau_step import OneStep
-
-#: Places in ``Exact.bs``: u, v + e0, acceleration, its rate, e0 and e1 of the constant load; gains of u and v.
-U0, V0, A0, K0, LOAD_E0, LOAD_E1, DU, DV = range(8)
-#: Places in ``Exact.start``: blocks u and v by forces, by velocities.
-BY_FORCE_0, BY_FORCE_1, BY_VELOCITY_0, BY_VELOCITY_1 = range(4)
 
 
 @block
 def exact_tables(one: OneStep, h: float, slot: int, address: Ints) -> None:
     """Fill a slot of the tables for the step h."""
     ex = one.exact
-    modal = ex.flags[IS_MODAL] == 1
-    free_weights(ex, 0, modal, h, ex.par[STIFF_AT], slot)
-    port_weights(ex, 0, modal, h, slot)
+    modal = ex.modal[0] == 1
+    free_weights(ex, modal, h, ex.stiff_at[0], slot)
+    port_weights(ex, modal, h, slot)
 
 
 @kernel
@@ -59,7 +33,7 @@ def slot_of(one: OneStep, h: float, address: Ints) -> int:
         return 0
     slot = ex.slots[rung]
     if slot < 0:
-        count = ex.tb.shape[0] - 1
+        count = ex.S.shape[0] - 1
         slot = 1 + ex.slots[RUNGS] % count
         ex.slots[RUNGS] += 1
         if ex.slots[RUNGS] > count:
@@ -91,25 +65,22 @@ def load_at_start(packed: Packed, s: Scratch, q: Floats, f: Floats) -> None:
 @kernel
 def start_blocks(ex: Exact, v: Floats) -> None:
     """Block states at the start of a step under the load in ``f``, displacements counted from there."""
-    bs = ex.bs
     n = v.shape[0]
-    modal = ex.flags[IS_MODAL] == 1
-    for j in range(ex.blk.shape[2]):
+    modal = ex.modal[0] == 1
+    for j in range(ex.w2.shape[1]):
         u, w, e0, e1 = 0.0, 0.0, 0.0, 0.0
         for i in range(n):
-            w += ex.start[BY_VELOCITY_1, j, i] * v[i]
-            e1 += ex.start[BY_FORCE_1, j, i] * ex.f[i]
+            w += ex.start_1[j, i] * v[i]
+            e1 += ex.force_1[j, i] * ex.f[i]
         if not modal:
             for i in range(n):
-                u += ex.start[BY_VELOCITY_0, j, i] * v[i]
-                e0 += ex.start[BY_FORCE_0, j, i] * ex.f[i]
-        w2 = ex.blk[0, W2, j]
-        d = ex.blk[0, DAMP, j]
-        bs[U0, j] = u
-        bs[V0, j] = w + e0
-        bs[LOAD_E0, j] = e0
-        bs[A0, j] = e1 + d * e0 - w2 * u - d * (w + e0)
-        bs[K0, j] = -w2 * (w + e0)
+                u += ex.start_0[j, i] * v[i]
+                e0 += ex.force_0[j, i] * ex.f[i]
+        w2 = ex.w2[0, j]
+        d = ex.damp[0, j]
+        ex.v0[j] = w + e0
+        ex.a0[j] = e1 + d * e0 - w2 * u - d * (w + e0)
+        ex.k0[j] = -w2 * (w + e0)
 
 
 @kernel
@@ -119,7 +90,7 @@ def outputs_at_start(packed: Packed, s: Scratch, y: State, one: OneStep, h: floa
     n = y.q.shape[0]
     m = y.g.shape[0]
     nu = s.ddu.shape[0]
-    base = ex.flags[INPUTS] - 2 * nu
+    base = ex.b1.shape[0] - 2 * nu
     ne = packed.elements.address.shape[0]
     for k in range(y.mode.shape[0]):
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
@@ -133,7 +104,7 @@ def outputs_at_start(packed: Packed, s: Scratch, y: State, one: OneStep, h: floa
     varies = ex.xf.shape[0] > m
     for i in range(ex.xf.shape[1]):
         if nu > 0 or varies:
-            set_time(packed.signals, s, y.t[0] + ex.nd[VECTORS, NODE, i] * h, n)
+            set_time(packed.signals, s, y.t[0] + ex.tab.c[i] * h, n)
         for a in range(m):
             ex.xf[a, i] -= belt_velocity(packed.ports, s, n, a)
         for c in range(2 * nu):
@@ -156,25 +127,23 @@ def outputs_at_start(packed: Packed, s: Scratch, y: State, one: OneStep, h: floa
 @kernel
 def free_outputs(ex: Exact, slot: int, h: float, first: int) -> None:
     """Add to ``xf`` the free motion of the blocks, and the answer to inputs from ``first`` on."""
-    bs = ex.bs
-    tb = ex.tb
     tk = ex.tk
     n_s = ex.xf.shape[1]
-    n_in = ex.flags[INPUTS]
-    modal = ex.flags[IS_MODAL] == 1
-    for o in range(ex.flags[OUTPUTS]):
-        for j in range(ex.blk.shape[2]):
-            c1 = ex.co[C1, o, j]
+    n_in = ex.b1.shape[0]
+    modal = ex.modal[0] == 1
+    for o in range(ex.c1.shape[0]):
+        for j in range(ex.w2.shape[1]):
+            c1 = ex.c1[o, j]
             if c1 != 0.0:
-                y = c1 * bs[A0, j]
-                z = c1 * bs[K0, j]
+                y = c1 * ex.a0[j]
+                z = c1 * ex.k0[j]
                 for i in range(n_s):
-                    ex.xf[o, i] += y * tb[slot, S, j, i] + z * tb[slot, IS, j, i]
-            c0 = ex.co[C0, o, j]
+                    ex.xf[o, i] += y * ex.S[slot, j, i] + z * ex.IS[slot, j, i]
+            c0 = ex.c0[o, j]
             if not modal and c0 != 0.0:
                 for i in range(n_s):
-                    t = ex.nd[VECTORS, NODE, i] * h
-                    du = bs[V0, j] * t + bs[A0, j] * tb[slot, IS, j, i] + bs[K0, j] * tb[slot, IIS, j, i]
+                    t = ex.tab.c[i] * h
+                    du = ex.v0[j] * t + ex.a0[j] * ex.IS[slot, j, i] + ex.k0[j] * ex.IIS[slot, j, i]
                     ex.xf[o, i] += c0 * du
         for c in range(first, n_in):
             if ex.linked[o, c] != 0.0:
@@ -189,12 +158,12 @@ def free_outputs(ex: Exact, slot: int, h: float, first: int) -> None:
 def all_outputs(ex: Exact, slot: int) -> None:
     """Outputs at the nodes under the present inputs, into ``x``."""
     n_s = ex.xf.shape[1]
-    n_in = ex.flags[INPUTS]
+    n_in = ex.b1.shape[0]
     for o in range(ex.x.shape[0]):
         for i in range(n_s):
             value = ex.xf[o, i]
             for c in range(n_in):
-                if ex.linked[o, c] != 0.0 and c < ex.flags[UNKNOWN]:
+                if ex.linked[o, c] != 0.0 and c < ex.unknown[0]:
                     for x in range(n_s):
                         value += ex.tk[slot, n_in * o + c, i, x] * ex.P[c, x]
             ex.x[o, i] = value
@@ -203,41 +172,39 @@ def all_outputs(ex: Exact, slot: int) -> None:
 @kernel
 def end_blocks(ex: Exact, slot: int, h: float) -> None:
     """Gains of block states over the step, then of positions and velocities, into ``end``."""
-    bs = ex.bs
-    tb = ex.tb
     n_s = ex.xf.shape[1]
     last = n_s - 1
-    modal = ex.flags[IS_MODAL] == 1
-    for j in range(ex.blk.shape[2]):
-        du = bs[V0, j] * h + bs[A0, j] * tb[slot, IS, j, last] + bs[K0, j] * tb[slot, IIS, j, last]
-        dv = bs[A0, j] * tb[slot, S, j, last] + bs[K0, j] * tb[slot, IS, j, last]
-        w2 = ex.blk[0, W2, j]
-        for c in range(ex.flags[INPUTS]):
-            b1 = ex.ci[B1, c, j]
+    modal = ex.modal[0] == 1
+    for j in range(ex.w2.shape[1]):
+        du = ex.v0[j] * h + ex.a0[j] * ex.IS[slot, j, last] + ex.k0[j] * ex.IIS[slot, j, last]
+        dv = ex.a0[j] * ex.S[slot, j, last] + ex.k0[j] * ex.IS[slot, j, last]
+        w2 = ex.w2[0, j]
+        for c in range(ex.b1.shape[0]):
+            b1 = ex.b1[c, j]
             if b1 != 0.0:
                 y = 0.0
                 z = 0.0
                 for x in range(n_s):
-                    y += tb[slot, Q2, j, x] * ex.P[c, x]
-                    z += tb[slot, Q1, j, x] * ex.P[c, x]
+                    y += ex.Q2[slot, j, x] * ex.P[c, x]
+                    z += ex.Q1[slot, j, x] * ex.P[c, x]
                 du += b1 * y
                 dv += b1 * z
-            b0 = ex.ci[B0, c, j]
+            b0 = ex.b0[c, j]
             if not modal and b0 != 0.0:
                 for x in range(n_s):
                     push = b0 * ex.P[c, x]
-                    du += push * (h * ex.nd[TABLEAU, last, x] - w2 * tb[slot, Q3, j, x])
-                    dv -= push * w2 * tb[slot, Q2, j, x]
-        bs[DU, j] = du
-        bs[DV, j] = dv
+                    du += push * (h * ex.tab.A[last, x] - w2 * ex.Q3[slot, j, x])
+                    dv -= push * w2 * ex.Q2[slot, j, x]
+        ex.du[j] = du
+        ex.dv[j] = dv
     for i in range(ex.end.shape[1]):
         dq = 0.0
         dv = 0.0
-        for j in range(ex.blk.shape[2]):
-            dq += ex.mat[Q_U, i, j] * bs[DU, j]
-            dv += ex.mat[V_V, i, j] * bs[DV, j]
+        for j in range(ex.w2.shape[1]):
+            dq += ex.q_u[i, j] * ex.du[j]
+            dv += ex.v_v[i, j] * ex.dv[j]
             if not modal:
-                dq += ex.mat[Q_V, i, j] * bs[DV, j]
-                dv += ex.mat[V_U, i, j] * bs[DU, j]
+                dq += ex.q_v[i, j] * ex.dv[j]
+                dv += ex.v_u[i, j] * ex.du[j]
         ex.end[0, i] = dq
         ex.end[1, i] = dv

@@ -69,7 +69,7 @@ def free_blocks(problem: Problem) -> Blocks:
     return once_per_problem(problem, "free blocks", lambda: blocks(M, K, C, np.zeros((n, 0)), ()))
 
 
-def _has_ledger(problem: Problem) -> bool:
+def has_ledger(problem: Problem) -> bool:
     """Whether anything but friction takes or brings energy."""
     n, linear, contacts = problem.n, problem.linear, problem.contacts
     K = linear.Kx[:n, :n]
@@ -77,9 +77,10 @@ def _has_ledger(problem: Problem) -> bool:
     return bool(problem.n_u > 0 or any(np.any(x) for x in parts) or np.any(K != K.T))
 
 
-def _tables(b: int, s: int, pairs: int) -> tuple[Floats, Floats]:
+def _tables(b: int, s: int, pairs: int) -> tuple[dict[str, Floats], Floats]:
     count = 1 + int(np.clip(6_000_000 // (6 * b * s + pairs * s * s + 1), 10, 60))
-    return np.zeros((count, 6, b, padded(s))), np.zeros((count, pairs, s, padded(s)))
+    names = ("S", "IS", "IIS", "Q1", "Q2", "Q3")
+    return {name: np.zeros((count, b, padded(s))) for name in names}, np.zeros((count, pairs, s, padded(s)))
 
 
 #: Numbers kept at most for contacts that stick.
@@ -90,13 +91,13 @@ def _exact(problem: Problem, s: int) -> Exact:
     n, forms, part, table = problem.n, port_forms(problem), free_blocks(problem), nodes(s)
     b, n_in, n_o = len(part.w2), forms.B.shape[1], len(forms.by_v)
     Minv = np.linalg.inv(problem.linear.M) if n else np.zeros((0, 0))
-    co = np.stack([forms.by_q @ part.q_u + forms.by_v @ part.v_u, forms.by_q @ part.q_v + forms.by_v @ part.v_v])
-    ci = np.stack([(part.force_0 @ forms.B).T, (part.force_1 @ forms.B).T])
-    for weights in (co, ci):
+    c = np.stack([forms.by_q @ part.q_u + forms.by_v @ part.v_u, forms.by_q @ part.q_v + forms.by_v @ part.v_v])
+    by = np.stack([(part.force_0 @ forms.B).T, (part.force_1 @ forms.B).T])
+    for weights in (c, by):
         weights[np.abs(weights) < 1e-15 * np.abs(weights).max(initial=0.0)] = 0.0
-    linked = np.abs(co).sum(axis=0) @ np.abs(ci).sum(axis=0).T > 0
+    linked = np.abs(c).sum(axis=0) @ np.abs(by).sum(axis=0).T > 0
     fastest = float(max(np.sqrt(np.abs(part.w2)).max(initial=0.0), np.abs(part.d).max(initial=0.0)))
-    tb, tk = _tables(b, s, n_o * n_in)
+    tables, tk = _tables(b, s, n_o * n_in)
     slots = np.full(RUNGS + 1, -1, np.int64)
     slots[-1] = 0
     xs, ys, nf = forms.element_x, forms.normal_x, forms.element_f
@@ -105,18 +106,20 @@ def _exact(problem: Problem, s: int) -> Exact:
     wide = s * problem.m
     # with nonlinear elements or normal forces the equations of contacts change from one iteration to the next
     held = 0 if nv or nf else int(np.clip(HELD_NUMBERS // (3 * wide * wide + 1), 0, 256))
-    flags = [n_in, n_o, part.modal and not co[0].any(), _has_ledger(problem), forms.unknown, xs, ys, nf]
+    whole = {"modal": part.modal and not c[0].any(), "ledger": has_ledger(problem), "unknown": forms.unknown}
+    numbers = {"safety": 1.0, "stiff_at": Z_EXACT[s] * 1.0001, "cap": np.inf, "fastest": fastest, "length": 0.0}
     made: dict[str, Any] = {
-        "flags": np.array(flags, np.int64),
-        "par": np.array([1.0, Z_EXACT[s] * 1.0001, np.inf, fastest, 0.0]),
-        "blk": np.stack([part.w2, part.d])[None], "co": co, "ci": ci,
-        "linked": linked.astype(float), "mat": np.stack([part.q_u, part.q_v, part.v_u, part.v_v]),
-        "start": np.stack([part.force_0, part.force_1, part.force_0 @ problem.linear.M,
-                           part.force_1 @ problem.linear.M]),
-        "MB": (Minv @ forms.B).T, "nd": table.nd, "mo": table.mo, "cx": table.cx, "tb": tb, "tk": tk,
+        **{name: np.array([value], np.int64) for name, value in whole.items()},
+        **{name: np.array([value]) for name, value in numbers.items()},
+        "w2": part.w2[None], "damp": part.d[None], "c0": c[0], "c1": c[1], "b0": by[0], "b1": by[1],
+        "linked": linked.astype(float), "q_u": part.q_u, "q_v": part.q_v, "v_u": part.v_u, "v_v": part.v_v,
+        "force_0": part.force_0, "force_1": part.force_1, "start_0": part.force_0 @ problem.linear.M,
+        "start_1": part.force_1 @ problem.linear.M, "MB": (Minv @ forms.B).T, "monomial": table.monomial,
+        "tails": table.tails, "mo": table.mo, **tables, "tk": tk, "radau": np.zeros((s, s)),
+        **{name: np.zeros(b) for name in ("v0", "a0", "k0", "du", "dv")},
         "ladder": 2.0 ** (0.25 * (np.arange(RUNGS) - UNIT_RUNG)), "slots": slots,
-        "kappa": np.zeros((b + 1, TERMS)), "terms": np.zeros(b, np.int64), "wk": np.zeros((3, s + 1, s + 1)),
-        "bs": np.zeros((8, b)), "xf": np.zeros((n_o, s)), "x": np.zeros((n_o, s)), "P": np.zeros((n_in, s)),
+        "kappa": np.zeros((b + 1, TERMS)), "terms": np.zeros(b, np.int64),
+        "xf": np.zeros((n_o, s)), "x": np.zeros((n_o, s)), "P": np.zeros((n_in, s)),
         "now": np.zeros(n_in), "weight": np.zeros(n_in), "low": np.zeros((2, n + 1)), "end": np.zeros((2, n)),
         "node": np.zeros((2, s, n)), "f": np.zeros(n),
         "held": np.zeros((held, 3, wide, wide)), "held_for": np.zeros((held, 2), np.int64),
@@ -125,8 +128,8 @@ def _exact(problem: Problem, s: int) -> Exact:
         "A": np.zeros(inner * inner), "R": np.zeros((s * (problem.m + nv) + 1, inner)),
         "pivots": np.zeros(max(1, inner), np.int32),
     }  # fmt: skip
-    return room(Exact(**{
-        name: np.ascontiguousarray(value, dtype=None if value.dtype.kind in "ic" else float)
+    return room(Exact(tab=table.tab, **{
+        name: np.ascontiguousarray(value, dtype=None if value.dtype.kind == "i" else float)
         for name, value in made.items()
     }))  # fmt: skip
 
@@ -142,9 +145,9 @@ def exact_lent(problem: Problem, s: int, safety: float, exact_up_to: float | Non
         found = free.pop()  # of several threads one gets it
     except IndexError:
         found = _exact(problem, s)
-    found.par[0] = safety
-    found.par[1] = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
-    found.par[2] = np.inf
+    found.safety[0] = safety
+    found.stiff_at[0] = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
+    found.cap[0] = np.inf
     found.low[:] = 0.0
     yield found
     free.append(found)

@@ -7,8 +7,6 @@ import math
 import numpy as np
 
 from fricmb.integrate.collocation.block_motion import two_sum
-from fricmb.integrate.collocation.blocks_in_step import BY_VELOCITY_1
-from fricmb.integrate.collocation.layout import DAMP, TAIL, TAIL_BEFORE, V_U, V_V, VECTORS, W2, WEIGHT
 from fricmb.integrate.collocation.motion_in_step import is_stiff, stiff_nodes
 from fricmb.integrate.collocation.powers_in_step import node_powers, powers_on_motion
 from fricmb.integrate.compile.block import block
@@ -21,11 +19,11 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Ints
 from fricmb.integrate.step.event_functions import force_noise
-from fricmb.integrate.step.exact_structure import CAP, FASTEST_BLOCK, INPUTS, LENGTH, SAFETY, STIFF_AT
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, update_port_scales, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
+from fricmb.integrate.step.step_error import state_error
 
 #: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
 SMOOTH = 0.03
@@ -36,34 +34,17 @@ def input_error(one: OneStep) -> float:
     """Largest weighed tail of the polynomials of all inputs."""
     ex = one.exact
     worst = 0.0
-    for c in range(ex.flags[INPUTS]):
+    for c in range(ex.b1.shape[0]):
         if ex.weight[c] == 0.0:
             continue
         last = 0.0
         before = 0.0
         largest = 0.0
         for x in range(ex.P.shape[1]):
-            last += ex.nd[VECTORS, TAIL, x] * ex.P[c, x]
-            before += ex.nd[VECTORS, TAIL_BEFORE, x] * ex.P[c, x]
+            last += ex.tails[0, x] * ex.P[c, x]
+            before += ex.tails[1, x] * ex.P[c, x]
             largest = max(largest, abs(ex.P[c, x]))
         worst = max(worst, ex.weight[c] * (max(abs(last), 0.2 * abs(before)) - 1e-15 * largest))
-    return worst
-
-
-@kernel
-def state_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
-    """Largest scaled tail of the laws' internal states."""
-    tab = one.tab
-    worst = 0.0
-    if y.z.shape[0] > 0:
-        state_noise(packed, one, acc, h)
-    for a in range(y.z.shape[0]):
-        tail = tab.top[0, 0] * y.z[a]
-        size = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
-        for j in range(tab.c.shape[0]):
-            tail += tab.top[0, j + 1] * one.w.z[j, a]
-            size = max(size, abs(one.w.z[j, a]))
-        worst = max(worst, abs(tail) / size)
     return worst
 
 
@@ -113,9 +94,9 @@ def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
     top = widest(acc.v)
     most = 0.0
     for i in range(y.v.shape[0]):
-        size = abs(ex.mat[V_V, i, j])
-        rate = max(math.sqrt(abs(ex.blk[0, W2, j])), abs(ex.blk[0, DAMP, j]))
-        size += abs(ex.mat[V_U, i, j]) / max(rate, 1e-290)
+        size = abs(ex.v_v[i, j])
+        rate = max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j]))
+        size += abs(ex.v_u[i, j]) / max(rate, 1e-290)
         if size > 0.0:
             scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
             most = max(most, size / scale)
@@ -126,22 +107,22 @@ def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
 def stiff_error(y: State, one: OneStep, acc: Accuracy, h: float, tol: float) -> float:
     """Error of blocks that take Radau's answer; sets the longest step at which blocks that ring stay exact."""
     ex = one.exact
-    ex.par[CAP] = np.inf
-    if 5.0 * h * ex.par[FASTEST_BLOCK] <= ex.par[STIFF_AT]:
+    ex.cap[0] = np.inf
+    if 5.0 * h * ex.fastest[0] <= ex.stiff_at[0]:
         return 0.0
     n_s = ex.P.shape[1]
     worst = 0.0
     gain = np.empty((2, n_s + 1))
-    for j in range(ex.blk.shape[2]):
-        rate = max(math.sqrt(abs(ex.blk[0, W2, j])), abs(ex.blk[0, DAMP, j]))
-        if 5.0 * h * rate <= ex.par[STIFF_AT]:
+    for j in range(ex.w2.shape[1]):
+        rate = max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j]))
+        if 5.0 * h * rate <= ex.stiff_at[0]:
             continue
         seen = visible(y, one, acc, j, h)
         swing = 0.0
         for i in range(y.a.shape[0]):
-            swing += ex.start[BY_VELOCITY_1, j, i] * y.a[i]
-        if abs(swing) / rate * seen > 0.1 * tol and ex.par[STIFF_AT] > 0.0:
-            ex.par[CAP] = min(ex.par[CAP], ex.par[STIFF_AT] / rate)
+            swing += ex.start_1[j, i] * y.a[i]
+        if abs(swing) / rate * seen > 0.1 * tol and ex.stiff_at[0] > 0.0:
+            ex.cap[0] = min(ex.cap[0], ex.stiff_at[0] / rate)
         if is_stiff(ex, j, h):
             stiff_nodes(ex, ex.P, j, h, gain)
             tail = 0.0
@@ -156,7 +137,7 @@ def exact_error(
     packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
 ) -> float:
     """Error of the step just solved in units of the tolerance (stands in for :func:`step_error`)."""
-    tol = one.exact.par[SAFETY] * acc.rtol[0]
+    tol = one.exact.safety[0] * acc.rtol[0]
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
     off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
     error = max(error, off / acc.rtol[0], too_long(growth(packed, s, y, one, h), one.tab.c.shape[0]))
@@ -194,11 +175,7 @@ def scales_of_step(packed: Packed, y: State, end: State, one: OneStep, acc: Accu
     for i in range(y.q.shape[0]):
         acc.q[i] = max(acc.q[i], abs(y.q[i]), abs(end.q[i]))
         acc.v[i] = max(acc.v[i], abs(y.v[i]), abs(end.v[i]))
-    for j in range(one.tab.c.shape[0]):
-        for a in range(y.z.shape[0]):
-            acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
-        for k in range(y.mode.shape[0]):
-            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, one.w.g[j]))
+    update_port_scales(packed, one, acc)
 
 
 @block
@@ -214,7 +191,7 @@ def exact_record(
     n_s = w.F.shape[0]
     n = y.q.shape[0]
     width = y.rate.shape[0]
-    h = ex.par[LENGTH]
+    h = ex.length[0]
     span = (end.t[0] - y.t[0]) + (ex.low[1, n] - ex.low[0, n])
     scales_of_step(packed, y, end, one, acc)
     row = out.values[out.used[0]]
@@ -236,6 +213,6 @@ def exact_record(
     for i in range(width):
         end.work[i] = y.work[i]
         for x in range(n_s):
-            end.work[i] += span * ex.nd[VECTORS, WEIGHT, x] * one.power[x, i]
+            end.work[i] += span * ex.tab.b[x] * one.power[x, i]
     for i in range(n + 1):
         ex.low[0, i] = ex.low[1, i]

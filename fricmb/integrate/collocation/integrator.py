@@ -34,7 +34,7 @@ from fricmb.integrate.collocation.one_contact.run import (
     run_single,
 )  # fmt: skip
 from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
-from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_back, lengthened, may_grow, within
+from fricmb.integrate.collocation.one_contact.workspace import COUNTS, borrowed, goes_back, lengthened, may_grow, within
 from fricmb.integrate.collocation.run import run_general
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
@@ -147,24 +147,23 @@ def nodes_for(rtol: float) -> int:
     return 8 if rtol > 3e-10 else 9
 
 
-def _set_state(problem: Problem, run: Run, start: Start, tolerance: Tolerance) -> None:
-    run.sd[:] = 0.0
-    run.sd[0], run.sd[2], run.sd[3] = start.q, start.v, np.abs(start.v)
+def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
+    for name in ("pos_low", "g", "n", "time_low", "loss", *COUNTS):
+        getattr(run, name).fill(0)
+    run.pos[:], run.vel[:], run.scale[:] = start.q, start.v, np.abs(start.v)
     if tolerance.atol_v is not None:
-        np.maximum(run.sd[3], tolerance.atol_v / tolerance.rtol, out=run.sd[3])
-    run.sm[:] = 0.0
-    run.sx[:] = start.t, 0.0, 0.0, run.ladder[8], run.ladder[8]
-    run.si[:] = 0
-    w = run.lim[3:]
-    g = run.row[2] @ start.v - w
+        np.maximum(run.scale, tolerance.atol_v / tolerance.rtol, out=run.scale)
+    run.time[0], run.next_step[0], run.first_step[0] = start.t, run.ladder[8], run.ladder[8]
+    w = run.belt
+    g = run.wt @ start.v - w
     speed = float(np.linalg.norm(g))
-    run.si[0] = UNSETTLED
+    run.mode[0] = UNSETTLED
     if start.mode is not None and start.mode[0] == STICK:
-        run.si[0] = STICK
-    elif speed > 1e-15 * (np.abs(run.row[2]) @ np.abs(start.v) + np.abs(w)).max(initial=0.0):
-        run.si[0], run.sm[0], run.sm[1] = SLIP, g, g / speed
+        run.mode[0] = STICK
+    elif speed > 1e-15 * (np.abs(run.wt) @ np.abs(start.v) + np.abs(w)).max(initial=0.0):
+        run.mode[0], run.g[:], run.n[:] = SLIP, g, g / speed
     elif start.mode is not None and start.mode[0] == SLIP and start.direction is not None:
-        run.si[0], run.sm[1] = SLIP, start.direction
+        run.mode[0], run.n[:] = SLIP, start.direction
 
 
 def _run_single(
@@ -182,10 +181,10 @@ def _run_in(
     run = within(held[0], memory)
     if t_end > start.t:
         set_longest_step(run, longest_step(problem, s, t_end - start.t))
-    _set_state(problem, run, start, tolerance)
+    _set_state(run, start, tolerance)
     pause = (t_end - start.t) / 100.0 if progress is not None else np.inf
     while True:
-        code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.sx[0] + pause)
+        code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.time[0] + pause)
         if code == FULL and ended() is None:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
             longer = lengthened(rows) if may_grow(rows, memory) else None
@@ -193,10 +192,10 @@ def _run_in(
                 break
             run = held[0] = with_rows(run, longer)
         elif code == PAUSE and progress is not None and ended() is None:
-            progress(float(run.sx[0]))
+            progress(float(run.time[0]))
         else:
             break
-    mode, n_rows, phases, n_events, steps, rejected, iterations, builds = (int(i) for i in run.si)
+    mode, n_rows, phases, n_events, steps, rejected, iterations, builds = (int(getattr(run, x)[0]) for x in COUNTS)
     rows = Rows(run.steps[:n_rows], run.kinds[:n_rows], run.phases[:phases], run.events[:n_events])
     if goes_back(run):
         rows = Rows._make(x.copy() for x in rows)
@@ -205,8 +204,8 @@ def _run_in(
     )
     counters = Counters(n_steps=steps, n_rejected=rejected, n_rhs=iterations, n_jac=iterations, n_lu=builds)
     end = Start(
-        t=float(run.sx[0] + run.sx[1]), q=run.sd[0] + run.sd[1], v=run.sd[2].copy(), z=np.zeros(0),
-        mode=np.array([mode], np.int8), direction=run.sm[1].copy(),
+        t=float(run.time[0] + run.time_low[0]), q=run.pos + run.pos_low, v=run.vel.copy(), z=np.zeros(0),
+        mode=np.array([mode], np.int8), direction=run.n.copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or _FAILURES.get(code)
     return SingleRun(problem, s, rows, transitions, counters, end, failure)

@@ -13,28 +13,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fricmb.integrate.collocation.layout import (
-    B0,
-    B1,
-    C0,
-    C1,
-    DAMP,
-    IIS,
-    INVERSE,
-    IS,
-    LAM,
-    NODE,
-    Q1,
-    Q2,
-    Q3,
-    RADAU,
-    ROWS,
-    TABLEAU,
-    VECTOR,
-    VECTORS,
-    W2,
-    S,
-)  # fmt: skip
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, set_lanes
 from fricmb.integrate.problem import Floats, Floats2
@@ -59,39 +37,39 @@ def markov(run: Any, h: float, w2: float, d: float, j: int, most: int) -> int:
 
 @kernel
 def radau_block(run: Any, h: float, w2: float, d: float) -> None:
-    """Plain Radau answer of v at the nodes to a force on v (s, s), into wk[RADAU]."""
-    s = run.cx.shape[2]
+    """Plain Radau answer of v at the nodes to a force on v (s, s), into ``radau``."""
+    s = run.tab.c.shape[0]
     for i in range(s):
         for l in range(s):
-            run.wk[RADAU, i, l] = 0.0
-    for e in range(run.cx.shape[1]):
-        lam = run.cx[LAM, e, 0]
+            run.radau[i, l] = 0.0
+    for e in range(run.tab.lam.shape[0]):
+        lam = run.tab.lam[e]
         x = h * lam / (1.0 + d * h * lam + w2 * h * h * lam * lam)
         for i in range(s):
-            y = x * run.cx[VECTOR, e, i]
+            y = x * run.tab.T[i, e]
             for l in range(s):
-                run.wk[RADAU, i, l] += (y * run.cx[INVERSE, e, l]).real
+                run.radau[i, l] += (y * run.tab.Tinv[e, l]).real
 
 
 @kernel
-def free_weights(run: Any, z: int, modal: bool, h: float, stiff: float, slot: int) -> None:
-    """Tables of every block of structure z for step h, into ``slot`` of tb.
+def free_weights(run: Any, modal: bool, h: float, stiff: float, slot: int) -> None:
+    """Tables of every block of the structure (that of slip) for step h, into ``slot``.
 
     Blocks beyond ``stiff`` (w h) take Radau's own answer throughout; terms = 0 marks them.
     """
-    for j in range(run.blk.shape[2]):
-        if max(math.sqrt(abs(run.blk[z, W2, j])), abs(run.blk[z, DAMP, j])) * h > stiff:
+    for j in range(run.w2.shape[1]):
+        if max(math.sqrt(abs(run.w2[0, j])), abs(run.damp[0, j])) * h > stiff:
             run.terms[j] = 0
-            stiff_tables(run, run.blk[z, W2, j], run.blk[z, DAMP, j], j, h, slot)
+            stiff_tables(run, run.w2[0, j], run.damp[0, j], j, h, slot)
             continue
-        run.terms[j] = markov(run, h, run.blk[z, W2, j], run.blk[z, DAMP, j], j, run.kappa.shape[1] - 3)
+        run.terms[j] = markov(run, h, run.w2[0, j], run.damp[0, j], j, run.kappa.shape[1] - 3)
         exact_tables(run, modal, j, h, slot)
 
 
 @kernel
 def exact_tables(run: Any, modal: bool, j: int, h: float, slot: int) -> None:
     """The tables of one block that is not stiff: sums of moments by Markov parameters."""
-    mo, kappa, tb = run.mo, run.kappa[j], run.tb[slot]
+    mo, kappa = run.mo, run.kappa[j]
     s = mo.shape[1] - 1
     end = s - 1
     for at in range(0, mo.shape[2], LANES):
@@ -103,22 +81,22 @@ def exact_tables(run: Any, modal: bool, j: int, h: float, slot: int) -> None:
             u_free = u_free + y * lanes(mo[m + 1, s], at)
             v_end = v_end + x * lanes(mo[m, end], at)
             u_end = u_end + y * lanes(mo[m + 1, end], at)
-        set_lanes(tb[S, j], at, v_free)
-        set_lanes(tb[IS, j], at, u_free)
-        set_lanes(tb[Q1, j], at, v_end)
-        set_lanes(tb[Q2, j], at, u_end)
+        set_lanes(run.S[slot, j], at, v_free)
+        set_lanes(run.IS[slot, j], at, u_free)
+        set_lanes(run.Q1[slot, j], at, v_end)
+        set_lanes(run.Q2[slot, j], at, u_end)
         if not modal:
             once, force = all_lanes(0.0), all_lanes(0.0)
             for m in range(run.terms[j]):
                 y = h * h * h * kappa[m]
                 once = once + y * lanes(mo[m + 2, s], at)
                 force = force + y * lanes(mo[m + 2, end], at)
-            set_lanes(tb[IIS, j], at, once)
-            set_lanes(tb[Q3, j], at, force)
+            set_lanes(run.IIS[slot, j], at, once)
+            set_lanes(run.Q3[slot, j], at, force)
     if modal:
-        tb[IIS, j, end] = 0.0
+        run.IIS[slot, j, end] = 0.0
         for m in range(run.terms[j]):
-            tb[IIS, j, end] += h * h * h * kappa[m] * mo[m + 2, s, end]
+            run.IIS[slot, j, end] += h * h * h * kappa[m] * mo[m + 2, s, end]
 
 
 @kernel
@@ -127,32 +105,30 @@ def stiff_tables(run: Any, w2: float, d: float, j: int, h: float, slot: int) -> 
     s = run.mo.shape[1] - 1
     end = s - 1
     radau_block(run, h, w2, d)
-    for q in range(run.tb.shape[1]):
-        for i in range(run.tb.shape[3]):
-            run.tb[slot, q, j, i] = 0.0
+    for table in (run.S, run.IS, run.IIS, run.Q1, run.Q2, run.Q3):
+        table[slot, j, :] = 0.0
     for i in range(s):
         for l in range(s):
-            run.tb[slot, S, j, i] += run.wk[RADAU, i, l]
-            run.tb[slot, IS, j, i] += run.wk[RADAU, i, l] * run.nd[VECTORS, NODE, l] * h
-            run.tb[slot, Q2, j, i] += h * run.nd[TABLEAU, end, l] * run.wk[RADAU, l, i]
-        run.tb[slot, Q1, j, i] = run.wk[RADAU, end, i]
+            run.S[slot, j, i] += run.radau[i, l]
+            run.IS[slot, j, i] += run.radau[i, l] * run.tab.c[l] * h
+            run.Q2[slot, j, i] += h * run.tab.A[end, l] * run.radau[l, i]
+        run.Q1[slot, j, i] = run.radau[end, i]
     for i in range(s):
         for l in range(s):
-            run.tb[slot, IIS, j, i] += h * run.nd[TABLEAU, i, l] * run.tb[slot, IS, j, l]
+            run.IIS[slot, j, i] += h * run.tab.A[i, l] * run.IS[slot, j, l]
             for k in range(s):
-                run.tb[slot, Q3, j, i] += h * run.nd[TABLEAU, end, l] * h * run.nd[TABLEAU, l, k] * run.wk[RADAU, k, i]
+                run.Q3[slot, j, i] += h * run.tab.A[end, l] * h * run.tab.A[l, k] * run.radau[k, i]
 
 
 @kernel
-def pair_moments(run: Any, z: int, modal: bool, h: float, a: int, b: int, weight: Floats) -> int:
+def pair_moments(run: Any, modal: bool, h: float, a: int, b: int, weight: Floats) -> int:
     """Weights of the moments in output a per input b, into ``weight``; returns how many matter."""
-    co, ci = run.co, run.ci
     most = 0
     weight[:] = 0.0
-    for j in range(run.blk.shape[2]):
-        b1 = ci[B1, b, j]
+    for j in range(run.w2.shape[1]):
+        b1 = run.b1[b, j]
         if modal:
-            gain = co[C1, a, j] * b1
+            gain = run.c1[a, j] * b1
             if gain != 0.0:
                 kappa = run.kappa[j, : run.terms[j]]
                 most = max(most, kappa.shape[0])
@@ -160,16 +136,16 @@ def pair_moments(run: Any, z: int, modal: bool, h: float, a: int, b: int, weight
                     weight[m] += gain * kappa[m]
             continue
         most = max(most, run.terms[j])
-        b0 = ci[B0, b, j]
-        w2 = run.blk[z, W2, j]
+        b0 = run.b0[b, j]
+        w2 = run.w2[0, j]
         for m in range(run.terms[j]):
-            weight[m] += co[C1, a, j] * b1 * run.kappa[j, m]
+            weight[m] += run.c1[a, j] * b1 * run.kappa[j, m]
             if m == 0:
-                weight[m] += co[C0, a, j] * b0
+                weight[m] += run.c0[a, j] * b0
             else:
-                weight[m] += (co[C0, a, j] * b1 - co[C1, a, j] * b0 * w2) * (h * run.kappa[j, m - 1])
+                weight[m] += (run.c0[a, j] * b1 - run.c1[a, j] * b0 * w2) * (h * run.kappa[j, m - 1])
             if m > 1:
-                weight[m] -= co[C0, a, j] * b0 * w2 * h * h * run.kappa[j, m - 2]
+                weight[m] -= run.c0[a, j] * b0 * w2 * h * h * run.kappa[j, m - 2]
     for m in range(most):
         weight[m] *= h
     return most
@@ -186,45 +162,43 @@ def sum_moments(mo: Floats2, weight: Floats, most: int, out: Floats) -> None:
 
 
 @kernel
-def port_weights(run: Any, z: int, modal: bool, h: float, slot: int) -> None:
+def port_weights(run: Any, modal: bool, h: float, slot: int) -> None:
     """Outputs at the nodes per node value of inputs, into ``slot`` of tk, after :func:`free_weights`."""
     size = run.tk.shape[2] * run.tk.shape[3]
     mo = run.mo.reshape(run.mo.shape[0], run.mo.shape[1] * run.mo.shape[2])
-    weight = run.kappa[run.blk.shape[2]]
-    for a in range(run.co.shape[1]):
-        for b in range(run.ci.shape[1]):
-            out = run.tk[slot, run.flags[ROWS] * a + b].reshape(size)
+    weight = run.kappa[run.w2.shape[1]]
+    for a in range(run.c1.shape[0]):
+        for b in range(run.b1.shape[0]):
+            out = run.tk[slot, run.b1.shape[0] * a + b].reshape(size)
             if run.linked[a, b] == 0.0:
                 out[:] = 0.0
                 continue
-            most = pair_moments(run, z, modal, h, a, b, weight)
+            most = pair_moments(run, modal, h, a, b, weight)
             sum_moments(mo, weight, most, out)
-            for j in range(run.blk.shape[2]):
+            for j in range(run.w2.shape[1]):
                 if run.terms[j] == 0:
-                    stiff_pair(run, z, j, a, b, h, slot)
+                    stiff_pair(run, j, a, b, h, slot)
 
 
 @kernel
-def stiff_pair(run: Any, z: int, j: int, a: int, b: int, h: float, slot: int) -> None:
+def stiff_pair(run: Any, j: int, a: int, b: int, h: float, slot: int) -> None:
     """Add one stiff block's plain Radau answer."""
-    nd = run.nd
-    wk = run.wk
-    c0 = run.co[C0, a, j]
-    c1 = run.co[C1, a, j]
-    b0 = run.ci[B0, b, j]
-    b1 = run.ci[B1, b, j]
+    c0 = run.c0[a, j]
+    c1 = run.c1[a, j]
+    b0 = run.b0[b, j]
+    b1 = run.b1[b, j]
     if (c0 == 0.0 and c1 == 0.0) or (b0 == 0.0 and b1 == 0.0):
         return
-    w2 = run.blk[z, W2, j]
+    w2 = run.w2[0, j]
     s = run.mo.shape[1] - 1
-    radau_block(run, h, w2, run.blk[z, DAMP, j])
+    radau_block(run, h, w2, run.damp[0, j])
     for i in range(s):
         for l in range(s):
             u = 0.0
             uu = 0.0
             for k in range(s):
-                u += h * nd[TABLEAU, i, k] * wk[RADAU, k, l]
+                u += h * run.tab.A[i, k] * run.radau[k, l]
                 for r in range(s):
-                    uu += h * nd[TABLEAU, i, k] * h * nd[TABLEAU, k, r] * wk[RADAU, r, l]
-            value = c1 * (b1 * wk[RADAU, i, l] - b0 * w2 * u) + c0 * (b1 * u + b0 * (h * nd[TABLEAU, i, l] - w2 * uu))
-            run.tk[slot, run.flags[ROWS] * a + b, i, l] += value
+                    uu += h * run.tab.A[i, k] * h * run.tab.A[k, r] * run.radau[r, l]
+            value = c1 * (b1 * run.radau[i, l] - b0 * w2 * u) + c0 * (b1 * u + b0 * (h * run.tab.A[i, l] - w2 * uu))
+            run.tk[slot, run.b1.shape[0] * a + b, i, l] += value

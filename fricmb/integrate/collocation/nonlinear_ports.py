@@ -17,13 +17,12 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_rows
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.forces import Scratch, gather
+from fricmb.integrate.model.forces import Scratch, evaluate
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats3, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
-from fricmb.integrate.step.exact_structure import ELEMENT_F, ELEMENT_X, INPUTS, NORMAL_X, SAFETY
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
 
 
@@ -45,8 +44,7 @@ def first_inputs(packed: Packed, s: Scratch, y: State, one: OneStep) -> None:
                 w.Fin[i, m + packed.ports.var[k]] = w.N[i, k]
                 ex.P[m + packed.ports.var[k], i] = w.N[i, k] - packed.ports.N0[k]
     for k in range(packed.elements.address.shape[0]):
-        gather(packed.elements, k, s.X, s.x)
-        call(packed.elements.address[k], s.x, 0, packed.elements.p, packed.elements.p_start[k], s.out, 0)
+        evaluate(packed.elements, k, s)
         first = packed.spread.f_start[k]
         for b in range(first, packed.spread.f_start[k + 1]):
             for i in range(n_s):
@@ -96,10 +94,10 @@ def evaluate_normals(packed: Packed, s: Scratch, one: OneStep, first: int) -> No
 def eliminate_elements(one: OneStep, slot: int, m: int, mi: int, JR: Floats3, address: Ints) -> bool:
     """Answer of elements to their residuals (row 0) and to port inputs (1 + l mi + c): ``R``, and their forces J R."""
     ex = one.exact
-    n_in = ex.flags[INPUTS]
+    n_in = ex.b1.shape[0]
     n_s = ex.x.shape[1]
-    nx = ex.flags[ELEMENT_X]
-    nf = ex.flags[ELEMENT_F]
+    nx = ex.J.shape[2]
+    nf = ex.J.shape[1]
     inner = nx * n_s
     tk = ex.tk
     for i in range(n_s):
@@ -142,7 +140,7 @@ def through_elements(one: OneStep, slot: int, o: int, i: int, x: int, mi: int, J
     ex = one.exact
     value = 0.0
     for f in range(JR.shape[1]):
-        pair = ex.flags[INPUTS] * o + mi + f
+        pair = ex.b1.shape[0] * o + mi + f
         for l in range(JR.shape[2]):
             value += ex.tk[slot, pair, i, l] * JR[x, f, l]
     return value
@@ -155,13 +153,13 @@ def condense(packed: Packed, y: State, one: OneStep, slot: int, JR: Floats3) -> 
     m = y.g.shape[0]
     mi = w.Fin.shape[1]
     n_s = w.F.shape[0]
-    nx = ex.flags[ELEMENT_X]
+    nx = ex.J.shape[2]
     for i in range(n_s):
         for a in range(m):
             w.gb[i, a] = ex.x[a, i] + through_elements(one, slot, a, i, 0, mi, JR)
             for l in range(n_s):
                 for c in range(mi):
-                    value = ex.tk[slot, ex.flags[INPUTS] * a + c, i, l]
+                    value = ex.tk[slot, ex.b1.shape[0] * a + c, i, l]
                     if nx > 0:
                         value += through_elements(one, slot, a, i, 1 + l * mi + c, mi, JR)
                     w.G[i * mi + a, l * mi + c] = value
@@ -172,7 +170,7 @@ def condense(packed: Packed, y: State, one: OneStep, slot: int, JR: Floats3) -> 
             w.gb[i, m + v] = one.N[i, k]
             for x in range(n_s * mi):
                 w.G[i * mi + m + v, x] = 0.0
-            for b in range(ex.flags[NORMAL_X]):
+            for b in range(ex.JN.shape[2]):
                 slope = ex.JN[i, v, b]
                 if slope == 0.0:
                     continue
@@ -180,7 +178,7 @@ def condense(packed: Packed, y: State, one: OneStep, slot: int, JR: Floats3) -> 
                 w.gb[i, m + v] += slope * through_elements(one, slot, o, i, 0, mi, JR)
                 for l in range(n_s):
                     for c in range(mi):
-                        value = ex.tk[slot, ex.flags[INPUTS] * o + c, i, l]
+                        value = ex.tk[slot, ex.b1.shape[0] * o + c, i, l]
                         if nx > 0:
                             value += through_elements(one, slot, o, i, 1 + l * mi + c, mi, JR)
                         w.G[i * mi + m + v, l * mi + c] += slope * value
@@ -220,9 +218,9 @@ def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     m = y.g.shape[0]
     mi = w.Fin.shape[1]
     n_s = w.F.shape[0]
-    first_normal = m + ex.flags[ELEMENT_X]
-    enough = 0.01 * ex.par[SAFETY] * acc.rtol[0]
-    JR = np.zeros((1 + n_s * mi, ex.flags[ELEMENT_F], n_s))
+    first_normal = m + ex.J.shape[2]
+    enough = 0.01 * ex.safety[0] * acc.rtol[0]
+    JR = np.zeros((1 + n_s * mi, ex.J.shape[1], n_s))
     first_inputs(packed, s, y, one)
     last = np.inf
     for iteration in range(15):
@@ -231,7 +229,7 @@ def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
         all_outputs(ex, slot)
         evaluate_elements(packed, s, one, m, mi - m)
         evaluate_normals(packed, s, one, first_normal)
-        if ex.flags[ELEMENT_X] > 0 and not eliminate_elements(one, slot, m, mi, JR, address):
+        if ex.J.shape[2] > 0 and not eliminate_elements(one, slot, m, mi, JR, address):
             return False
         condense(packed, y, one, slot, JR)
         for i in range(n_s):

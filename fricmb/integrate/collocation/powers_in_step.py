@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation.layout import MONOMIAL, NODE, VECTORS
 from fricmb.integrate.collocation.motion_in_step import gains_at_nodes, input_series
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats, Floats2
-from fricmb.integrate.step.exact_structure import LEDGER
 from fricmb.integrate.step.radau_step import OneStep
 
 
@@ -25,17 +23,16 @@ def powers_on_motion(
     """
     ex, w = one.exact, one.w
     n, m, n_s = y.q.shape[0], y.g.shape[0], w.F.shape[0]
-    series, gain = np.empty((2 * ex.blk.shape[2], n_s + 1)), np.empty((2, n_s + 1))
+    series, gain = np.empty((2 * ex.w2.shape[1], n_s + 1)), np.empty((2, n_s + 1))
     F, N, g = np.empty(m), np.empty(y.N.shape[0]), np.empty(m)
     input_series(ex, ex.P, h, series, gain)
     gains_at_nodes(ex, h, span, series, ex.node[0], ex.node[1])
     for j in range(n_s):
-        tau = ex.nd[VECTORS, NODE, j] * span
+        tau = ex.tab.c[j] * span
         for i in range(n):
             ex.node[0, j, i] += y.q[i]
             ex.node[1, j, i] += y.v[i]
-        set_time(packed.signals, s, y.t[0] + tau, n)
-        set_state(s, ex.node[0, j], ex.node[1, j])
+        set_instant(packed.signals, s, y.t[0] + tau, ex.node[0, j], ex.node[1, j])
         if whole:
             powers(packed, s, w.F[j], w.N[j], w.g[j], power[j])
             continue
@@ -50,7 +47,7 @@ def powers_on_motion(
             for r in range(n_s - 1, -1, -1):
                 c = 0.0
                 for x in range(n_s):
-                    c += ex.nd[MONOMIAL, r, x] * w.F[x, a]
+                    c += ex.monomial[r, x] * w.F[x, a]
                 F[a] = F[a] * (tau / h) + c
         powers(packed, s, F, N, g, power[j])
 
@@ -60,7 +57,7 @@ def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, ro
     """Powers at the nodes into a row, node by node."""
     w = one.w
     width = y.rate.shape[0]
-    if one.exact.flags[LEDGER] == 1:
+    if one.exact.ledger[0] == 1:
         powers_on_motion(packed, s, y, one, h, h, True, one.power)
     else:
         one.power[:, :] = 0.0

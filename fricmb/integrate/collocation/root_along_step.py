@@ -11,22 +11,21 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.collocation.block_motion import two_sum
-from fricmb.integrate.collocation.finish_step import input_error, state_error, stiff_error
-from fricmb.integrate.collocation.layout import MONOMIAL
+from fricmb.integrate.collocation.finish_step import input_error, stiff_error
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import complete, slip_rate
 from fricmb.integrate.model.forces import Scratch, belt_velocity, set_time
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import along, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import evaluate, polynomial
 from fricmb.integrate.step.event_functions import margin
-from fricmb.integrate.step.exact_structure import SAFETY
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, finish
+from fricmb.integrate.step.step_error import state_error
 
 #: Growth of a polynomial's error behind the last node, by the part of the step: s (s + 1) / 2 for its last coefficient.
 GROWTH = 36.0
@@ -41,13 +40,12 @@ OFFSET = 1e-3
 @kernel
 def between_nodes(one: OneStep, values: Floats2, a: int, theta: float) -> float:
     """Value at theta of the polynomial through the node values in column a."""
-    nd = one.exact.nd
     n_s = values.shape[0]
     result = 0.0
     for r in range(n_s - 1, -1, -1):
         c = 0.0
         for x in range(n_s):
-            c += nd[MONOMIAL, r, x] * values[x, a]
+            c += one.exact.monomial[r, x] * values[x, a]
         result = result * theta + c
     return result
 
@@ -58,9 +56,7 @@ def unit_directions(packed: Packed, end: State) -> None:
     row = packed.ports.row
     for k in range(end.mode.shape[0]):
         if end.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH:
-            size = magnitude(row, k, end.n)
-            for a in range(row[k], row[k + 1]):
-                end.n[a] /= size
+            point_along(row, k, end.n, 1.0, end.n)
 
 
 @kernel
@@ -109,10 +105,7 @@ def move_to(
 @kernel
 def distance(packed: Packed, s: Scratch, y: State, end: State, k: int, found: Floats) -> float:
     """Distance of contact k from its transition at ``end``."""
-    speed = 0.0
-    for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-        speed += end.n[a] * end.g[a]
-    return float(margin(packed, s, y, end, speed, k, found))
+    return float(margin(packed, s, y, end, along(packed.ports.row, k, end.n, end.g), k, found))
 
 
 @kernel
@@ -142,7 +135,7 @@ def may_stay(
     ex = one.exact
     beyond = abs(tau - h) / h
     error = input_error(one) + state_error(packed, y, one, acc, h)
-    error += stiff_error(y, one, acc, h, ex.par[SAFETY] * acc.rtol[0])
+    error += stiff_error(y, one, acc, h, ex.safety[0] * acc.rtol[0])
     off = 0.0
     for a in range(y.F.shape[0]):
         off = max(off, ex.weight[a] * abs(end.F[a] - between_nodes(one, one.w.F, a, tau / h)))
@@ -163,7 +156,7 @@ def exact_root(
     """Secants on the motion within the step (stands in for :func:`root_along_step`)."""
     ex = one.exact
     n_s, n = one.w.F.shape[0], y.q.shape[0]
-    series = np.empty((2 * ex.blk.shape[2], n_s + 1))
+    series = np.empty((2 * ex.w2.shape[1], n_s + 1))
     gain = np.empty((4, n + y.g.shape[0]))
     input_series(ex, ex.P, h, series, np.empty((2, n_s + 1)))
     gains_at(ex, h, h, series, gain[2, :n], gain[3, :n])

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.collocation.blocks_in_step import load_at_start, start_blocks
-from fricmb.integrate.collocation.layout import MONOMIAL, WITH_START
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.output.hermite_output import point_along_slip, relative_velocity, set_window_around, write_sample
+from fricmb.integrate.output.hermite_output import point_against_forces, point_along_slip, state_of_row, write_sample
 from fricmb.integrate.problem import Codes2, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.run.breakpoints import set_window_around
 from fricmb.integrate.step.exact_structure import Exact
 
 
@@ -27,8 +27,7 @@ def open_step(
     for i in range(n):
         y.q[i] = left[1 + i]
         y.v[i] = left[1 + n + i]
-    set_time(packed.signals, s, left[0], n)
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, left[0], y.q, y.v)
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
     for c in range(P.shape[0]):
@@ -40,12 +39,12 @@ def open_step(
 @kernel
 def through_nodes(ex: Exact, start: float, row: Floats, at: int, width: int, theta: float) -> float:
     """Polynomial through ``start`` and the node values ``row[at + x width]``."""
-    n_s = ex.nd.shape[1] - 1
+    n_s = ex.tab.c.shape[0]
     value = 0.0
     for r in range(n_s, -1, -1):
-        c = ex.nd[WITH_START, r, 0] * start
+        c = ex.tab.basis[r, 0] * start
         for x in range(n_s):
-            c += ex.nd[WITH_START, r, x + 1] * row[at + x * width]
+            c += ex.tab.basis[r, x + 1] * row[at + x * width]
         value = value * theta + c
     return value
 
@@ -53,12 +52,12 @@ def through_nodes(ex: Exact, start: float, row: Floats, at: int, width: int, the
 @kernel
 def integral_of_nodes(ex: Exact, row: Floats, at: int, width: int, theta: float) -> float:
     """Integral from 0 to theta of the polynomial through the node values."""
-    n_s = ex.nd.shape[1] - 1
+    n_s = ex.tab.c.shape[0]
     value = 0.0
     for r in range(n_s - 1, -1, -1):
         c = 0.0
         for x in range(n_s):
-            c += ex.nd[MONOMIAL, r, x] * row[at + x * width]
+            c += ex.monomial[r, x] * row[at + x * width]
         value = value * theta + c / (r + 1.0)
     return value * theta
 
@@ -88,19 +87,8 @@ def inside_step(
         for r in range(P.shape[1] - 1, -1, -1):
             c = 0.0
             for x in range(P.shape[1]):
-                c += ex.nd[MONOMIAL, r, x] * P[a, x]
+                c += ex.monomial[r, x] * P[a, x]
             y.F[a] = y.F[a] * theta + c
-
-
-@kernel
-def force_directions(packed: Packed, y: State) -> None:
-    """Directions of slip against the forces."""
-    for c in range(y.mode.shape[0]):
-        force = 0.0
-        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-            force += y.F[a] ** 2
-        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-            y.n[a] = -y.F[a] / np.sqrt(force) if force > 0.0 else 0.0
 
 
 @entry
@@ -116,9 +104,9 @@ def sample_exact(
     width = nc + 2
     at = 1 + 3 * n + 2 * nz + m + nc + 2 * width
     at_F = 1 + 3 * n + 2 * nz
-    n_s = ex.nd.shape[1] - 1
+    n_s = ex.tab.c.shape[0]
     P = np.zeros((ex.P.shape[0], n_s))
-    series = np.zeros((2 * ex.blk.shape[2], n_s + 1))
+    series = np.zeros((2 * ex.w2.shape[1], n_s + 1))
     gain = np.zeros((2, n_s + 1))
     dq, dv = np.zeros(n), np.zeros(n)
     opened = -1
@@ -128,29 +116,19 @@ def sample_exact(
         right = values[min(k + 1, values.shape[0] - 1)]
         tau = t[j] - left[0]
         inside = tau > 0.0 and right[0] > left[0]
-        set_window_around(stops, s, side[j])
-        for c in range(nc):
-            y.mode[c] = modes[k, c]
-            y.N[c] = left[at_F + m + c]
+        set_window_around(stops, s.window, side[j])
         if inside:
+            for c in range(nc):
+                y.mode[c] = modes[k, c]
+                y.N[c] = left[at_F + m + c]
             if k != opened:
                 open_step(packed, s, y, ex, left, right, at, P, series, gain)
             inside_step(packed, s, y, ex, left, right, at, tau, P, series, dq, dv)
             y.t[0] = t[j]
-            force_directions(packed, y)
+            point_against_forces(packed, y)
             point_along_slip(packed, s, y)
             complete(packed, s, y, sizes, pivots, address)
         else:
-            y.t[0] = t[j]
-            for i in range(n):
-                y.q[i] = left[1 + i]
-                y.v[i] = left[1 + n + i]
-            for i in range(nz):
-                y.z[i] = left[1 + 3 * n + i]
-            for i in range(width):
-                y.work[i] = left[at - 2 * width + i]
-            for a in range(m):
-                y.F[a] = left[at_F + a]
-            relative_velocity(packed, s, y)
+            state_of_row(packed, s, y, left, modes[k], t[j])
         opened = k if inside else -1
         write_sample(packed, y, out[j], out_mode[j])

@@ -7,7 +7,6 @@ import numpy as np
 from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
@@ -25,7 +24,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import add_stick
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.model.forces import element_powers, gather
+from fricmb.integrate.model.forces import element_powers, evaluate
 from fricmb.integrate.problem import NORMAL_LAW, STICK, Floats, Ints
 from fricmb.integrate.run.stop import stopped
 
@@ -58,7 +57,7 @@ def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats, a: int) -> flo
     j = mech.port.joint[c]
     if j < 0:
         return bend(k, mech.port.slip, mech.port.slip.x_start[c] + 2 * a)
-    n_x = call_joint(mech, k, j, lam, 0, mech.address)
+    n_x = call_joint(mech, k, j, lam, mech.address)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
     value, d = 0.0, directions(mech, c)
     for i in range(n_x):
@@ -73,7 +72,7 @@ def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: i
     """Second derivatives of the constraints into r[r0:], those of the extended coordinates being in ``ddy``."""
     joint = mech.joint
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        n_x = call_joint(mech, k, j, lam, mech.address)
         m = joint.row[j + 1] - joint.row[j]
         B = m + m * n_x + n_x * n_x
         for i in range(m):
@@ -88,8 +87,8 @@ def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: i
 def instant_residual(mech: Mech, k: Moving, w: Instant, y: State, address: Ints) -> None:
     """Residual of motion, constraints and friction at the instant for the present a, lam, F into ``w.r``."""
     n, m = y.q.shape[0], y.lam.shape[0]
-    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
-    pull_back(mech, k, w.x, 0)
+    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
+    pull_back(mech, k, w.x)
     mass_times(mech, y.a, w.r, n)
     for i in range(n):
         w.r[i] -= w.x[i]
@@ -117,7 +116,7 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, a
     w.L.A0[:] = 0.0
     w.L.A1[:] = 0.0
     add_mass(mech, w.L)
-    add_joints(mech, k, y.lam, y.F, 0, 0, w.L, False, mech.address)
+    add_joints(mech, k, y.lam, y.F, w.L, False, mech.address)
     add_contacts(mech, k, y.N, w.L, False, mech.address)
     size = order.place.shape[0]
     if friction == ALL:
@@ -250,9 +249,8 @@ def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats, 
             if port.joint[c] < 0:
                 supply += F[a] * port.w[a]
         if port.joint[c] < 0 and port.normal[c] == NORMAL_LAW:
-            gather(port.normals, c, X, s.x)
+            evaluate(port.normals, c, s)
             rate = s.x[1]
-            call(port.normals.address[c], s.x, 0, port.normals.p, port.normals.p_start[c], s.out, 0)
             damping -= (max(N[c], 0.0) - port.N0[c] + s.out[4]) * rate
     for j in range(n_u):
         supply -= k.fu[j] * X[1 + 2 * n_y + n_u + j]

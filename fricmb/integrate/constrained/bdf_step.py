@@ -104,7 +104,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
             for i in range(part.shape[0]):
                 target[0, i] = part[i]
         keep_held(mech, y.mode, y.F, one.F[0])
-        used = iterate_stages(mech, k, base, one, beta_h, accuracy, y.mode, mech.address)
+        used = iterate_stages(mech, k, base, one, beta_h, accuracy, mech.address)
         c.counts[2] += max(used, 1)
         if used == 0 or one.found[0] > SLOW:
             formula.made[0] = 0.0
@@ -159,7 +159,7 @@ def select_order(y: State, c: Control, past: Differences, formula: Formula, erro
 
 
 @kernel
-def inside(y: State, st: Stages, c: Control, past: Differences) -> None:
+def inside(st: Stages, c: Control, past: Differences) -> None:
     """Values of the formula's polynomial over the step at the nodes of the one-step method, as if it had stepped.
 
     With s = x - 1 in steps back from the end:  y(x) = sum_j D_j s (s+1) ... (s+j-1) / j!.
@@ -219,7 +219,7 @@ def multistep(
         rescale(past, ladder(max(least, step_factor(error, order, BDF_SAFETY)), BDF_RUNGS))
         return REJECTED
     update(past, formula)
-    inside(y, st, c, past)
+    inside(st, c, past)
     find_kinks(mech, k, y, st, out)
     unique = margins(mech, k, w, end, out, False, mech.address) > 0.0
     if not unique or violated(mech, k, out, y, end, st, mech.address) >= 0:

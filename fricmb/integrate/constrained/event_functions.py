@@ -28,7 +28,7 @@ def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
     move(mech, k, y.t[0], y.q, y.v, mech.address)
     for j in range(joint.port.shape[0]):
         if is_open(mech, j):
-            call_joint(mech, k, j, y.lam, 0, mech.address)
+            call_joint(mech, k, j, y.lam, mech.address)
             out.gap[j] = k.out[0]
 
 

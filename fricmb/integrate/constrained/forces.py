@@ -7,7 +7,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.model.forces import element_forces, gather, set_time
+from fricmb.integrate.model.forces import element_forces, evaluate, gather, set_time
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Floats, Ints
 
@@ -90,14 +90,14 @@ def bend(k: Moving, table: Table, a: int) -> float:
 
 
 @block
-def call_joint(mech: Mech, k: Moving, j: int, lam: Floats, l0: int, address: Ints) -> int:
+def call_joint(mech: Mech, k: Moving, j: int, lam: Floats, address: Ints) -> int:
     """Evaluate joint j into ``k.out``; returns its number of local coordinates."""
     joint = mech.joint
     table = joint.table
     n_x = joint.n_x[j]
     gather(table, j, k.s.X, k.x)
     for r in range(joint.row[j + 1] - joint.row[j]):
-        k.x[2 * n_x + r] = lam[l0 + joint.row[j] + r]
+        k.x[2 * n_x + r] = lam[joint.row[j] + r]
     call(table.address[j], k.x, 0, table.p, table.p_start[j], k.out, 0)
     return int(n_x)
 
@@ -140,18 +140,15 @@ def load_at(mech: Mech, k: Moving, c: int) -> float:
     if port.normal[c] == NORMAL_CONSTANT:
         return float(port.N[c])
     normals = port.normals
-    gather(normals, c, k.s.X, k.s.x)
-    call(normals.address[c], k.s.x, 0, normals.p, normals.p_start[c], k.s.out, 0)
+    evaluate(normals, c, k.s)
     return float(k.s.out[0])
 
 
 @block
-def forces(
-    mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, N: Floats, g: Floats, address: Ints
-) -> None:
+def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats, address: Ints) -> None:
     """All forces on extended coordinates (``k.fy``) and signals (``k.fu``); slip velocities and loads of the ports.
 
-    ``lam[l0:]``, ``F[f0:]``: multipliers and friction forces; N (n_c,) before max with 0.
+    ``lam``, ``F``: multipliers and friction forces; N (n_c,) before max with 0.
     """
     linear, s = mech.linear, k.s
     n_y, n_u = k.ddy.shape[0], s.ddu.shape[0]
@@ -177,17 +174,17 @@ def forces(
     for e in range(linear.B.shape[0]):
         fy[linear.Bi[e]] += linear.B[e] * X[1 + 2 * n_y + linear.Bj[e]]
     element_forces(mech.elements, mech.spread, s, fy)
-    joint_forces(mech, k, lam, F, l0, f0, N, g)
-    contact_forces(mech, k, lam, F, l0, f0, N, g)
+    joint_forces(mech, k, lam, F, N, g)
+    contact_forces(mech, k, F, N, g)
 
 
 @kernel
-def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, N: Floats, g: Floats) -> None:
+def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) -> None:
     """Reactions and friction of joints; also the constraints and their rates, ``k.phi`` and ``k.phi_rate``."""
     joint = mech.joint
     table = joint.table
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, l0, mech.address)
+        n_x = call_joint(mech, k, j, lam, mech.address)
         m = joint.row[j + 1] - joint.row[j]
         a0 = table.x_start[j]
         c = joint.port[j]
@@ -211,15 +208,15 @@ def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int
         for a in range(n_x):
             force = 0.0
             for r in range(m):
-                force += k.out[m + r * n_x + a] * lam[l0 + joint.row[j] + r]
+                force += k.out[m + r * n_x + a] * lam[joint.row[j] + r]
             for i in range(d):
-                force += k.out[at + i * n_x + a] * F[f0 + first + i]
+                force += k.out[at + i * n_x + a] * F[first + i]
             if force != 0.0:
                 scatter(k, table, a0 + a, force)
 
 
 @kernel
-def contact_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, N: Floats, g: Floats) -> None:
+def contact_forces(mech: Mech, k: Moving, F: Floats, N: Floats, g: Floats) -> None:
     """Friction of contacts that are no joints, and what normal-force laws press with."""
     port = mech.port
     for c in range(port.joint.shape[0]):
@@ -229,21 +226,21 @@ def contact_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: i
         for a in range(port.row[c], port.row[c + 1]):
             form = first + 2 * (a - port.row[c])
             g[a] = value_of_form(k, port.slip, form + 1) - port.w[a]
-            scatter(k, port.slip, form, F[f0 + a])
+            scatter(k, port.slip, form, F[a])
         N[c] = load_at(mech, k, c)
         if port.normal[c] == NORMAL_LAW:
             scatter(k, port.normals, port.normals.x_start[c], max(N[c], 0.0) - port.N0[c])
 
 
 @kernel
-def pull_back(mech: Mech, k: Moving, f: Floats, f0: int) -> None:
-    """Forces on the degrees of freedom, f[f0:f0+n], from those on extended coordinates."""
+def pull_back(mech: Mech, k: Moving, f: Floats) -> None:
+    """Forces on the degrees of freedom, f[:n], from those on extended coordinates."""
     place = mech.place
     for e in range(k.ddy.shape[0]):
         force = k.fy[e]
         for i in range(place.y_start[e], place.y_start[e + 1]):
             at = place.y_at[i]
             if at < 0:
-                f[f0 + place.y_dof[i]] = force
+                f[place.y_dof[i]] = force
             elif force != 0.0:
-                f[f0 + place.y_dof[i]] += force * k.grad[at]
+                f[place.y_dof[i]] += force * k.grad[at]

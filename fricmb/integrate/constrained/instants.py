@@ -11,14 +11,15 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import plane
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import SLIP, STICK, Codes2, Floats, Floats2, Ints
+from fricmb.integrate.run.breakpoints import set_window_around
 
 
 @entry
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
-    force: Floats2, windows: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
+    force: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
     project: bool,
 ) -> int:  # fmt: skip
     """Complete every state (row by row); ``force`` (n_t, m + 2 m_p) start values [lam, F, n].  Number of failures.
@@ -29,8 +30,7 @@ def instants(
     failed = 0
     for i in range(times.shape[0]):
         y.t[0] = times[i]
-        k.s.window[0] = windows[i, 0]
-        k.s.window[1] = windows[i, 1]
+        set_window_around(mech.breakpoints, k.s.window, times[i])
         for j in range(y.q.shape[0]):
             y.q[j] = q[i, j]
             y.v[j] = v[i, j]
@@ -73,12 +73,10 @@ def follow(mech: Mech, k: Moving, y: State, small: float) -> None:
     if not some:
         return
     move(mech, k, y.t[0], y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     for c in range(y.mode.shape[0]):
-        speed = magnitude(mech.port.row, c, y.g)
-        if y.mode[c] == SLIP and plane(mech, c) and speed > small:
-            for a in range(mech.port.row[c], mech.port.row[c + 1]):
-                y.n[a] = y.g[a] / speed
+        if y.mode[c] == SLIP and plane(mech, c) and magnitude(mech.port.row, c, y.g) > small:
+            point_along(mech.port.row, c, y.g, 1.0, y.n)
 
 
 @entry
@@ -88,12 +86,12 @@ def constraints(
 ) -> int:  # fmt: skip
     """Constraints (m,), their rates (m,) and entries of their Jacobian G at an instant; the number of entries."""
     move(mech, k, t, q, v, mech.address)
-    forces(mech, k, lam, F, 0, 0, N, g, mech.address)
+    forces(mech, k, lam, F, N, g, mech.address)
     joint, table, place = mech.joint, mech.joint.table, mech.place
     n_y = k.ddy.shape[0]
     count = 0
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        n_x = call_joint(mech, k, j, lam, mech.address)
         m = joint.row[j + 1] - joint.row[j]
         for r in range(m):
             row = joint.row[j] + r

@@ -9,11 +9,10 @@ from typing import NamedTuple
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, slope_at
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, Order, Place
-from fricmb.integrate.model.forces import gather
+from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Ints
 
@@ -68,21 +67,35 @@ def add_form(mech: Mech, k: Moving, L: Layers, row: int, table: Table, a: int, v
             add_extended(mech, k, L, row, e, i >= n_y, value * table.form_coefficient[j], mech.address)
 
 
+@kernel
+def add_slopes(mech: Mech, k: Moving, A: Floats, line: int, by_row: bool, table: Table, a: int, value: float) -> None:
+    """Add ``value d(form a)/dq`` to a row of one layer, or (not ``by_row``) to a column."""
+    if value == 0.0:
+        return
+    place = mech.place
+    for j in range(table.form_start[a], table.form_start[a + 1]):
+        e = table.form_index[j] - 1
+        if 0 <= e < k.ddy.shape[0]:
+            for i in range(place.y_start[e], place.y_start[e + 1]):
+                slope, dof = value * table.form_coefficient[j] * place_slope(place, k, i), place.y_dof[i]
+                if by_row:
+                    add(mech.order, A, line, dof, slope)
+                else:
+                    add(mech.order, A, dof, line, slope)
+
+
 @block
 def add_column(
     mech: Mech, k: Moving, A: Floats, column: int, table: Table, a: int, value: float, address: Ints
 ) -> None:
     """Add ``value d(form a)/dq`` as a column: minus the force of a multiplier on the degrees of freedom."""
-    if value == 0.0:
-        return
-    place = mech.place
-    n_y = k.ddy.shape[0]
-    for j in range(table.form_start[a], table.form_start[a + 1]):
-        e = table.form_index[j] - 1
-        if 0 <= e < n_y:
-            for i in range(place.y_start[e], place.y_start[e + 1]):
-                grad = place_slope(place, k, i)
-                add(mech.order, A, place.y_dof[i], column, value * table.form_coefficient[j] * grad)
+    add_slopes(mech, k, A, column, False, table, a, value)
+
+
+@block
+def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, value: float, address: Ints) -> None:
+    """Add ``value d(form a)/dq`` to a row of one layer."""
+    add_slopes(mech, k, A, row, True, table, a, value)
 
 
 @block
@@ -144,8 +157,7 @@ def add_structure(mech: Mech, k: Moving, L: Layers, address: Ints) -> None:
                         add(mech.order, L.A2, place.dof[d0 + i], place.dof[d0 + j], -value)
     elements, spread, s = mech.elements, mech.spread, k.s
     for e in range(elements.address.shape[0]):
-        n_x = gather(elements, e, s.X, s.x)
-        call(elements.address[e], s.x, 0, elements.p, elements.p_start[e], s.out, 0)
+        n_x = evaluate(elements, e, s)
         n_f = spread.f_start[e + 1] - spread.f_start[e]
         x0 = elements.x_start[e]
         for f in range(n_f):
@@ -160,15 +172,13 @@ def add_structure(mech: Mech, k: Moving, L: Layers, address: Ints) -> None:
 
 
 @block
-def add_joints(
-    mech: Mech, k: Moving, lam: Floats, F: Floats, l0: int, f0: int, L: Layers, full: bool, address: Ints
-) -> None:
+def add_joints(mech: Mech, k: Moving, lam: Floats, F: Floats, L: Layers, full: bool, address: Ints) -> None:
     """Constraints and reactions; ``full``: with what changes with position (else the rows and columns of G alone)."""
     joint = mech.joint
     table = joint.table
     n = mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - joint.row[-1]
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, l0, mech.address)
+        n_x = call_joint(mech, k, j, lam, mech.address)
         m = joint.row[j + 1] - joint.row[j]
         a0 = table.x_start[j]
         H = m + m * n_x
@@ -198,23 +208,8 @@ def add_joints(
                 for b in range(n_x):
                     value = k.out[H + a * n_x + b]
                     for i in range(d):
-                        value += F[f0 + mech.port.row[c] + i] * k.out[slope_at(n_x, at, d, i, a) + b]
+                        value += F[mech.port.row[c] + i] * k.out[slope_at(n_x, at, d, i, a) + b]
                     add_stiffness(mech, k, L, table, a0 + a, table, a0 + b, -value, mech.address)
-
-
-@block
-def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, value: float, address: Ints) -> None:
-    """Add ``value d(form a)/dq`` to a row of one layer."""
-    if value == 0.0:
-        return
-    place = mech.place
-    n_y = k.ddy.shape[0]
-    for j in range(table.form_start[a], table.form_start[a + 1]):
-        e = table.form_index[j] - 1
-        if 0 <= e < n_y:
-            for i in range(place.y_start[e], place.y_start[e + 1]):
-                grad = place_slope(place, k, i)
-                add(mech.order, A, row, place.y_dof[i], value * table.form_coefficient[j] * grad)
 
 
 @block
@@ -231,8 +226,7 @@ def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool, addres
             add_column(mech, k, L.A1, first + a, port.slip, form, -1.0, mech.address)
         if full and port.normal[c] == NORMAL_LAW and N[c] > 0.0:
             normals, s = port.normals, k.s
-            gather(normals, c, s.X, s.x)
-            call(normals.address[c], s.x, 0, normals.p, normals.p_start[c], s.out, 0)
+            evaluate(normals, c, s)
             x0 = normals.x_start[c]
             for i in range(2):
                 add_stiffness(mech, k, L, normals, x0, normals, x0 + i, -s.out[1 + i], mech.address)

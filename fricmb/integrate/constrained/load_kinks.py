@@ -46,7 +46,7 @@ def law_side(mech: Mech, k: Moving, c: int, g: Floats, N: Floats) -> float:
 
 
 @kernel
-def slopes(mech: Mech, k: Moving, j: int) -> int:
+def slopes(mech: Mech, j: int) -> int:
     """Where in ``k.out`` the slopes dN/dlam of joint j, just evaluated, begin."""
     n_x = mech.joint.n_x[j]
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
@@ -54,7 +54,7 @@ def slopes(mech: Mech, k: Moving, j: int) -> int:
 
 
 @kernel
-def mark_bends(mech: Mech, k: Moving, y: State, out: Watch) -> None:
+def mark_bends(mech: Mech, k: Moving, out: Watch) -> None:
     """Mark the joints whose load is linear in the reactions by pieces: slopes stay where reactions change a little."""
     joint = mech.joint
     for j in range(joint.port.shape[0]):
@@ -110,8 +110,8 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
 @kernel
 def read_slopes(mech: Mech, k: Moving, j: int, lam: Floats, out: Floats) -> None:
     """Slopes dN/dlam of joint j into its rows of ``out``."""
-    call_joint(mech, k, j, lam, 0, mech.address)
-    at = slopes(mech, k, j)
+    call_joint(mech, k, j, lam, mech.address)
+    at = slopes(mech, j)
     for r in range(mech.joint.row[j], mech.joint.row[j + 1]):
         out[r] = k.out[at + r - mech.joint.row[j]]
 

@@ -26,7 +26,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import plane
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
 
 
@@ -149,5 +149,4 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
             part[c] = ARRIVES
         else:
             y.mode[c] = SLIP
-            for a in range(row, port.row[c + 1]):
-                y.n[a] = y.g[a] / speed
+            point_along(port.row, c, y.g, 1.0, y.n)

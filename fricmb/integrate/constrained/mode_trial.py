@@ -9,7 +9,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, SLIGHT, aim, lack, lightness, plane, slip_speed, spare
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.friction_cone import stick_limit
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 
 #: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT to rest while
@@ -106,9 +106,7 @@ def set_out(mech: Mech, y: State) -> None:
             y.mode[c] = SLIP
             aim(mech, y.mode, y.F, y.n)
             if magnitude(row, c, y.F) == 0.0:
-                size = magnitude(row, c, y.ga)
-                for a in range(row[c], row[c + 1]):
-                    y.n[a] = y.ga[a] / size if size > 0.0 else y.n[a]
+                point_along(row, c, y.ga, 1.0, y.n)
 
 
 @kernel

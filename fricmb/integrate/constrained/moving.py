@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
-from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.forces import Scratch, scratch_of
 from fricmb.integrate.problem import Codes, Floats, Problem
 
 
@@ -51,12 +51,10 @@ class Moving(NamedTuple):
 
 
 class Lengths(NamedTuple):
-    """Of the space for calls: places and their rates, what goes into templates and comes out."""
+    """Of the space for places and their rates, and for what goes into joints and places and comes out of them."""
 
     grad: int
     hess: int
-    s_x: int
-    s_out: int
     n_x: int
     n_out: int
 
@@ -74,16 +72,10 @@ def _lengths(problem: Problem) -> Lengths:
     slip = directions + 2
     n_x = int(np.max(2 * widths + rows, initial=8))
     n_out = int(np.max(2 * rows + 3 * widths * rows + slip * widths * (widths + 1) + widths + 8, initial=8))
-    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
-    s_x, s_f = max(8, states + 2), int(np.max(np.diff(problem.elements.f_start), initial=0))
-    for templates in (problem.elements.table, problem.contacts.normal_table):
-        s_x = max(s_x, int(np.max(np.diff(templates.x_start), initial=0)))
     b = int(np.max(np.diff(m.places.dof_start), initial=1))
     return Lengths(
         grad=int(packed.place.grad_start[-1]),
         hess=int(packed.place.hess_start[-1]),
-        s_x=s_x,
-        s_out=max(8 + s_f * (s_x + 4), 2 + s_x, states * (states + 3) + 4),
         n_x=n_x,
         n_out=max(n_out, 2 + 2 * b + 2 * b * b),
     )
@@ -92,12 +84,8 @@ def _lengths(problem: Problem) -> Lengths:
 def moving_of(problem: Problem) -> Moving:
     """Arrays for evaluating the problem."""
     m, n_u, size = mechanism_of(problem), problem.n_u, lengths(problem)
-    scratch = Scratch(
-        np.zeros(1 + 2 * m.n_y + 2 * n_u), np.zeros(n_u), np.zeros(size.s_x), np.zeros(size.s_out),
-        np.array([-np.inf, np.inf]),
-    )  # fmt: skip
     return Moving(
-        scratch, np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
+        scratch_of(problem), np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
         np.zeros(problem.n_c), np.ones(1), np.ones(1), np.zeros(2), np.zeros(2), np.zeros(problem.n_c),

@@ -15,7 +15,7 @@ from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
-from fricmb.integrate.model.problem_structs import Spread, Table, _table
+from fricmb.integrate.model.problem_structs import Spread, Table, _table, spread_of
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 
@@ -154,17 +154,13 @@ def _pack(problem: Problem) -> Mech:
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
         _table(contacts.law_table), _table(contacts.normal_table),
     )  # fmt: skip
-    spread = Spread(
-        problem.elements.f_start, problem.elements.spread_start, problem.elements.spread_dof,
-        np.append(problem.elements.spread_coefficient, 0.0),
-    )  # fmt: skip
     p = m.places
     rest = of_pattern(problem, "places", lambda: _place_rows(m))
     places = Place(p.address, p.p_start, np.append(p.p, 0.0), p.dof_start, p.dof, p.first, *rest)
     order, half = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
     size = m.n + int(rows.sum()) + problem.m + problem.n_z
     return room(Mech(
-        linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread,
+        linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread_of(problem),
         Order(order, band_sizes(size, half)),
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), addresses(*_blocks()),
     ))  # fmt: skip

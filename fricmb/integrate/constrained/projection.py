@@ -22,7 +22,7 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints
     last = 1e300
     for i in range(CORRECTIONS):
         move(mech, k, y.t[0], y.q, y.v, mech.address)
-        forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+        forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
         if i == 0 and not instant_matrix(mech, k, w, y, NONE, mech.address):
             return False
         for j in range(w.r.shape[0]):
@@ -48,7 +48,7 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
     n, m, n_c = y.q.shape[0], y.lam.shape[0], y.mode.shape[0]
     row = mech.port.row
     move(mech, k, y.t[0], y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     if not (factored and not stuck) and not instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address):
         return False
     for _ in range(2):
@@ -64,5 +64,5 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
         for j in range(n):
             y.v[j] -= w.r[j]
         move(mech, k, y.t[0], y.q, y.v, mech.address)
-        forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+        forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     return True

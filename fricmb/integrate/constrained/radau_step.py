@@ -20,6 +20,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.stage_predictor import lagrange
+from fricmb.integrate.step.tableau import by_line
 
 
 class Control(NamedTuple):
@@ -29,7 +30,7 @@ class Control(NamedTuple):
     that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c
     for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts`` work done; ``longest`` (1,) step of all;
     ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
-    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s+1, n_z) space of
+    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z) space of
     ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter.
     """
 
@@ -61,7 +62,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         np.zeros(1), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), np.array([1.0, 0.0, 0.0]),
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), np.zeros(1), np.zeros(stops), np.zeros(n),
         np.zeros(2), np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros((s + 1, problem.n_z)), np.zeros(problem.n_z),
+        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z),
     )  # fmt: skip
 
 
@@ -156,7 +157,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), y.mode, mech.address)
+    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), mech.address)
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
@@ -171,10 +172,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
     for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.Z)):
         for a in range(start.shape[0]):
             scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), c.noise_z[a], 1e-290)
-            high, low = tab.top[0, 0] * start[a], tab.top[1, 0] * start[a]
-            for j in range(s):
-                high += tab.top[0, j + 1] * part[j, a]
-                low += tab.top[1, j + 1] * part[j, a]
+            high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
             last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
     ratio = min(1.0, last / before) if before > 0.0 else 1.0
     return float(last * ratio / c.rtol[0])
@@ -236,5 +234,5 @@ def end_step(
 def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int) -> None:
     """Powers at stage i into ``c.power[i]``."""
     move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-    forces(mech, k, st.lam[i], st.F[i], 0, 0, st.N[i], st.g[i], mech.address)
+    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i], mech.address)

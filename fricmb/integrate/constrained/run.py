@@ -26,9 +26,11 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
-from fricmb.integrate.step.step_control import SAMPLED
+from fricmb.integrate.step.step_control import SAMPLED, first_step
 
 CHUNK = 1024
+#: Part that a first step takes of the time in which velocities change.
+PART = 0.05
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
 MULTISTEP_STAGES = 5
 
@@ -64,7 +66,7 @@ def run_mechanism(
         given = (mech, k, w, y, end, before, st, control, out, record, part)
         go_on = _bdf_loop(problem, start, t_end, stages, given) if multistep else partial(drive, *given)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
-        code = watched(begin, mech, k, w, y, control, out, record, part, start.mode is not None, small)
+        code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
             _settle(workspace, problem, start, t_end, reach)
             code = chunks.fill(go_on, y.t, memory, progress)
@@ -94,7 +96,7 @@ def _set_up(
     c.v[:], c.z[:] = np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
-    c.stops[:] = np.sort(problem.signals.breakpoints)
+    c.stops[:] = mech_of(problem).breakpoints
     workspace.out.opened[0] = (m.joints.dropped == 2).sum()
     reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
     small = 1e-12 * max(top, reach)
@@ -112,7 +114,7 @@ def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: floa
         to_come = _speed_to_come(problem, start, t_end, load, c.mass)
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
         out.size[0] = max(float(out.size[0]), to_come)
-    c.h[0] = _first_step(np.asarray(y.v), np.asarray(y.a), t_end - start.t)
+    c.h[0] = first_step(y.v, y.a, t_end - start.t, PART)
 
 
 def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
@@ -176,13 +178,4 @@ def _reach(problem: Problem, start: Start, t_end: float) -> float:
     force = np.zeros((1, int(m.joints.row[-1]) + 2 * problem.m))
     a = complete_at(problem, np.array([start.t]), q, v, z, np.ones((1, nc), np.int8), force)[4]
     push = float(np.abs(a).max(initial=0.0))
-    return _first_step(v, a, t_end - start.t) * push if push < np.inf else 0.0
-
-
-def _first_step(v: Floats, a: Floats, span: float) -> float:
-    """A small part of the time in which velocities change."""
-    h = 0.01 * span
-    top, push = np.abs(v).max(initial=0.0), np.abs(a).max(initial=0.0)
-    if push > 0.0 and top > 0.0:
-        h = min(h, 0.05 * top / push)
-    return float(max(h, 1e-10 * span))
+    return first_step(v, a, t_end - start.t, PART) * push if push < np.inf else 0.0

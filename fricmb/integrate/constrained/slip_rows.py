@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.template import call
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, slope_at
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row, place_slope
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.model.forces import gather
+from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.friction_cone import cone_margin
-from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
@@ -82,12 +81,9 @@ def keep_held(mech: Mech, mode: Codes, now: Floats, F: Floats) -> None:
 @kernel
 def aim(mech: Mech, mode: Codes, F: Floats, n: Floats) -> None:
     """Directions of ports that slip in a plane: against their forces."""
-    row = mech.port.row
     for c in range(mode.shape[0]):
         if mode[c] == SLIP and plane(mech, c):
-            size = magnitude(row, c, F)
-            for a in range(row[c], row[c + 1]):
-                n[a] = -F[a] / size if size > 0.0 else n[a]
+            point_along(mech.port.row, c, F, -1.0, n)
 
 
 @block
@@ -105,7 +101,7 @@ def add_slip(
         else:
             add_row(mech, k, L.A1, row, port.slip, a0, value, mech.address)
         return
-    n_x = call_joint(mech, k, j, lam, 0, mech.address)
+    n_x = call_joint(mech, k, j, lam, mech.address)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
     own, d = at + direction * n_x, directions(mech, c)
     a0 = table.x_start[j]
@@ -129,7 +125,7 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
     port, place, j = mech.port, mech.place, mech.port.joint[c]
     table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
     if j >= 0:
-        n_x = call_joint(mech, k, j, lam, 0, mech.address)
+        n_x = call_joint(mech, k, j, lam, mech.address)
         table, first = mech.joint.table, mech.joint.table.x_start[j]
         at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
     value = 0.0
@@ -165,12 +161,11 @@ def add_load(
     if j < 0:
         if full and port.normal[c] != NORMAL_CONSTANT:
             normals, s = port.normals, k.s
-            n_x = gather(normals, c, s.X, s.x)
-            call(normals.address[c], s.x, 0, normals.p, normals.p_start[c], s.out, 0)
+            n_x = evaluate(normals, c, s)
             for i in range(n_x):
                 add_form(mech, k, L, row, normals, normals.x_start[c] + i, value * s.out[1 + i], mech.address)
         return
-    n_x = call_joint(mech, k, j, lam, 0, mech.address)
+    n_x = call_joint(mech, k, j, lam, mech.address)
     m = joint.row[j + 1] - joint.row[j]
     at = load_place(n_x, friction_at(n_x, m), directions(mech, c)) + 1
     first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1] - joint.row[-1]

@@ -24,7 +24,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, mech_of, mechanism_of
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
-from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Pivots, Problem
+from fricmb.integrate.problem import Complexes2, Floats, Floats2, Ints, Pivots, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.tableau import Tableau
 
@@ -83,10 +83,10 @@ def linearise(mech: Mech, k: Moving, y: State, st: Stages, address: Ints) -> Non
     L.A1[:] = 0.0
     L.A2[:] = 0.0
     move(mech, k, y.t[0], y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, 0, 0, y.N, y.g, mech.address)
+    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     add_mass(mech, L)
     add_structure(mech, k, L, mech.address)
-    add_joints(mech, k, y.lam, y.F, 0, 0, L, True, mech.address)
+    add_joints(mech, k, y.lam, y.F, L, True, mech.address)
     add_contacts(mech, k, y.N, L, True, mech.address)
     add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, L, True, mech.address)
     size = mech.order.place.shape[0]
@@ -132,8 +132,8 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
             st.Q[i, a] += h * st.tab.A[i, j] * st.V[j, a]
         st.acc[a] /= h
     move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-    forces(mech, k, st.lam[i], st.F[i], 0, 0, st.N[i], st.g[i], mech.address)
-    pull_back(mech, k, st.x, 0)
+    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
+    pull_back(mech, k, st.x)
     for a in range(n):
         r[a] = -st.x[a]
     linear = mech.linear
@@ -191,9 +191,7 @@ ITERATIONS = 12
 
 
 @block
-def iterate_stages(
-    mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float, mode: Codes, address: Ints
-) -> int:
+def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float, address: Ints) -> int:
     """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
     s = st.tab.c.shape[0]
     last = np.inf

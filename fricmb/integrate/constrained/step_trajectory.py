@@ -139,22 +139,13 @@ def complete_at(
     F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
     lam, a = np.zeros((count, m)), np.zeros((count, problem.n))
     mech = mech_of(problem)
-    windows = _windows(mech.breakpoints, t)
     solid, still = np.ascontiguousarray, 1e-11 * float(np.abs(v).max(initial=0.0))
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),
-            windows, still, F, N, g, lam, a, project,
+            still, F, N, g, lam, a, project,
         )  # fmt: skip
     return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
-
-
-def _windows(stops: Floats, t: Floats) -> Floats:
-    """Interval between two breakpoints that each time belongs to, a little inside."""
-    edges = np.concatenate([[-1e300], stops, [1e300]])
-    i = np.searchsorted(edges, t, side="right") - 1
-    low, high = edges[i], edges[np.minimum(i + 1, len(edges) - 1)]
-    return np.column_stack([low + 4e-16 * np.abs(low) * (low > -1e300), high - 4e-16 * np.abs(high) * (high < 1e300)])
 
 
 def lagrange_weights(nodes: Floats, x: Floats) -> Floats:

@@ -30,9 +30,8 @@ from fricmb.integrate.run.stop import stopped
 
 @entry
 def begin(
-    mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, rec: Record, part: Codes, given: bool,
-    small: float,
-) -> int:  # fmt: skip
+    mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, given: bool, small: float
+) -> int:
     """Modes, forces and accelerations at the start."""
     set_window(c, k.s.window, y.t[0] + 4e-16 * abs(y.t[0]) + 1e-300)
     if not project_velocities(mech, k, w, y, False, False, mech.address):
@@ -58,7 +57,7 @@ def begin(
         return FAIL_MARGIN
     out.sigma[0] = out.sigma[1]
     n_c = y.mode.shape[0]
-    mark_bends(mech, k, y, out)
+    mark_bends(mech, k, out)
     for _ in range(mech.joint.port.shape[0]):
         triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, False)
         worst = 2 * n_c

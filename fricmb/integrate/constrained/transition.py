@@ -21,7 +21,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.contact.transition import record_changes
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Ints
 from fricmb.integrate.run.breakpoints import set_window
 from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL
@@ -81,11 +81,9 @@ def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
         return False
     row = mech.port.row
     for i in range(y.mode.shape[0]):
-        speed = magnitude(row, i, y.g)
-        if y.mode[i] == STICK and speed > 1e-11 * size:
+        if y.mode[i] == STICK and magnitude(row, i, y.g) > 1e-11 * size:
             y.mode[i] = SLIP
-            for a in range(row[i], row[i + 1]):
-                y.n[a] = y.g[a] / speed
+            point_along(row, i, y.g, 1.0, y.n)
     turn_with_slip(mech, k, y, size, -1)
     return True
 
@@ -140,10 +138,8 @@ def change_modes(
         if j % 2 == 1:
             y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
             if y.mode[port] == SLIP:
-                speed = magnitude(row, port, y.g)
-                for a in range(row[port], row[port + 1]):
-                    y.n[a] = y.g[a] / speed if speed > 0.0 else y.n[a]
-                part[port] = ARRIVES if speed <= 1e-11 * out.size[0] else SLIPS_ON
+                point_along(row, port, y.g, 1.0, y.n)
+                part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.size[0] else SLIPS_ON
         elif y.mode[port] == STICK:
             forced = -1 if give_way(mech, k, y, part, LETS_GO) else port
         elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.size[0]:

@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import MANY, Watch
-from fricmb.integrate.model.law_values import coefficient
+from fricmb.integrate.model.law_values import along, coefficient
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Ints
 
 #: Directions of the reaction for which the margin of a joint is looked at.
@@ -53,7 +53,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
         n_x = joint.n_x[j]
         rows = joint.row[j + 1] - joint.row[j]
         at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
-        mu, _, by_load = coefficient(port, port.laws, c, k.s, along(mech, y, c), max(y.N[c], 0.0))
+        mu, _, by_load = coefficient(port, port.laws, c, k.s, along(port.row, c, y.n, y.g), max(y.N[c], 0.0))
         factor = mu + by_load * max(y.N[c], 0.0)
         for i in range(rows):
             out.lam[joint.row[j] + i] = y.lam[joint.row[j] + i]
@@ -63,7 +63,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
                 for i in range(rows):
                     angle = 2.0 * np.pi * (d + 0.13) / AROUND
                     out.lam[joint.row[j] + i] = np.cos(angle) if i == 0 else np.sin(angle)
-            call_joint(mech, k, j, out.lam, 0, mech.address)
+            call_joint(mech, k, j, out.lam, mech.address)
             answer = 0.0
             for i in range(rows):
                 answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
@@ -79,15 +79,6 @@ def push(mech: Mech, y: State, c: int, r: Floats, r0: int) -> None:
     """A unit force along the slip of port c as a right-hand side."""
     for a in range(mech.port.row[c], mech.port.row[c + 1]):
         r[r0 + a] = y.n[a]
-
-
-@kernel
-def along(mech: Mech, y: State, c: int) -> float:
-    """Slip speed of port c along its direction."""
-    speed = 0.0
-    for a in range(mech.port.row[c], mech.port.row[c + 1]):
-        speed += y.n[a] * y.g[a]
-    return float(speed)
 
 
 @kernel
@@ -124,9 +115,9 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
             c = out.contacts[i]
             owner = port.joint[c]
             rows = joint.row[owner + 1] - joint.row[owner]
-            n_x = call_joint(mech, k, owner, y.lam, 0, mech.address)
+            n_x = call_joint(mech, k, owner, y.lam, mech.address)
             at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
-            mu, _, by_load = coefficient(port, port.laws, c, k.s, along(mech, y, c), max(y.N[c], 0.0))
+            mu, _, by_load = coefficient(port, port.laws, c, k.s, along(port.row, c, y.n, y.g), max(y.N[c], 0.0))
             answer = 0.0
             for r in range(rows):
                 answer += k.out[at + 1 + r] * w.r[n + joint.row[owner] + r]

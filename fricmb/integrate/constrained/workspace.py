@@ -13,6 +13,7 @@ from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.constrained.state import Instant, State, instant_of, state_of
 from fricmb.integrate.constrained.turning import turning_rows
 from fricmb.integrate.constrained.watch import Watch, watch_of
+from fricmb.integrate.model.forces import longest_call
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.workspace import lent
 from fricmb.integrate.step.tableau import radau
@@ -67,4 +68,4 @@ def _find_sizes(problem: Problem) -> tuple[int, ...]:
     m, order = mechanism_of(problem), mech_of(problem).order
     own = problem.n, problem.n_u, problem.n_z, problem.m, problem.n_c, problem.signals.breakpoints.size
     joints = m.n_y, m.n_rows, len(m.joints.port), turning_rows(problem)
-    return (*lengths(problem), *own, *joints, len(order.place), int(order.sizes[3]))
+    return (*lengths(problem), *longest_call(problem), *own, *joints, len(order.place), int(order.sizes[3]))

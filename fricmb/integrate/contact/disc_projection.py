@@ -16,7 +16,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import load_factor
 from fricmb.integrate.model.friction_discs import largest, least_energy, relative_acceleration, units
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Ports
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats
@@ -64,15 +64,13 @@ def release(ports: Ports, y: State, part: Codes, mode: Codes, F: Floats) -> bool
     for k in range(nc):
         mode[k] = OPEN
         if part[k] != 0:
-            row0 = ports.row[k]
             size = magnitude(ports.row, k, F)
             # on its cone and not accelerated it is held, but for one that has just been found to break away
             slips = free[k] and size >= (1.0 - 1e-9) * limit[k]
             slips = slips and (part[k] == 2 or slip_start(ports, y, F, k) > STARTS * largest(y.a0))
             mode[k] = SLIP if slips else STICK
-            if slips and size > 0.0:
-                for a in range(row0, ports.row[k + 1]):
-                    y.n[a] = -F[a] / size
+            if slips:
+                point_along(ports.row, k, F, -1.0, y.n)
     return True
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
-from fricmb.integrate.contact.transition import Before, record_changes
+from fricmb.integrate.contact.transition import Before, keep_modes, record_changes
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.model.forces import Scratch, set_time
 from fricmb.integrate.model.problem_structs import Packed
@@ -30,10 +30,7 @@ def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: boo
         for k in range(y.mode.shape[0]):
             if r.part[k] == 1 and y.mode[k] == SLIP:
                 r.part[k] = 2
-        for k in range(y.mode.shape[0]):
-            old.mode[k] = y.mode[k]
-        for a in range(y.n.shape[0]):
-            old.n[a] = y.n[a]
+        keep_modes(y, old)
     code = settle(packed, s, y, r, address)
     if given and code == 0:
         record_changes(packed.ports, y.t[0], y, old, out)

@@ -22,7 +22,7 @@ from fricmb.integrate.model.accelerations import accelerate, complete, kinematic
 from fricmb.integrate.model.forces import Scratch, normal_force
 from fricmb.integrate.model.friction_cone import break_away, load_factor
 from fricmb.integrate.model.friction_discs import share
-from fricmb.integrate.model.law_values import coefficient, magnitude
+from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
 from fricmb.integrate.model.state import INFINITE, State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
@@ -115,10 +115,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
             break
         worst, back = find_wrong(y, r, held, least * big)
         if worst >= 0:
-            row0 = ports.row[worst]
-            size = magnitude(ports.row, worst, w.F[0])
-            for a in range(row0, ports.row[worst + 1]):
-                y.n[a] = -w.F[0, a] / size
+            point_along(ports.row, worst, w.F[0], -1.0, y.n)
             r.mode[worst] = SLIP
         elif back >= 0:
             r.mode[back] = STICK
@@ -312,8 +309,7 @@ def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, jumped: bool, addre
             r.part[k] = 0
             y.mode[k] = SLIP
         if r.part[k] == 0:
-            for a in range(row0, packed.ports.row[k + 1]):
-                y.n[a] = y.g[a] / speed
+            point_along(packed.ports.row, k, y.g, 1.0, y.n)
 
 
 @block

@@ -11,7 +11,7 @@ from fricmb.integrate.model.accelerations import share_load, slip_rate
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.friction_discs import NEARLY, least_slip
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import AFTER, BEFORE, Rows, record, record_event
@@ -41,6 +41,15 @@ class Before(NamedTuple):
 
 
 @kernel
+def keep_modes(y: State, old: Before) -> None:
+    """Keep the modes and directions that there are before a transition."""
+    for c in range(y.mode.shape[0]):
+        old.mode[c] = y.mode[c]
+    for a in range(y.n.shape[0]):
+        old.n[a] = y.n[a]
+
+
+@kernel
 def turned(ports: Laws, k: int, mode: int, n: Floats, old: Floats) -> bool:
     """Whether one-dimensional slip of contact k has changed its sense."""
     row0 = ports.row[k]
@@ -49,18 +58,26 @@ def turned(ports: Laws, k: int, mode: int, n: Floats, old: Floats) -> bool:
 
 
 @kernel
-def record_changes(ports: Laws, t: float, y: Modes, old: Modes, out: Events) -> None:
-    """Record an event at t for every contact whose mode, or sense of one-dimensional slip, differs from ``old``."""
+def record_changes(ports: Laws, t: float, y: Modes, old: Modes, out: Events) -> bool:
+    """Record an event at t for every contact whose mode, or sense of one-dimensional slip, is not that of ``old``.
+
+    Returns whether there are any.
+    """
+    some = False
     for c in range(y.mode.shape[0]):
+        kind = -1
         if y.mode[c] != old.mode[c]:
+            kind = EVENT_STICK if y.mode[c] == STICK else EVENT_SLIP
             if y.mode[c] == OPEN:
-                record_event(out, t, c, EVENT_OPEN)
+                kind = EVENT_OPEN
             elif old.mode[c] == OPEN:
-                record_event(out, t, c, EVENT_CLOSE)
-            else:
-                record_event(out, t, c, EVENT_STICK if y.mode[c] == STICK else EVENT_SLIP)
+                kind = EVENT_CLOSE
         elif turned(ports, c, y.mode[c], y.n, old.n):
-            record_event(out, t, c, EVENT_REVERSAL)
+            kind = EVENT_REVERSAL
+        if kind >= 0:
+            record_event(out, t, c, kind)
+            some = True
+    return some
 
 
 @kernel
@@ -96,11 +113,9 @@ def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool
         return False
     slips = least_slip(row, y.way)
     for c in range(y.mode.shape[0] if slips > 0.0 else 0):
-        speed = magnitude(row, c, y.way)
-        if old.mode[c] == STICK and r.part[c] == 1 and speed > slips:
+        if old.mode[c] == STICK and r.part[c] == 1 and magnitude(row, c, y.way) > slips:
             r.part[c] = 2
-            for a in range(row[c], row[c + 1]):
-                y.n[a] = y.way[a] / speed
+            point_along(row, c, y.way, 1.0, y.n)
     return slips > 0.0
 
 
@@ -118,10 +133,7 @@ def transition(
     # an open contact has no other transition (located without a step, nothing has told which it is)
     lifted = lifted or (contact >= 0 and (y.mode[contact] == OPEN or holds_nothing(packed, y, contact)))
     record(out, y, BEFORE)
-    for c in range(y.mode.shape[0]):
-        old.mode[c] = y.mode[c]
-    for a in range(y.n.shape[0]):
-        old.n[a] = y.n[a]
+    keep_modes(y, old)
     find_open(packed, s, y, address)
     if lifted:
         # the normal force is at its zero, up to round-off of either sign
@@ -140,9 +152,7 @@ def transition(
             pass
         elif old.mode[contact] == STICK:
             r.part[contact] = 2
-            size = magnitude(ports.row, contact, y.F)
-            for a in range(ports.row[contact], ports.row[contact + 1]):
-                y.n[a] = -y.F[a] / size
+            point_along(ports.row, contact, y.F, -1.0, y.n)
         else:
             r.part[contact] = 1
     code = settle(packed, s, y, r, address)

@@ -31,7 +31,7 @@ from fricmb.integrate.run.outcomes import (
     REJECTED,
 )
 from fricmb.integrate.step.event_functions import find_changing_contact
-from fricmb.integrate.step.exact_structure import CAP, rung_below
+from fricmb.integrate.step.exact_structure import rung_below
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, update_scales
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
 from fricmb.integrate.step.step_error import step_error
@@ -115,7 +115,7 @@ def advance(
     contact = find_changing_contact(packed, s, y, end, one, acc, clock.found, address)
     wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
     if one.exact.ladder.shape[0] > 0:
-        wanted = min(wanted, one.exact.par[CAP])
+        wanted = min(wanted, one.exact.cap[0])
     if contact < 0 and error <= 1.0:
         if end.fault[0] > 0.0:
             return FAIL_LAW

@@ -33,7 +33,8 @@ from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_ac
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import arrive, crowded
 from fricmb.integrate.model.accelerations import slip_rate
-from fricmb.integrate.model.forces import Scratch, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, set_instant
+from fricmb.integrate.model.law_values import along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
@@ -53,10 +54,7 @@ def calm(packed: Packed, y: State, h: float) -> bool:
     for k in range(y.mode.shape[0]):
         if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
             continue
-        r = 0.0
-        for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-            r += y.n[a] * y.g[a]
-        if r < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
+        if along(packed.ports.row, k, y.n, y.g) < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
             return False
     return True
 
@@ -104,8 +102,7 @@ def drive_bdf(
 @entry
 def jacobian_at(packed: Packed, s: Scratch, y: State, one: OneStep) -> None:
     """The Jacobian of the structure at a state, for the spectrum."""
-    set_time(packed.signals, s, y.t[0], y.q.shape[0])
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, y.t[0], y.q, y.v)
     jacobians(packed, s, one.fac)
 
 

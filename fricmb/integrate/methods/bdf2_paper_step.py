@@ -9,30 +9,17 @@ from typing import NamedTuple
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.transition import turned
+from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
 from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, normal_force, set_instant
 from fricmb.integrate.model.friction_cone import cone_margin
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
-from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record, record_event
-from fricmb.integrate.problem import (
-    EVENT_CLOSE,
-    EVENT_OPEN,
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    LAW_SMOOTH,
-    OPEN,
-    SLIP,
-    STICK,
-    Codes,
-    Floats,
-    Ints,
-)
+from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances
@@ -82,8 +69,7 @@ def solve_with(
     beta_h = formula(y, one, last, h, same)
     again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
     if again:
-        set_time(packed.signals, s, y.t[0], y.q.shape[0])
-        set_state(s, y.q, y.v)
+        set_instant(packed.signals, s, y.t[0], y.q, y.v)
     if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
         return False
     st.t[0] = y.t[0] + h
@@ -101,11 +87,8 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
     """Change the modes that the solution just found contradicts; True where there are any."""
     ports, w = packed.ports, one.w
     changed = False
-    set_time(packed.signals, s, one.st.t[0], y.q.shape[0])
-    set_state(s, one.st.Q[0], one.st.V[0])
+    set_instant(packed.signals, s, one.st.t[0], one.st.Q[0], one.st.V[0])
     for k in range(mode.shape[0]):
-        row0 = ports.row[k]
-        d = ports.row[k + 1] - row0
         if ports.var[k] >= 0:
             N = normal_force(ports, packed.normals, k, s)
             if (N <= 0.0) != (mode[k] == OPEN):
@@ -117,31 +100,8 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
         if cone_margin(ports, packed.laws, k, s, w.F[0], w.N[0, k]) < 0.0:
             mode[k] = SLIP
             changed = True
-            size = magnitude(ports.row, k, w.F[0])
-            for a in range(row0, row0 + d):
-                y.n[a] = -w.F[0, a] / size
+            point_along(ports.row, k, w.F[0], -1.0, y.n)
     return changed
-
-
-@kernel
-def note_changes(packed: Packed, y: State, last: Last, mode: Codes, n: Floats, t: float, out: Rows) -> bool:
-    """Record what has changed against the last step; True where anything has."""
-    some = False
-    for k in range(mode.shape[0]):
-        was, now = last.mode[k], mode[k]
-        kind = -1
-        if was != now:
-            kind = EVENT_STICK if now == STICK else EVENT_SLIP
-            if now == OPEN:
-                kind = EVENT_OPEN
-            elif was == OPEN:
-                kind = EVENT_CLOSE
-        elif turned(packed.ports, k, now, n, last.n):
-            kind = EVENT_REVERSAL
-        if kind >= 0:
-            record_event(out, t, k, kind)
-            some = True
-    return some
 
 
 @entry
@@ -189,7 +149,7 @@ def drive_paper(
         # the published scheme takes the force from the step's own equations
         for a in range(y.F.shape[0]):
             end.F[a] = one.w.F[0, a]
-        if note_changes(packed, y, last, last.trial, end.n, end.t[0], out):
+        if record_changes(packed.ports, end.t[0], end, last, out):
             for k in range(y.mode.shape[0]):
                 end.mode[k] = y.mode[k]
             record(out, end, BEFORE)

@@ -9,6 +9,7 @@ from fricmb.integrate.methods.bdf_stability import Guard
 from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch, normal_force
 from fricmb.integrate.model.friction_cone import cone_margin, stick_limit
+from fricmb.integrate.model.law_values import along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK
@@ -40,8 +41,6 @@ def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: Gu
     h = end.t[0] - y.t[0]
     meets = False
     for k in range(y.mode.shape[0]):
-        row0 = packed.ports.row[k]
-        d = packed.ports.row[k + 1] - row0
         if packed.ports.var[k] >= 0:
             N = normal_force(packed.ports, packed.normals, k, s)
             if (N < 0.0) != (y.mode[k] == OPEN):
@@ -49,10 +48,7 @@ def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: Gu
         if packed.ports.law[k] == LAW_SMOOTH:
             continue
         if y.mode[k] == SLIP:
-            r0, r1 = 0.0, 0.0
-            for a in range(row0, row0 + d):
-                r0 += y.n[a] * y.g[a]
-                r1 += end.n[a] * end.g[a]
+            r0, r1 = along(packed.ports.row, k, y.n, y.g), along(packed.ports.row, k, end.n, end.g)
             d0, d1 = h * slip_rate(packed, y, k), h * slip_rate(packed, end, k)
             if r1 <= 0.0 or dips(r0, r1, d0, d1) < 0.0:
                 meets = True
@@ -68,7 +64,7 @@ def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: Gu
             # or has just done so within this one: twice what the parabola through three points rises above its ends
             if max(before, over) + 0.5 * h * h * bend / (h + guard.over[y.mode.shape[0]]) > 0.0:
                 meets = True
-            for a in range(row0, row0 + d):
+            for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
                 # a load that changes so fast where nothing moves is seen by no error test
                 if abs(end.F[a] - y.F[a]) > LEAP * limit:
                     meets = True

@@ -22,7 +22,7 @@ from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.band_matrix import places_of
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
-from fricmb.integrate.step.step_control import SAMPLED
+from fricmb.integrate.step.step_control import SAMPLED, first_step
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 3e7
@@ -128,18 +128,6 @@ def run_loop(
     return run.trajectory(ended() or (None if code == FULL else FAILURES[code]))
 
 
-def first_step(run: Collector) -> float:
-    """A careful first step: a small part of the fastest oscillation and of the time in which velocities change."""
-    span = run.t_end - run.start.t
-    h = 0.01 * span
-    if len(run.problem.omega):
-        h = min(h, 0.1 / max(float(np.max(run.problem.omega)), 1e-300))
-    v, a = np.max(np.abs(run.y.v), initial=0.0), np.max(np.abs(run.y.a), initial=0.0)
-    if a > 0.0 and v > 0.0:
-        h = min(h, 0.1 * v / a)
-    return float(max(h, 1e-12 * span))
-
-
 #: Parts of a run that a step may take with exact structure, and where no loads are prescribed.
 COLLOCATED, FREE = 0.02, 0.1
 
@@ -165,10 +153,15 @@ def structure_is_stiff(structure: Structure, h: float) -> bool:
     return bool(np.any(h * (np.abs(structure.C) + h * np.abs(structure.K)) > STIFF * inertia))
 
 
+#: Part that a first step takes of the fastest oscillation, and of the time in which velocities change.
+PART = 0.1
+
+
 def set_clock(run: Collector) -> None:
     """Step control at the start of a run."""
     clock = run.clock
-    clock.h[0] = clock.usual[0] = first_step(run)
+    omega = float(np.max(run.problem.omega, initial=0.0))
+    clock.h[0] = clock.usual[0] = first_step(run.y.v, run.y.a, run.t_end - run.start.t, PART, omega)
     clock.span[:] = run.start.t, run.t_end
     clock.longest[0] = longest_step(run)
     clock.stops[:] = run.packed.breakpoints

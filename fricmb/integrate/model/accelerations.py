@@ -7,15 +7,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_real
-from fricmb.integrate.model.forces import (
-    Scratch,
-    belt_velocity,
-    normal_force,
-    powers,
-    set_state,
-    set_time,
-    structure_force,
-)
+from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_instant, structure_force
 from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.friction_discs import share
 from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
@@ -34,8 +26,7 @@ def kinematics(packed: Packed, s: Scratch, y: State) -> None:
     n = y.q.shape[0]
     ports = packed.ports
     nu = s.ddu.shape[0]
-    set_time(packed.signals, s, y.t[0], n)
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, y.t[0], y.q, y.v)
     for a in range(y.g.shape[0]):
         value = -belt_velocity(ports, s, n, a)
         size = abs(value)

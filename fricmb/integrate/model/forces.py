@@ -28,7 +28,8 @@ class Scratch(NamedTuple):
 
 def longest_call(problem: Problem) -> tuple[int, int]:
     """Most numbers that a template of the problem takes, and most that one gives."""
-    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 3
+    directions = int(np.max(np.diff(problem.contacts.row), initial=2))
+    states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
     n_x = max(8, states + 2)
     for templates in (problem.elements.table, problem.contacts.normal_table):
         n_x = max(n_x, int(np.max(np.diff(templates.x_start), initial=0)))
@@ -37,8 +38,9 @@ def longest_call(problem: Problem) -> tuple[int, int]:
 
 
 def scratch_of(problem: Problem) -> Scratch:
-    """Empty arrays for evaluating the given problem."""
-    X, ddu = np.zeros(1 + 2 * problem.n + 2 * problem.n_u), np.zeros(problem.n_u)
+    """Empty arrays for evaluating the given problem; with a mechanism X has its extended coordinates."""
+    coordinates = problem.n if problem.mechanism is None else problem.mechanism.n_y
+    X, ddu = np.zeros(1 + 2 * coordinates + 2 * problem.n_u), np.zeros(problem.n_u)
     x, out = (np.zeros(size) for size in longest_call(problem))
     return Scratch(X, ddu, x, out, np.array([-np.inf, np.inf]))
 
@@ -58,9 +60,10 @@ def set_time(signals: Table, s: Scratch, t: float, n: int) -> None:
 
 
 @kernel
-def set_state(s: Scratch, q: Floats, v: Floats) -> None:
-    """Put the state into X."""
+def set_instant(signals: Table, s: Scratch, t: float, q: Floats, v: Floats) -> None:
+    """Put time, prescribed signals and state into X."""
     n = q.shape[0]
+    set_time(signals, s, t, n)
     for i in range(n):
         s.X[1 + i] = q[i]
         s.X[1 + n + i] = v[i]
@@ -77,6 +80,14 @@ def gather(table: Table, i: int, X: Floats, x: Floats) -> int:
             value += table.form_coefficient[j] * X[table.form_index[j]]
         x[a - first] = value
     return int(last - first)
+
+
+@kernel
+def evaluate(table: Table, i: int, s: Scratch) -> int:
+    """Call function i at X: arguments in ``s.x``, what it gives in ``s.out``; returns the number of arguments."""
+    count = gather(table, i, s.X, s.x)
+    call(table.address[i], s.x, 0, table.p, table.p_start[i], s.out, 0)
+    return count
 
 
 @kernel
@@ -107,8 +118,7 @@ def structure_force(structure: Structure, elements: Table, spread: Spread, s: Sc
 def element_forces(elements: Table, spread: Spread, s: Scratch, f: Floats) -> None:
     """Add the forces of nonlinear elements at X to f."""
     for k in range(elements.address.shape[0]):
-        gather(elements, k, s.X, s.x)
-        call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
+        evaluate(elements, k, s)
         for b in range(spread.f_start[k], spread.f_start[k + 1]):
             for j in range(spread.start[b], spread.start[b + 1]):
                 f[spread.dof[j]] += spread.coefficient[j] * s.out[b - spread.f_start[k]]
@@ -119,8 +129,7 @@ def element_powers(elements: Table, spread: Spread, s: Scratch) -> tuple[float, 
     """What nonlinear elements lose and bring in at X."""
     loss, supply = 0.0, 0.0
     for k in range(elements.address.shape[0]):
-        n_x = gather(elements, k, s.X, s.x)
-        call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
+        n_x = evaluate(elements, k, s)
         n_f = spread.f_start[k + 1] - spread.f_start[k]
         loss += s.out[n_f * (1 + n_x) + 1]
         supply += s.out[n_f * (1 + n_x) + 2]
@@ -143,8 +152,7 @@ def structure_jacobian(structure: Structure, elements: Table, spread: Spread, s:
     K[:] = structure.K
     C[:] = structure.C
     for k in range(elements.address.shape[0]):
-        n_x = gather(elements, k, s.X, s.x)
-        call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
+        n_x = evaluate(elements, k, s)
         n_f = spread.f_start[k + 1] - spread.f_start[k]
         x0 = elements.x_start[k]
         for b in range(n_f):
@@ -168,20 +176,18 @@ def normal_force(ports: Ports, normals: Table, k: int, s: Scratch) -> float:
     """Normal force of contact k at X, before max(0, .)."""
     if ports.var[k] < 0:
         return float(ports.N[k])
-    gather(normals, k, s.X, s.x)
-    call(normals.address[k], s.x, 0, normals.p, normals.p_start[k], s.out, 0)
+    evaluate(normals, k, s)
     return float(s.out[0])
 
 
 @kernel
-def normal_gradient(ports: Ports, normals: Table, k: int, s: Scratch, Nq: Floats, Nv: Floats) -> None:
+def normal_gradient(normals: Table, k: int, s: Scratch, Nq: Floats, Nv: Floats) -> None:
     """Gradient of the normal force of contact k with respect to q and v (n,)."""
     n = Nq.shape[0]
     for i in range(n):
         Nq[i] = 0.0
         Nv[i] = 0.0
-    n_x = gather(normals, k, s.X, s.x)
-    call(normals.address[k], s.x, 0, normals.p, normals.p_start[k], s.out, 0)
+    n_x = evaluate(normals, k, s)
     x0 = normals.x_start[k]
     for a in range(n_x):
         for j in range(normals.form_start[x0 + a], normals.form_start[x0 + a + 1]):
@@ -224,9 +230,8 @@ def powers(packed: Packed, s: Scratch, F: Floats, N: Floats, g: Floats, out: Flo
         out[k] = loss
         if ports.acts[k]:
             # the bodies feel N - N0 along e: stored dV/de e', the rest is lost; a driven end brings the difference in
-            gather(packed.normals, k, s.X, s.x)
+            evaluate(packed.normals, k, s)
             rate = s.x[1]
-            call(packed.normals.address[k], s.x, 0, packed.normals.p, packed.normals.p_start[k], s.out, 0)
             felt = 0.0
             for i in range(n):
                 felt += ports.Wn[i, k] * s.X[1 + n + i]

@@ -37,6 +37,23 @@ def magnitude(row: Ints, k: int, x: Floats) -> float:
 
 
 @kernel
+def along(row: Ints, k: int, n: Floats, x: Floats) -> float:
+    """The part of x along the direction n of contact k."""
+    value = 0.0
+    for a in range(row[k], row[k + 1]):
+        value += n[a] * x[a]
+    return float(value)
+
+
+@kernel
+def point_along(row: Ints, k: int, x: Floats, sense: float, n: Floats) -> None:
+    """Make n, over the directions of contact k, that of x, or the opposite (``sense`` -1); where x is 0 it stays."""
+    size = magnitude(row, k, x)
+    for a in range(row[k], row[k + 1] if size > 0.0 else row[k]):
+        n[a] = sense * x[a] / size
+
+
+@kernel
 def smooth_force(
     laws: Table, k: int, s: Scratch, g: Floats, g0: int, d: int, N: float, z: Floats, z0: int, nz: int
 ) -> None:

@@ -126,6 +126,14 @@ def _table(templates: Templates) -> Table:
     return Table(address, p_start, p, x_start, form_start, form_index, coefficient, constant)
 
 
+def spread_of(problem: Problem) -> Spread:
+    """Where the forces of a problem's elements act; one spare coefficient, as in a table."""
+    elements = problem.elements
+    return Spread(
+        elements.f_start, elements.spread_start, elements.spread_dof, np.append(elements.spread_coefficient, 0.0)
+    )
+
+
 def packed_of(problem: Problem) -> Packed:
     """The problem as the kernels take it, made once per problem object."""
     return once_per_problem(problem, "packed", lambda: _pack(problem))
@@ -145,11 +153,7 @@ def _pack(problem: Problem) -> Packed:
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
         (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([softness(problem)]),
     )  # fmt: skip
-    spread = Spread(
-        problem.elements.f_start, problem.elements.spread_start, problem.elements.spread_dof,
-        np.append(problem.elements.spread_coefficient, 0.0),
-    )  # fmt: skip
     return room(Packed(
         structure, ports, _table(problem.signals.table), _table(contacts.law_table), _table(contacts.normal_table),
-        _table(problem.elements.table), spread, np.sort(np.asarray(problem.signals.breakpoints, float)),
+        _table(problem.elements.table), spread_of(problem), np.sort(np.asarray(problem.signals.breakpoints, float)),
     ))  # fmt: skip

@@ -7,11 +7,12 @@ import numpy as np
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.accelerations import complete, kinematics
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import INSIDE
 from fricmb.integrate.problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
+from fricmb.integrate.run.breakpoints import set_window_around
 
 
 @kernel
@@ -89,16 +90,11 @@ def point_along_slip(packed: Packed, s: Scratch, y: State) -> None:
 
 
 @kernel
-def set_window_around(stops: Floats, s: Scratch, t: float) -> None:
-    """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
-    low, high = -np.inf, np.inf
-    for i in range(stops.shape[0]):
-        if stops[i] <= t:
-            low = max(low, stops[i] + 4e-16 * abs(stops[i]) + 1e-300)
-        else:
-            high = min(high, stops[i] - 4e-16 * abs(stops[i]) - 1e-300)
-    s.window[0] = low
-    s.window[1] = high
+def point_against_forces(packed: Packed, y: State) -> None:
+    """Directions of slip against the forces; none where there is no force."""
+    for c in range(y.mode.shape[0]):
+        y.n[packed.ports.row[c] : packed.ports.row[c + 1]] = 0.0
+        point_along(packed.ports.row, c, y.F, -1.0, y.n)
 
 
 @kernel
@@ -143,11 +139,9 @@ def complete_at(
     for c in range(nc):
         y.mode[c] = modes[c]
         y.N[c] = left[at_F + m + c]
-        force = 0.0
-        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-            force += left[at_F + a] ** 2
-        for a in range(packed.ports.row[c], packed.ports.row[c + 1]):
-            y.n[a] = -left[at_F + a] / np.sqrt(force) if force > 0.0 else 0.0
+    for a in range(m):
+        y.F[a] = left[at_F + a]
+    point_against_forces(packed, y)
     point_along_slip(packed, s, y)
     complete(packed, s, y, sizes, pivots, address)
 
@@ -256,7 +250,7 @@ def sample_rows(
     for j in range(t.shape[0]):
         k = index[j]
         left = values[k]
-        set_window_around(stops, s, side[j])
+        set_window_around(stops, s.window, side[j])
         if t[j] > left[0] and k + 1 < values.shape[0] and values[k + 1, 0] > left[0]:
             if part.shape[0] > 0:
                 if ends_of_step(values, kind, k, ends):

@@ -41,6 +41,19 @@ def set_window(times: Times, window: Floats, t: float) -> float:
 
 
 @kernel
+def set_window_around(stops: Floats, window: Floats, t: float) -> None:
+    """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
+    low, high = -np.inf, np.inf
+    for i in range(stops.shape[0]):
+        if stops[i] <= t:
+            low = max(low, stops[i] + 2.0 * EPS * abs(stops[i]) + 1e-300)
+        else:
+            high = min(high, stops[i] - 2.0 * EPS * abs(stops[i]) - 1e-300)
+    window[0] = low
+    window[1] = high
+
+
+@kernel
 def reached(t: float, stop: float) -> bool:
     """Whether t is the stop, up to round-off."""
     return bool(stop - t <= 20.0 * EPS * max(abs(t), abs(stop)))

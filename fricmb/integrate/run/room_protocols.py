@@ -63,6 +63,14 @@ class Laws(Protocol):
         """Where the rows of each contact begin."""
 
 
+class LawsWithStates(Laws, Protocol):
+    """Laws, and where the states of each begin, ``z_start[k]:z_start[k+1]``."""
+
+    @property
+    def z_start(self) -> Ints:
+        """Where the states of each law begin."""
+
+
 class Mobility(Protocol):
     """Contacts whose rows ``row[k]:row[k+1]`` accelerate by D F under forces F (m,)."""
 

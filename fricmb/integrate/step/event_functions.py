@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import share_load
-from fricmb.integrate.model.forces import Scratch, normal_force, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, normal_force, set_instant
 from fricmb.integrate.model.friction_cone import cone_margin, squared_margin, stick_limit
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
@@ -119,8 +119,7 @@ def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) 
     below 0 before the first stage however short the step is.
     """
     sign = -1.0 if y.mode[k] == OPEN else 1.0
-    set_time(packed.signals, s, y.t[0], y.q.shape[0])
-    set_state(s, y.q, y.v)
+    set_instant(packed.signals, s, y.t[0], y.q, y.v)
     largest = 0.0
     for j in range(one.tab.c.shape[0]):
         one.margin[j] = sign * one.N[j, k]
@@ -140,8 +139,7 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, speed: float, k: in
     """
     value = np.inf
     if packed.ports.var[k] >= 0:
-        set_time(packed.signals, s, end.t[0], y.q.shape[0])
-        set_state(s, end.q, end.v)
+        set_instant(packed.signals, s, end.t[0], end.q, end.v)
         value = normal_force(packed.ports, packed.normals, k, s)
         found[1] = 1.0
         if y.mode[k] == OPEN:

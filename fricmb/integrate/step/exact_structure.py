@@ -9,20 +9,15 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Complexes3, Floats, Floats2, Floats3, Floats4, Ints, Pivots
+from fricmb.integrate.compile.room import annotations_of, array_type, room
+from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints, Pivots
+from fricmb.integrate.step.tableau import Tableau, one_stage
 
-#: ``flags``: number of inputs, of outputs, whether blocks are modes seen by velocities alone, whether powers other than
-#: friction are kept, unknown inputs, arguments of elements, arguments of normal forces, local forces of elements.
-INPUTS, OUTPUTS, IS_MODAL, LEDGER, UNKNOWN, ELEMENT_X, NORMAL_X, ELEMENT_F = range(8)
-#: ``par``: tolerance of a step per rtol, largest w h with exact weights, longest next step, fastest block, length
-#: of the step that was solved last.
-SAFETY, STIFF_AT, CAP, FASTEST_BLOCK, LENGTH = range(5)
 #: Rungs of the ladder 2^(k/4) of step sizes, and the one that stands for 1.
 RUNGS, UNIT_RUNG = 2000, 1000
 
@@ -33,12 +28,17 @@ Ints2 = Ints
 class Exact(NamedTuple):
     """Blocks, inputs and outputs, tables by step size and the work of one step; empty for other methods.
 
-    With b blocks, s nodes, s' for s and places that stay 0 (see ``compile.lanes``): ``blk`` (1, 2, b), ``co``
-    (2, n_o, b), ``ci`` (2, n_in, b), ``linked`` (n_o, n_in), ``mat`` (4, n, b) dofs by blocks, ``start`` (4, b, n)
-    blocks by forces and by velocities, ``MB`` (n_in, n) accelerations per input; ``nd``, ``mo``, ``cx`` tables of the
-    nodes; ``tb`` (slots, 6, b, s'), ``tk`` (slots, n_o n_in, s, s') by step size, slot 0 for steps off the ``ladder``.
-    ``bs`` (8, b) blocks at the start of the step; ``xf``, ``x`` (n_o, s) outputs without unknown inputs, and with;
-    ``P`` (n_in, s) inputs at the nodes; ``now``
+    With b blocks, s nodes, s' for s and places that stay 0 (see ``compile.lanes``).  Blocks: v' = -w2 u - damp v with
+    ``w2``, ``damp`` (1, b); ``c0``, ``c1`` (n_o, b) outputs by u and v; ``b0``, ``b1`` (n_in, b) inputs on them;
+    ``linked`` (n_o, n_in); ``q_u`` to ``v_v`` (n, b) dofs by blocks; ``force_0``, ``force_1``, ``start_0``, ``start_1``
+    (b, n) u and v by forces and by velocities; ``MB`` (n_in, n) accelerations per input.  (1,) each: ``modal`` whether
+    blocks are modes seen by velocities alone, ``ledger`` whether powers other than friction are kept, ``unknown``
+    inputs, ``safety`` tolerance of a step per rtol, ``stiff_at`` largest w h with exact weights, ``cap`` longest next
+    step, ``fastest`` block, ``length`` of the step that was solved last.
+    ``tab`` to ``mo``: tables of the nodes (``collocation.nodes``); by step size ``S`` to ``Q3`` (slots, b, s') and
+    ``tk`` (slots, n_o n_in, s, s'), slot 0 for steps off the ``ladder``; ``radau`` (s, s) space.
+    At the start of a step ``v0`` (b,) is v + e0, ``a0`` its rate, ``k0`` the rate of that; ``du``, ``dv`` (b,) gains.
+    ``xf``, ``x`` (n_o, s) outputs without unknown inputs, and with; ``P`` (n_in, s) inputs at the nodes; ``now``
     (n_in,) signals at the start; ``weight`` (n_in,); ``low`` (2, n+1) what rounding dropped from q and t, at the start
     and the end of the step; ``end`` (2, n) gain of q, and v at the end; ``node`` (2, s, n) q and v at the nodes.
     ``held`` (places, 3, s m, s m) what is left of the contacts' equations where some stick (collocation/held_rows),
@@ -47,26 +47,51 @@ class Exact(NamedTuple):
     element forces; ``A``, ``R``, ``pivots`` space for their elimination.
     """
 
-    flags: Ints
-    par: Floats
-    blk: Floats3
-    co: Floats3
-    ci: Floats3
+    w2: Floats2
+    damp: Floats2
+    c0: Floats2
+    c1: Floats2
+    b0: Floats2
+    b1: Floats2
     linked: Floats2
-    mat: Floats3
-    start: Floats3
+    q_u: Floats2
+    q_v: Floats2
+    v_u: Floats2
+    v_v: Floats2
+    force_0: Floats2
+    force_1: Floats2
+    start_0: Floats2
+    start_1: Floats2
     MB: Floats2
-    nd: Floats3
+    modal: Ints
+    ledger: Ints
+    unknown: Ints
+    safety: Floats
+    stiff_at: Floats
+    cap: Floats
+    fastest: Floats
+    length: Floats
+    tab: Tableau
+    monomial: Floats2
+    tails: Floats2
     mo: Floats3
-    cx: Complexes3
-    tb: Floats4
+    S: Floats3
+    IS: Floats3
+    IIS: Floats3
+    Q1: Floats3
+    Q2: Floats3
+    Q3: Floats3
     tk: Floats4
     ladder: Floats
     slots: Ints
     kappa: Floats2
     terms: Ints
-    wk: Floats3
-    bs: Floats2
+    radau: Floats2
+    v0: Floats
+    a0: Floats
+    k0: Floats
+    du: Floats
+    dv: Floats
     xf: Floats2
     x: Floats2
     P: Floats2
@@ -88,23 +113,18 @@ class Exact(NamedTuple):
     pivots: Pivots
 
 
-_KINDS = {"Floats": 1, "Floats2": 2, "Floats3": 3, "Floats4": 4}
-
-
 @lru_cache(maxsize=1)
 def no_exact() -> Exact:
     """An empty room, for methods without exact structure."""
-    made = []
-    for name, note in Exact.__annotations__.items():
-        kind = getattr(note, "__forward_arg__", note)
-        if kind in _KINDS:
-            made.append(np.zeros((0,) * _KINDS[kind]))
-        elif kind == "Ints2":
+    made: list[Any] = []
+    for note in annotations_of(Exact).values():
+        if note == "Tableau":
+            made.append(one_stage())
+        elif note == "Ints2":
             made.append(np.zeros((0, 0), np.int64))
-        elif kind == "Complexes3":
-            made.append(np.zeros((0, 0, 0), complex))
         else:
-            made.append(np.zeros(8 if name == "flags" else 0, np.int32 if kind == "Pivots" else np.int64))
+            kind = array_type(note)
+            made.append(np.zeros((0,) * kind.ndim, str(kind.dtype)))
     return room(Exact._make(made))
 
 

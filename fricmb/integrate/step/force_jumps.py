@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.forces import Scratch, gather, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, gather, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2
@@ -23,8 +23,7 @@ HALVINGS = 10
 @kernel
 def put_arguments(packed: Packed, s: Scratch, t: float, q: Floats, v: Floats, x: Floats) -> None:
     """Arguments of all elements at an instant, one element's after the other's."""
-    set_time(packed.signals, s, t, q.shape[0])
-    set_state(s, q, v)
+    set_instant(packed.signals, s, t, q, v)
     start = packed.elements.x_start
     for k in range(start.shape[0] - 1):
         gather(packed.elements, k, s.X, x[start[k] :])

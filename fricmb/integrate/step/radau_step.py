@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_state, set_time
+from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_instant
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
@@ -110,8 +110,7 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
     st, w, tab = one.st, one.w, one.tab
     again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
     if again:
-        set_time(packed.signals, s, y.t[0], n)
-        set_state(s, y.q, y.v)
+        set_instant(packed.signals, s, y.t[0], y.q, y.v)
     if not prepare(packed, tab, s, one.fac, w, one.counts, h, again, h == ladder(h, ONE_STEP_RUNGS), address):
         return False
     for i in range(n):
@@ -199,9 +198,16 @@ def update_scales(packed: Packed, y: State, one: OneStep, acc: Accuracy) -> None
         for i in range(y.q.shape[0]):
             acc.q[i] = max(acc.q[i], abs(one.st.Q[j, i]))
             acc.v[i] = max(acc.v[i], abs(one.st.V[j, i]))
-        for a in range(y.z.shape[0]):
+    update_port_scales(packed, one, acc)
+
+
+@kernel
+def update_port_scales(packed: Packed, one: OneStep, acc: Accuracy) -> None:
+    """Of these maxima those of contacts: states of laws and slip speeds."""
+    for j in range(one.tab.c.shape[0]):
+        for a in range(acc.z.shape[0]):
             acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
-        for k in range(y.mode.shape[0]):
+        for k in range(acc.r.shape[0]):
             acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, one.w.g[j]))
 
 
@@ -218,5 +224,4 @@ def add_work(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> No
 @kernel
 def from_stage(packed: Packed, s: Scratch, st: Stages, j: int) -> None:
     """X at stage j."""
-    set_time(packed.signals, s, st.t[j], st.V.shape[1])
-    set_state(s, st.Q[j], st.V[j])
+    set_instant(packed.signals, s, st.t[j], st.Q[j], st.V[j])

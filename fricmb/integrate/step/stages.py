@@ -15,7 +15,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_state, set_time, structure_force
+from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_instant, structure_force
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.contact_convergence import share_noise
@@ -67,8 +67,7 @@ def stage_residual(packed: Packed, s: Scratch, st: Stages, w: PortState, mode: C
             for j in range(st.V.shape[0]):
                 value += st.hA[i, j] * st.V[j, a]
             st.Q[i, a] = value
-        set_time(packed.signals, s, st.t[i], n)
-        set_state(s, st.Q[i], st.V[i])
+        set_instant(packed.signals, s, st.t[i], st.Q[i], st.V[i])
         structure_force(packed.structure, packed.elements, packed.spread, s, st.f[i])
         for a in range(n):
             for c in range(m):

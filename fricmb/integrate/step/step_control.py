@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.problem import Floats
 
 #: Part of a run that a step takes at most under loads that are not linear in time: where nothing moves, no error says
 #: how fast they change, so they are looked at a hundred times at least.
@@ -18,6 +19,17 @@ SAMPLED = 0.01
 ONE_STEP_SAFETY, BDF_SAFETY = 0.85, 0.9
 #: Rungs of their ladders between a step and its double.
 ONE_STEP_RUNGS, BDF_RUNGS = 8, 4
+
+
+def first_step(v: Floats, a: Floats, span: float, part: float, omega: float = 0.0) -> float:
+    """A careful first step: a small part of the run, and of the time in which velocities change, or of 1/omega."""
+    speed, rate = np.max(np.abs(v), initial=0.0), np.max(np.abs(a), initial=0.0)
+    h = SAMPLED * span
+    if rate > 0.0 and speed > 0.0:
+        h = min(h, part * speed / rate)
+    if omega > 0.0:
+        h = min(h, part / omega)
+    return float(max(h, 1e-12 * span))
 
 
 @kernel

@@ -17,6 +17,7 @@ from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
+from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 #: Relative round-off of a number.
 ROUND_OFF = 2.3e-16
@@ -54,6 +55,19 @@ def grain(packed: Packed, y: State, w: PortState, acc: Accuracy, h: float, i: in
     return float(acc.grain[i])
 
 
+@kernel
+def state_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Largest scaled tail of the laws' internal states."""
+    tab = one.tab
+    worst = 0.0
+    if y.z.shape[0] > 0:
+        state_noise(packed, one, acc, h)
+    for a in range(y.z.shape[0]):
+        size = max(acc.z[a], largest_in_step(y.z[a], one.w.z, a), one.noise_z[a], 1e-290)
+        worst = max(worst, abs(by_line(tab.top[0], y.z[a], one.w.z, a)) / size)
+    return worst
+
+
 @block
 def step_error(
     packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
@@ -65,28 +79,14 @@ def step_error(
     top_v = widest(acc.v)
     top_q = widest(acc.q)
     for i in range(y.q.shape[0]):
-        e_v = tab.top[0, 0] * y.v[i]
-        e_q = tab.top[0, 0] * y.q[i]
-        size_v = max(acc.v[i], abs(y.v[i]))
-        size_q = max(acc.q[i], abs(y.q[i]))
-        for j in range(n_s):
-            e_v += tab.top[0, j + 1] * st.V[j, i]
-            e_q += tab.top[0, j + 1] * st.Q[j, i]
-            size_v = max(size_v, abs(st.V[j, i]))
-            size_q = max(size_q, abs(st.Q[j, i]))
+        e_v, e_q = by_line(tab.top[0], y.v[i], st.V, i), by_line(tab.top[0], y.q[i], st.Q, i)
+        size_v = max(acc.v[i], largest_in_step(y.v[i], st.V, i))
+        size_q = max(acc.q[i], largest_in_step(y.q[i], st.Q, i))
         size_v = max(size_v, acc.floor_v[i], 1e-10 * top_v, grain(packed, y, one.w, acc, h, i) / acc.rtol[0], 1e-290)
         # a position that has only begun to move is measured by what its velocity brings within the step
         size_q = max(size_q, acc.floor_q[i], 1e-10 * top_q, h * size_v)
         worst = max(worst, abs(e_v) / size_v, abs(e_q) / size_q)
-    state_noise(packed, one, acc, h)
-    for a in range(y.z.shape[0]):
-        e_z = tab.top[0, 0] * y.z[a]
-        size_z = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
-        for j in range(n_s):
-            e_z += tab.top[0, j + 1] * one.w.z[j, a]
-            size_z = max(size_z, abs(one.w.z[j, a]))
-        worst = max(worst, abs(e_z) / size_z)
-    worst = max(worst, law_defect(packed, s, y, one, acc, h))
+    worst = max(worst, state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
     worst = max(worst / acc.rtol[0], too_long(growth(packed, s, y, one, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     return float(max(worst, unseen_force(packed, y, one, acc, h)))
@@ -109,9 +109,7 @@ def unseen_force(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
             N = max(N, one.w.N[j, k])
         allowed = RESOLVED * abs(packed.ports.mu_s[k]) * N + 1e-290
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-            error = one.tab.top[0, 0] * y.F[a]
-            for j in range(n_s):
-                error += one.tab.top[0, j + 1] * one.w.F[j, a]
+            error = by_line(one.tab.top[0], y.F[a], one.w.F, a)
             if abs(error) > allowed:
                 noise = 30.0 * force_noise(packed, y, k, h) + spring_noise(packed, acc, a)
                 worst = max(worst, abs(error) / (allowed + noise))

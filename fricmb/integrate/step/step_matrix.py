@@ -115,7 +115,7 @@ def jacobians(packed: Packed, s: Scratch, fac: Factor) -> None:
     for k in range(packed.ports.var.shape[0]):
         a = packed.ports.var[k]
         if a >= 0:
-            normal_gradient(packed.ports, packed.normals, k, s, fac.Nq[a], fac.Nv[a])
+            normal_gradient(packed.normals, k, s, fac.Nq[a], fac.Nv[a])
 
 
 @kernel

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2
 
@@ -35,6 +36,24 @@ class Tableau(NamedTuple):
     mid: Floats2
     rate: Floats2
     basis: Floats2
+
+
+@kernel
+def by_line(line: Floats, start: float, values: Floats2, column: int) -> float:
+    """What a line of ``top`` or ``mid`` makes of the value at the start of a step and a column of stage values."""
+    value = line[0] * start
+    for i in range(values.shape[0]):
+        value += line[i + 1] * values[i, column]
+    return float(value)
+
+
+@kernel
+def largest_in_step(start: float, values: Floats2, column: int) -> float:
+    """The largest magnitude of a quantity at the start of a step and at its stages."""
+    size = abs(start)
+    for i in range(values.shape[0]):
+        size = max(size, abs(values[i, column]))
+    return float(size)
 
 
 def _radau_nodes(s: int) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.csr import Csr
+from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import Floats, Ints, Problem
@@ -42,17 +42,6 @@ def _refusal(problem: Problem) -> str | None:
     return against_taylor(problem) or against_groups(problem)
 
 
-def _joint(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
-    """Two matrices over their joint symmetric pattern: start, index, values of each."""
-    rows = np.concatenate([A.rows, B.rows, A.index, B.index])
-    columns = np.concatenate([A.index, B.index, A.rows, B.rows])
-    nothing = np.zeros(len(rows) - len(A.value))
-    a = Csr.of_entries(rows, columns, np.concatenate([A.value, nothing]), A.shape)
-    b_values = np.concatenate([np.zeros(len(A.value)), B.value, np.zeros(len(rows) - len(A.value) - len(B.value))])
-    b = Csr.of_entries(rows, columns, b_values, A.shape)
-    return a.start, a.index, a.value, b.value
-
-
 def _diagonals(start: Ints, index: Ints, values: Floats, n: int) -> tuple[Ints, Floats]:
     """Offsets and diagonals (d, n), none where they are many or mostly empty."""
     rows = np.repeat(np.arange(n), np.diff(start))
@@ -74,7 +63,7 @@ def _statics(problem: Problem) -> dict[str, Any]:
     inverse = 1.0 / linear.csr("M").diagonal()
     Kx, Cx, B = linear.csr("Kx"), linear.csr("Cx"), linear.csr("B")
     K, C = _scaled(Kx.block(inside, inside), inverse), _scaled(Cx.block(inside, inside), inverse)
-    start, index, k, c = _joint(K, C)
+    start, index, (k, c) = on_one_pattern([K, C], (K.index, K.rows), (C.index, C.rows))
     offset, stiff = _diagonals(start, index, k, n)
     damped = bool(c.any())
     visc = _diagonals(start, index, c, n)[1] if damped and len(offset) else np.zeros((0, n))
@@ -84,9 +73,7 @@ def _statics(problem: Problem) -> dict[str, Any]:
         np.concatenate([B.value, -Ku.value]), (n, problem.n_u),
     )  # fmt: skip
     Fu, Cu = _scaled(Fu, inverse), _scaled(Cu, -inverse)
-    in_start, in_signal, in_u, in_du = _rectangular(Fu, Cu)
-    # the same pattern: where B has nothing, 0
-    in_b = _rectangular(Csr(Fu.shape, Fu.start, Fu.index, 0.0 * Fu.value), _over(B, Cu))[3]
+    in_start, in_signal, (in_u, in_du, in_b) = on_one_pattern([Fu, Cu, B])
     at, weights = legendre_rule(8)
     outside = np.zeros((3, problem.n_u, problem.n_u))
     outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
@@ -99,19 +86,6 @@ def _statics(problem: Problem) -> dict[str, Any]:
         "gauss": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "damped": np.array([int(damped)]),
         "signals": _table(problem.signals.table), **_contact_arrays(problem, inverse),
     }  # fmt: skip
-
-
-def _over(A: Csr, B: Csr) -> Csr:
-    """A over the joint pattern of both."""
-    rows, columns = np.concatenate([A.rows, B.rows]), np.concatenate([A.index, B.index])
-    return Csr.of_entries(rows, columns, np.concatenate([A.value, 0.0 * B.value]), A.shape)
-
-
-def _rectangular(A: Csr, B: Csr) -> tuple[Ints, Ints, Floats, Floats]:
-    rows, columns = np.concatenate([A.rows, B.rows]), np.concatenate([A.index, B.index])
-    a = Csr.of_entries(rows, columns, np.concatenate([A.value, 0.0 * B.value]), A.shape)
-    b = Csr.of_entries(rows, columns, np.concatenate([0.0 * A.value, B.value]), A.shape)
-    return a.start, a.index, a.value, b.value
 
 
 def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:

@@ -43,11 +43,6 @@ class Checkpoints:
             del self.held[1::2]
             self.stride *= 2
 
-    def before(self, t: float) -> dict[str, Any]:
-        """The last state not after t."""
-        times = [float(state["x"][0]) for state in self.held]
-        return self.held[max(0, int(np.searchsorted(times, t, side="right")) - 1)]
-
 
 class TaylorRun(Trajectory):
     """See the module; values at the times asked for in advance are held, others are run again from a checkpoint."""

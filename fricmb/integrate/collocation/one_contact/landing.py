@@ -5,49 +5,6 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.collocation.block_motion import two_sum
-from fricmb.integrate.collocation.layout import (
-    B0,
-    B1,
-    C0,
-    C1,
-    CHANGE,
-    COEFFICIENTS,
-    D_INV,
-    DAMP,
-    DIRECTION,
-    E1,
-    FASTEST,
-    FIRST,
-    LINES,
-    LOAD,
-    LOSS,
-    LOW_END,
-    MONOMIAL,
-    MU_0_N,
-    N_EVENTS,
-    NEXT,
-    NODE,
-    OUT,
-    RELATIVE,
-    RHS,
-    ROWS,
-    SLOPE,
-    TAIL_START,
-    TIME,
-    TIME_LOW,
-    U_END,
-    U_LOW,
-    V_END,
-    VECTORS,
-    W2,
-    WITH_START,
-    A,
-    D,
-    K,
-    N,
-    U,
-    V,
-)  # fmt: skip
 from fricmb.integrate.collocation.one_contact.phase import accelerations, project, settle, to_dofs
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.step import (
@@ -62,34 +19,23 @@ from fricmb.integrate.collocation.one_contact.step import (
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, Ints
-from fricmb.integrate.step.crossing import evaluate, lowest_between, root_between
+from fricmb.integrate.step.crossing import evaluate, lowest_between, polynomial, root_between
 
 
 @kernel
 def tail_of_r(run: Run, r0: float) -> float:
-    """Size of the last Legendre coefficient of r through its values at 0 and the nodes (in RHS)."""
-    last = run.nd[VECTORS, TAIL_START, 0] * r0
+    """Size of the last Legendre coefficient of r through its values at 0 and, in ``rhs``, the nodes."""
+    last = run.tab.top[0, 0] * r0
     for l in range(run.basis.shape[0]):
-        last += run.nd[VECTORS, TAIL_START, l + 1] * run.wk[LINES, RHS, l]
+        last += run.tab.top[0, l + 1] * run.rhs[l]
     return float(abs(last))
-
-
-@kernel
-def polynomial_of_r(run: Run, r0: float) -> None:
-    """Monomial coefficients of r from its values at 0 and the nodes (in RHS)."""
-    s = run.basis.shape[0]
-    for k in range(s + 1):
-        value = run.nd[WITH_START, k, 0] * r0
-        for l in range(s):
-            value += run.nd[WITH_START, k, l + 1] * run.wk[LINES, RHS, l]
-        run.wk[LINES, COEFFICIENTS, k] = value
 
 
 @kernel
 def grain_of_r(run: Run, h: float) -> float:
     """Round-off of r over a step: of what friction alone changes it by, many forces being about as large."""
-    last = run.flags[ROWS] - 1
-    return float(1e-14 * h * run.lim[MU_0_N] * max(run.con[D, 0, 0], run.con[D, last, last]))
+    last = run.belt.shape[0] - 1
+    return float(1e-14 * h * run.mu_0_N[0] * max(run.D[0, 0], run.D[last, last]))
 
 
 @kernel
@@ -102,28 +48,28 @@ def first_stop(run: Run, r0: float, h: float, tol: float) -> float:
     s = run.basis.shape[0]
     for i in range(s):
         r = 0.0
-        for a in range(run.flags[ROWS]):
-            r += run.nx[DIRECTION, a, i] * run.nx[RELATIVE, a, i]
-        run.wk[LINES, RHS, i] = r
+        for a in range(run.belt.shape[0]):
+            r += run.direction[a, i] * run.relative[a, i]
+        run.rhs[i] = r
     low = r0
     high = r0
     for i in range(s):
-        low = min(low, run.wk[LINES, RHS, i])
-        high = max(high, run.wk[LINES, RHS, i])
+        low = min(low, run.rhs[i])
+        high = max(high, run.rhs[i])
     # slip that dies out ends in round-off, which has no smooth part to resolve
     unresolved = max(0.0, tail_of_r(run, r0) - grain_of_r(run, h)) / (high + 1e-300)
     resolved = 2.0 + unresolved / min(0.03, max(tol, 1e-10))
     if unresolved < 1e-3 and low > 0.5 * (high - low):
         return float(resolved)
-    polynomial_of_r(run, r0)
-    series = run.wk[LINES, COEFFICIENTS]
+    series = run.coefficients
+    polynomial(run.tab, r0, run.rhs, series)
     before = 0.0
     falls = False
     for i in range(2 * s):
         # nodes and the points half-way between; a minimum between two of them is looked up
-        at = run.nd[VECTORS, NODE, i // 2]
+        at = run.tab.c[i // 2]
         if i % 2 == 0:
-            at = 0.5 * (at + (run.nd[VECTORS, NODE, i // 2 - 1] if i > 0 else 0.0))
+            at = 0.5 * (at + (run.tab.c[i // 2 - 1] if i > 0 else 0.0))
         value, slope, _ = evaluate(series, at)
         if value > 0.0 and falls and slope > 0.0:
             low = lowest_between(series, before, at, 1e-6 * at)
@@ -145,46 +91,44 @@ def resample(run: Run, m: int, ratio: float) -> None:
         for k in range(s):
             value = 0.0
             for l in range(s):
-                value += run.nd[MONOMIAL, k, l] * run.nx[DIRECTION, a, l]
-            run.wk[LINES, COEFFICIENTS, k] = value
+                value += run.monomial[k, l] * run.direction[a, l]
+            run.coefficients[k] = value
         for i in range(s):
-            t = run.nd[VECTORS, NODE, i] * ratio
+            t = run.tab.c[i] * ratio
             value = 0.0
             for k in range(s - 1, -1, -1):
-                value = value * t + run.wk[LINES, COEFFICIENTS, k]
-            run.nx[DIRECTION, a, i] = value
+                value = value * t + run.coefficients[k]
+            run.direction[a, i] = value
     for i in range(s):
         size = 0.0
         for a in range(m):
-            size += run.nx[DIRECTION, a, i] * run.nx[DIRECTION, a, i]
+            size += run.direction[a, i] * run.direction[a, i]
         size = math.sqrt(size)
         for a in range(m):
-            run.nx[DIRECTION, a, i] /= size
+            run.direction[a, i] /= size
 
 
 @kernel
 def closing_rate(run: Run, since: float) -> float:
     """Rate of r at the end of the step just solved, with the directions of its last node.
 
-    Accelerations go into A and K, the relative acceleration without friction into OUT + 2.
+    Accelerations and their rates go into ``a``, ``k``, the relative acceleration without friction into ``out[2]``.
     """
-    bx = run.bx
-    blk = run.blk
-    m = run.flags[ROWS]
+    m = run.belt.shape[0]
     end = run.basis.shape[0] - 1
     rate = 0.0
-    for j in range(blk.shape[2]):
-        u = bx[U_END, j] + bx[LOW_END, j]
-        bx[A, j] = bx[LOAD, j] + bx[SLOPE, j] * since - blk[0, W2, j] * u - blk[0, DAMP, j] * bx[V_END, j]
-        bx[K, j] = bx[SLOPE, j] - blk[0, W2, j] * bx[V_END, j]
+    for j in range(run.w2.shape[1]):
+        u = run.u_end[j] + run.low_end[j]
+        run.a[j] = run.load[j] + run.slope[j] * since - run.w2[0, j] * u - run.damp[0, j] * run.v_end[j]
+        run.k[j] = run.slope[j] - run.w2[0, j] * run.v_end[j]
     for a in range(m):
         value = 0.0
-        for j in range(blk.shape[2]):
-            value += run.co[C1, a, j] * (bx[A, j] - bx[E1, j]) + run.co[C0, a, j] * bx[V_END, j]
-        run.wk[LINES, OUT + 2, a] = value
+        for j in range(run.w2.shape[1]):
+            value += run.c1[a, j] * (run.a[j] - run.e1[j]) + run.c0[a, j] * run.v_end[j]
+        run.out[2, a] = value
         for b in range(m):
-            value -= run.con[D, a, b] * run.lim[MU_0_N] * run.nx[DIRECTION, b, end]
-        rate += run.nx[DIRECTION, a, end] * value
+            value -= run.D[a, b] * run.mu_0_N[0] * run.direction[b, end]
+        rate += run.direction[a, end] * value
     return float(rate)
 
 
@@ -194,49 +138,49 @@ def turns(run: Run) -> bool:
 
     A path that hits g = 0 all the same is followed until what is left does not matter (:func:`nearly_stopped`).
     """
-    if run.flags[ROWS] == 1:
+    if run.belt.shape[0] == 1:
         return False
     hold = 0.0
     for a in range(2):
         force = 0.0
         for b in range(2):
-            force += run.con[D_INV, a, b] * run.wk[LINES, OUT + 2, b]
+            force += run.D_inv[a, b] * run.out[2, b]
         hold += force * force
-    return bool(math.sqrt(hold) > run.lim[MU_0_N] * (1.0 + 1e-9))
+    return bool(math.sqrt(hold) > run.mu_0_N[0] * (1.0 + 1e-9))
 
 
 @kernel
 def snap(run: Run, r: float, tau: float) -> None:
     """Go on by a short tau with the end's force, to second order, after :func:`closing_rate`."""
-    for j in range(run.blk.shape[2]):
+    for j in range(run.w2.shape[1]):
         push = 0.0
         lift = 0.0
-        for a in range(run.flags[ROWS]):
-            push -= run.ci[B1, a, j] * run.lim[MU_0_N] * run.sm[N, a]
-            lift -= run.ci[B0, a, j] * run.lim[MU_0_N] * run.sm[N, a]
-        acceleration = run.bx[A, j] + push
-        velocity = run.bx[V, j] + lift
-        run.bx[U, j], run.bx[U_LOW, j] = two_sum(
-            run.bx[U, j], run.bx[U_LOW, j], velocity * tau + 0.5 * acceleration * tau * tau,
+        for a in range(run.belt.shape[0]):
+            push -= run.b1[a, j] * run.mu_0_N[0] * run.n[a]
+            lift -= run.b0[a, j] * run.mu_0_N[0] * run.n[a]
+        acceleration = run.a[j] + push
+        velocity = run.v[j] + lift
+        run.u[j], run.u_low[j] = two_sum(
+            run.u[j], run.u_low[j], velocity * tau + 0.5 * acceleration * tau * tau,
         )  # fmt: skip
-        jerk = run.bx[K, j] - run.blk[0, W2, j] * lift - run.blk[0, DAMP, j] * acceleration
-        run.bx[V, j] += acceleration * tau + 0.5 * jerk * tau * tau
-    run.sx[TIME], run.sx[TIME_LOW] = two_sum(run.sx[TIME], run.sx[TIME_LOW], tau)
-    run.sx[LOSS] += 0.5 * run.lim[MU_0_N] * r * tau
+        jerk = run.k[j] - run.w2[0, j] * lift - run.damp[0, j] * acceleration
+        run.v[j] += acceleration * tau + 0.5 * jerk * tau * tau
+    run.time[0], run.time_low[0] = two_sum(run.time[0], run.time_low[0], tau)
+    run.loss[0] += 0.5 * run.mu_0_N[0] * r * tau
 
 
 @block
 def arrive(run: Run, since: float, address: Ints) -> None:
     """The contact has come to g = 0: project, settle what follows, note the transition."""
-    before = run.sm[N, 0]
-    to_dofs(run, 0, run.blk.shape[2], since)
+    before = run.n[0]
+    to_dofs(run, 0, run.w2.shape[1], since)
     project(run)
     sticks = settle(run)
-    if sticks or (run.flags[ROWS] == 1 and run.sm[N, 0] * before < 0.0):
-        run.events[run.si[N_EVENTS], 0] = run.sx[TIME] + run.sx[TIME_LOW]
-        run.events[run.si[N_EVENTS], 1] = EVENT_STICK if sticks else EVENT_REVERSAL
-        run.si[N_EVENTS] += 1
-    run.sx[NEXT] = run.sx[FIRST]
+    if sticks or (run.belt.shape[0] == 1 and run.n[0] * before < 0.0):
+        run.events[run.n_events[0], 0] = run.time[0] + run.time_low[0]
+        run.events[run.n_events[0], 1] = EVENT_STICK if sticks else EVENT_REVERSAL
+        run.n_events[0] += 1
+    run.next_step[0] = run.first_step[0]
 
 
 @block
@@ -245,14 +189,14 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
 
     The step's length is corrected by r/r' until what is left is small enough to be crossed to second order.
     """
-    m = run.flags[ROWS]
+    m = run.belt.shape[0]
     s = run.basis.shape[0]
     end = s - 1
     length = root * h
     ratio = root
     for _ in range(8):
         resample(run, m, ratio)
-        accelerations(run, 0, run.blk.shape[2], since)
+        accelerations(run, 0, run.w2.shape[1], since)
         transfer_weights(run, length, 0, stiff, run.places)
         weigh(run, length)
         if not solve_slip(run, 0, length, tol, run.places):
@@ -263,9 +207,9 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
         r = 0.0
         turn = 0.0
         for a in range(m):
-            r += run.nx[DIRECTION, a, end] * run.nx[RELATIVE, a, end]
-            turn += (run.nx[DIRECTION, a, end] - run.nx[DIRECTION, a, end - 1]) ** 2
-        turn = math.sqrt(turn) / (length * (1.0 - run.nd[VECTORS, NODE, end - 1]))
+            r += run.direction[a, end] * run.relative[a, end]
+            turn += (run.direction[a, end] - run.direction[a, end - 1]) ** 2
+        turn = math.sqrt(turn) / (length * (1.0 - run.tab.c[end - 1]))
         end_state(run, 0, length)
         rate = closing_rate(run, since + length)
         if rate >= 0.0 or turns(run):
@@ -273,10 +217,10 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
         tau = -r / rate
         if abs(tau) > 0.5 * length:
             return -4.0
-        reach = max(run.wk[LINES, CHANGE, 0], run.wk[LINES, CHANGE, m - 1]) * run.lim[MU_0_N] * abs(tau)
-        swing = abs(tau) * run.lim[FASTEST]
+        reach = max(run.change[0], run.change[m - 1]) * run.mu_0_N[0] * abs(tau)
+        swing = abs(tau) * run.fastest[0]
         if reach * (0.5 * turn * abs(tau) + 0.2 * swing * swing) <= 5e-3 * tol and swing <= 0.01:
-            accelerations(run, 0, run.blk.shape[2], since)
+            accelerations(run, 0, run.w2.shape[1], since)
             loss = keep_slip(run, length)
             commit(run, length, loss)
             closing_rate(run, since + length)
@@ -290,12 +234,12 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
 @kernel
 def nearly_stopped(run: Run, since: float, tol: float, r: float, h: float) -> bool:
     """Whether g is too small to matter and falls: then the rest is crossed at once."""
-    m = run.flags[ROWS]
+    m = run.belt.shape[0]
     reach = 0.0
     for a in range(m):
         for b in range(m):
-            reach = max(reach, abs(run.con[D_INV, a, b]))
-    if r * reach * max(run.wk[LINES, CHANGE, 0], run.wk[LINES, CHANGE, m - 1]) > 1e-5 * tol:
+            reach = max(reach, abs(run.D_inv[a, b]))
+    if r * reach * max(run.change[0], run.change[m - 1]) > 1e-5 * tol:
         return False
     rate = closing_rate(run, since)
     if rate >= 0.0:

@@ -13,14 +13,6 @@ from fricmb.integrate.problem import Floats, Ints, Problem
 States = Callable[[Ints, Floats], tuple[Floats, Floats, Floats, Floats]]
 
 
-def has_ledger(problem: Problem, rate: Floats) -> bool:
-    """Whether anything but friction takes or brings energy."""
-    K, n = problem.linear.Kx[: problem.n, : problem.n], problem.n
-    belts = problem.contacts.w + problem.contacts.Wu @ rate
-    drives = problem.n_u > 0 or belts.any()
-    return bool(problem.linear.Cx[:n, :n].any() or drives or np.any(K != K.T))
-
-
 def powers(problem: Problem, start: Floats, rate: Floats, t: Floats, q: Floats, v: Floats, F: Floats) -> Floats:
     """Damping loss and input (2, n_t) where signals are ``start + rate t``."""
     linear, contacts, n = problem.linear, problem.contacts, problem.n

@@ -5,53 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.collocation.block_motion import two_sum
-from fricmb.integrate.collocation.layout import (
-    BELT,
-    D_INV,
-    DAMP,
-    E0,
-    E1,
-    FORCE,
-    FORCE_0,
-    FORCE_1,
-    LINES,
-    LOAD,
-    LOAD_0,
-    LOAD_1,
-    MODAL,
-    MODE,
-    MU_S_N,
-    MW,
-    N_PHASES,
-    OUT,
-    POS,
-    POS_LOW,
-    Q_U,
-    Q_V,
-    RATE,
-    ROWS,
-    SCALE,
-    SLOPE,
-    START_0,
-    START_1,
-    STIFF,
-    STUCK_V,
-    TIME,
-    TIME_LOW,
-    U_LOW,
-    V_U,
-    V_V,
-    VEL,
-    VISC,
-    W2,
-    WT,
-    A,
-    G,
-    K,
-    U,
-    V,
-)  # fmt: skip
-from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.room import AT_BLOCKS, AT_LENGTH, AT_LOSS, AT_LOW, AT_TIME, Run
 from fricmb.integrate.collocation.one_contact.slip_directions import start_direction
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
@@ -61,28 +15,28 @@ from fricmb.integrate.problem import SLIP, STICK, Ints
 @block
 def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
     """Block states of structure z at the present state, its loads, and a row of the phase."""
-    n = run.sd.shape[1]
-    t = run.sx[TIME]
+    n = run.pos.shape[0]
+    t = run.time[0]
     for i in range(n):
-        value = run.vec[LOAD_0, i] + run.vec[LOAD_1, i] * t + run.vec[LOAD_1, i] * run.sx[TIME_LOW]
-        slope = run.vec[LOAD_1, i]
+        value = run.load_0[i] + run.load_1[i] * t + run.load_1[i] * run.time_low[0]
+        slope = run.load_1[i]
         for j in range(n):
-            value -= run.dof[STIFF, i, j] * (run.sd[POS, j] + run.sd[POS_LOW, j])
+            value -= run.stiff[i, j] * (run.pos[j] + run.pos_low[j])
             if z == 1:
-                value -= run.dof[VISC, i, j] * run.vec[STUCK_V, j]
-                slope -= run.dof[STIFF, i, j] * run.vec[STUCK_V, j]
-        run.bx[FORCE, i] = value
-        run.bx[RATE, i] = slope
-    phase = run.si[N_PHASES]
+                value -= run.visc[i, j] * run.stuck_v[j]
+                slope -= run.stiff[i, j] * run.stuck_v[j]
+        run.force[i] = value
+        run.rate[i] = slope
+    phase = run.n_phases[0]
     for i in range(n):
-        run.phases[phase, i] = run.sd[POS, i]
-        run.phases[phase, n + i] = run.sd[POS_LOW, i]
+        run.phases[phase, i] = run.pos[i]
+        run.phases[phase, n + i] = run.pos_low[i]
         run.phases[phase, 2 * n + 2 + i] = 0.0
         run.phases[phase, 3 * n + 2 + i] = 0.0
         run.phases[phase, 4 * n + 2 + i] = 0.0
     run.phases[phase, 2 * n] = t
-    run.phases[phase, 2 * n + 1] = run.sx[TIME_LOW]
-    modal = run.flags[MODAL + z] == 1
+    run.phases[phase, 2 * n + 1] = run.time_low[0]
+    modal = run.modal[z] == 1
     for j in range(b):
         u = 0.0
         v = 0.0
@@ -91,113 +45,128 @@ def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
         e0 = 0.0
         e1 = 0.0
         for i in range(n):
-            v += run.mat[z, START_1, j, i] * run.sd[VEL, i]
-            load += run.mat[z, FORCE_1, j, i] * run.bx[FORCE, i]
-            slope += run.mat[z, FORCE_1, j, i] * run.bx[RATE, i]
+            v += run.start_1[z, j, i] * run.vel[i]
+            load += run.force_1[z, j, i] * run.force[i]
+            slope += run.force_1[z, j, i] * run.rate[i]
         if not modal:
             for i in range(n):
-                u += run.mat[z, START_0, j, i] * run.sd[VEL, i]
-                e0 += run.mat[z, FORCE_0, j, i] * run.bx[FORCE, i]
-                e1 += run.mat[z, FORCE_0, j, i] * run.bx[RATE, i]
-        run.bx[U, j] = u
-        run.bx[U_LOW, j] = 0.0
-        run.bx[V, j] = v + e0
-        run.bx[E0, j] = e0
-        run.bx[E1, j] = e1
-        run.bx[LOAD, j] = load + run.blk[z, DAMP, j] * e0 + e1
-        run.bx[SLOPE, j] = slope + run.blk[z, DAMP, j] * e1
-        run.phases[phase, 2 * n + 2 + j] = run.bx[SLOPE, j]
+                u += run.start_0[z, j, i] * run.vel[i]
+                e0 += run.force_0[z, j, i] * run.force[i]
+                e1 += run.force_0[z, j, i] * run.rate[i]
+        run.u[j] = u
+        run.u_low[j] = 0.0
+        run.v[j] = v + e0
+        run.e0[j] = e0
+        run.e1[j] = e1
+        run.load[j] = load + run.damp[z, j] * e0 + e1
+        run.slope[j] = slope + run.damp[z, j] * e1
+        run.phases[phase, 2 * n + 2 + j] = run.slope[j]
         run.phases[phase, 3 * n + 2 + j] = e0
         run.phases[phase, 4 * n + 2 + j] = e1
-    run.si[N_PHASES] += 1
+    run.n_phases[0] += 1
 
 
 @kernel
 def accelerations(run: Run, z: int, b: int, since: float) -> None:
-    """Put A and K of every block, ``since`` after the start of the phase."""
-    bx = run.bx
-    blk = run.blk
+    """Accelerations ``a`` of all blocks and their rates ``k``, a time ``since`` after the start of the phase."""
     for j in range(b):
-        u = bx[U, j] + bx[U_LOW, j]
-        bx[A, j] = bx[LOAD, j] + bx[SLOPE, j] * since - blk[z, W2, j] * u - blk[z, DAMP, j] * bx[V, j]
-        bx[K, j] = bx[SLOPE, j] - blk[z, W2, j] * bx[V, j]
+        u = run.u[j] + run.u_low[j]
+        run.a[j] = run.load[j] + run.slope[j] * since - run.w2[z, j] * u - run.damp[z, j] * run.v[j]
+        run.k[j] = run.slope[j] - run.w2[z, j] * run.v[j]
+
+
+@kernel
+def keep_row(run: Run, mode: int, b: int, h: float) -> int:
+    """Begin the row of a step h with the state of its b blocks; returns its number."""
+    row, n = run.n_rows[0], run.pos.shape[0]
+    run.kinds[row, 0] = mode
+    run.kinds[row, 1] = run.n_phases[0] - 1
+    step = run.steps[row]
+    step[AT_TIME], step[AT_LOW], step[AT_LENGTH], step[AT_LOSS] = run.time[0], run.time_low[0], h, run.loss[0]
+    for j in range(b):
+        step[AT_BLOCKS + j] = run.u[j] + run.u_low[j]
+        step[AT_BLOCKS + n + j] = run.v[j]
+        step[AT_BLOCKS + 2 * n + j] = run.a[j]
+    run.n_rows[0] += 1
+    run.n_steps[0] += 1
+    return int(row)
 
 
 @kernel
 def to_dofs(run: Run, z: int, b: int, since: float) -> None:
     """Positions and velocities from the block states, ``since`` after the start of the phase."""
-    n = run.sd.shape[1]
-    modal = run.flags[MODAL + z] == 1
+    n = run.pos.shape[0]
+    modal = run.modal[z] == 1
     for i in range(n):
         move = 0.0
         small = 0.0
         velocity = 0.0
         if z == 1:
-            velocity = run.vec[STUCK_V, i]
+            velocity = run.stuck_v[i]
             move = velocity * since
         for j in range(b):
-            move += run.mat[z, Q_U, i, j] * run.bx[U, j]
-            small += run.mat[z, Q_U, i, j] * run.bx[U_LOW, j]
-            velocity += run.mat[z, V_V, i, j] * (run.bx[V, j] - run.bx[E0, j] - run.bx[E1, j] * since)
+            move += run.q_u[z, i, j] * run.u[j]
+            small += run.q_u[z, i, j] * run.u_low[j]
+            velocity += run.v_v[z, i, j] * (run.v[j] - run.e0[j] - run.e1[j] * since)
         if not modal:
             for j in range(b):
-                move += run.mat[z, Q_V, i, j] * (run.bx[V, j] - run.bx[E0, j] - run.bx[E1, j] * since)
-                velocity += run.mat[z, V_U, i, j] * (run.bx[U, j] + run.bx[U_LOW, j])
-        run.sd[POS, i], run.sd[POS_LOW, i] = two_sum(run.sd[POS, i], run.sd[POS_LOW, i] + small, move)
-        run.sd[VEL, i] = velocity
-        run.sd[SCALE, i] = max(run.sd[SCALE, i], abs(velocity))
+                move += run.q_v[z, i, j] * (run.v[j] - run.e0[j] - run.e1[j] * since)
+                velocity += run.v_u[z, i, j] * (run.u[j] + run.u_low[j])
+        run.pos[i], run.pos_low[i] = two_sum(run.pos[i], run.pos_low[i] + small, move)
+        run.vel[i] = velocity
+        run.scale[i] = max(run.scale[i], abs(velocity))
 
 
 @kernel
 def contact_acceleration(run: Run) -> None:
-    """Relative acceleration without friction into out[0], the force that would hold the contact into out[1]."""
-    n = run.sd.shape[1]
-    m = run.flags[ROWS]
+    """Relative acceleration without friction into ``out[0]``, the force that would hold the contact into ``out[1]``."""
+    n = run.pos.shape[0]
+    m = run.belt.shape[0]
     for i in range(n):
-        value = run.vec[LOAD_0, i] + run.vec[LOAD_1, i] * run.sx[TIME]
+        value = run.load_0[i] + run.load_1[i] * run.time[0]
         for j in range(n):
-            value -= run.dof[STIFF, i, j] * (run.sd[POS, j] + run.sd[POS_LOW, j]) + run.dof[VISC, i, j] * run.sd[VEL, j]
-        run.bx[FORCE, i] = value
+            value -= run.stiff[i, j] * (run.pos[j] + run.pos_low[j]) + run.visc[i, j] * run.vel[j]
+        run.force[i] = value
     for a in range(m):
         value = 0.0
         for i in range(n):
-            value += run.row[MW, a, i] * run.bx[FORCE, i]
-        run.wk[LINES, OUT, a] = value
+            value += run.mw[a, i] * run.force[i]
+        run.out[0, a] = value
     for a in range(m):
         value = 0.0
         for b in range(m):
-            value -= run.con[D_INV, a, b] * run.wk[LINES, OUT, b]
-        run.wk[LINES, OUT + 1, a] = value
+            value -= run.D_inv[a, b] * run.out[0, b]
+        run.out[1, a] = value
 
 
 @kernel
 def project(run: Run) -> None:
     """Velocities onto g = 0 with the momentum of the contact's own impulse."""
-    m = run.flags[ROWS]
-    n = run.sd.shape[1]
+    m = run.belt.shape[0]
+    n = run.pos.shape[0]
     for a in range(m):
-        run.sm[G, a] = -run.lim[BELT + a]
+        run.g[a] = -run.belt[a]
         for i in range(n):
-            run.sm[G, a] += run.row[WT, a, i] * run.sd[VEL, i]
+            run.g[a] += run.wt[a, i] * run.vel[i]
     for i in range(n):
         for a in range(m):
             for b in range(m):
-                run.sd[VEL, i] -= run.row[MW, a, i] * run.con[D_INV, a, b] * run.sm[G, b]
+                run.vel[i] -= run.mw[a, i] * run.D_inv[a, b] * run.g[b]
     for a in range(m):
-        run.sm[G, a] = 0.0
+        run.g[a] = 0.0
 
 
 @kernel
 def settle(run: Run) -> bool:
     """At g = 0: stick if the cone can hold the contact, else slip in the direction in which it starts."""
     contact_acceleration(run)
-    m = run.flags[ROWS]
+    m = run.belt.shape[0]
     size = 0.0
     for a in range(m):
-        size += run.wk[LINES, OUT + 1, a] * run.wk[LINES, OUT + 1, a]
-    if math.sqrt(size) <= run.lim[MU_S_N] * (1.0 + 1e-12):
-        run.si[MODE] = STICK
+        size += run.out[1, a] * run.out[1, a]
+    if math.sqrt(size) <= run.mu_s_N[0] * (1.0 + 1e-12):
+        run.mode[0] = STICK
         return True
-    run.si[MODE] = SLIP
+    run.mode[0] = SLIP
     start_direction(run)
     return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,9 @@ from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.nodes import RUNGS, Z_EXACT, nodes
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
-from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
+from fricmb.integrate.collocation.structure_blocks import blocks
 from fricmb.integrate.compile.exchange import with_arrays
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import annotations_of, array_type, room
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
@@ -42,20 +42,8 @@ def linear_part(problem: Problem) -> tuple[Floats, Floats]:
     return found if found is not None else (np.zeros(problem.n_u), np.zeros(problem.n_u))
 
 
-class Model(NamedTuple):
-    """Constants of a one-contact problem as kernels take them (see :mod:`~fricmb.integrate.collocation.layout`)."""
-
-    blk: Floats
-    mat: Floats
-    co: Floats
-    ci: Floats
-    linked: Floats
-    row: Floats
-    dof: Floats
-    vec: Floats
-    con: Floats
-    lim: Floats
-    flags: Ints
+#: Constants of a one-contact problem under their names in :class:`Run`.
+Model = dict[str, Any]
 
 
 class Rows(NamedTuple):
@@ -83,64 +71,43 @@ def _model(problem: Problem) -> Model:
     W = np.ascontiguousarray(contacts.W)
     m = W.shape[1]
     slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
-    Minv, MW, D, Dinv, hold = _port(M, W)
-    blk, mat = _blocks_by_mode(M, slip, stick)
-    row = np.zeros((4, m, n))
-    _hold_row(row[:2], hold, K, C, stick)
-    row[2], row[3] = W.T, MW.T
-    co, ci, linked = _port_weights(W, slip)
-    coupled = bool(m == 2 and (linked[0, 1] or linked[1, 0]))
     start, rate = linear_part(problem)
     Ku = linear.B - linear.Kx[:n, n:]
+    Minv, MW, D, Dinv, hold = _port(M, W)
     w = contacts.w + contacts.Wu @ rate
-    f0 = linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate
-    fastest = math.sqrt(np.abs(slip.w2).max()) if n else 0.0
-    lim = [stick_limits(contacts)[0], contacts.mu_0[0] * contacts.N[0], fastest, *w]
-    arrays = [
-        blk, mat, co, ci, linked, row, np.array([K, C, Minv]), np.array([f0, Ku @ rate, stick.stuck_motion @ w]),
-        np.array([D, Dinv]), np.array(lim),
-    ]  # fmt: skip
-    flags = np.array([m, len(stick.w2), slip.modal, stick.modal, coupled], dtype=np.int64)
-    return Model._make([*arrays, flags])
-
-
-def _blocks_by_mode(M: Floats, slip: Blocks, stick: Blocks) -> tuple[Floats, Floats]:
-    """Coefficients of the blocks (2, 2, n), and what turns states into motion and forces into inputs (2, 8, n, n).
-
-    Of each mode q_u, q_v, v_u, v_v, then force_0, force_1 by force and by momentum; see :class:`Blocks`.
-    """
-    n = len(M)
-    blk, mat = np.zeros((2, 2, n)), np.zeros((2, 8, n, n))
+    by_mass = ("start_0", "force_0"), ("start_1", "force_1")
+    parts: Model = {name: np.zeros((2, n, n)) for name in ("q_u", "q_v", "v_u", "v_v", *by_mass[0], *by_mass[1])}
+    parts |= {"w2": np.zeros((2, n)), "damp": np.zeros((2, n))}
     for z, part in enumerate((slip, stick)):
         b = len(part.w2)
-        blk[z, 0, :b], blk[z, 1, :b] = part.w2, part.d
-        mat[z, 0, :, :b], mat[z, 3, :, :b] = part.q_u, part.v_v
-        mat[z, 5, :b], mat[z, 7, :b] = part.force_1, part.force_1 @ M
-        if not part.modal:
-            mat[z, 1, :, :b], mat[z, 2, :, :b] = part.q_v, part.v_u
-            mat[z, 4, :b], mat[z, 6, :b] = part.force_0, part.force_0 @ M
-    return blk, mat
-
-
-def _hold_row(row: Floats, hold: Floats, K: Floats, C: Floats, stick: Blocks) -> None:
-    """The force that holds the contact (2, m, b) by the states u, v of the blocks in stick."""
+        parts["w2"][z, :b], parts["damp"][z, :b] = part.w2, part.d
+        for name in ("q_u", "q_v", "v_u", "v_v"):
+            parts[name][z, :, :b] = getattr(part, name)
+        for start_of, name in by_mass:
+            parts[name][z, :b], parts[start_of][z, :b] = getattr(part, name), getattr(part, name) @ M
     b = len(stick.w2)
-    if stick.modal:
-        row[0, :, :b], row[1, :, :b] = hold @ (K @ stick.q_u), hold @ (C @ stick.v_v)
-        return
-    row[0, :, :b] = hold @ (K @ stick.q_u + C @ stick.v_u)
-    row[1, :, :b] = hold @ (K @ stick.q_v + C @ stick.v_v)
-
-
-def _port_weights(W: Floats, slip: Blocks) -> tuple[Floats, Floats, Floats]:
-    """Relative velocity by the states of the blocks and their inputs by the contact force, (2, m, b) each.
-
-    Also which row (m, m) moves at all by the force of which.
-    """
-    co = np.array([W.T @ slip.v_u, W.T @ slip.v_v])
-    ci = np.array([(slip.force_0 @ W).T, (slip.force_1 @ W).T])
-    size_o, size_i = np.abs(co), np.abs(ci)
-    return co, ci, ((size_o[0] + size_o[1]) @ (size_i[0] + size_i[1]).T > 0).astype(float)
+    hold_u, hold_v = np.zeros((m, n)), np.zeros((m, n))
+    hold_u[:, :b], hold_v[:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u), hold @ (K @ stick.q_v + C @ stick.v_v)
+    c0, c1, b0, b1 = W.T @ slip.v_u, W.T @ slip.v_v, (slip.force_0 @ W).T, (slip.force_1 @ W).T
+    linked = ((np.abs(c0) + np.abs(c1)) @ (np.abs(b0) + np.abs(b1)).T > 0).astype(float)
+    N = contacts.N[0]
+    numbers = {
+        "mu_s_N": stick_limits(contacts)[0], "mu_0_N": contacts.mu_0[0] * N,
+        "fastest": np.sqrt(np.abs(slip.w2)).max(initial=0.0),
+    }  # fmt: skip
+    floats = parts | {name: np.array([value]) for name, value in numbers.items()} | {
+        "c0": c0, "c1": c1, "b0": b0, "b1": b1, "linked": linked, "hold_u": hold_u, "hold_v": hold_v, "wt": W.T,
+        "mw": MW.T, "D": D, "D_inv": Dinv, "belt": w, "stiff": K, "visc": C, "minv": Minv,
+        "load_0": linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate, "load_1": Ku @ rate,
+        "stuck_v": stick.stuck_motion @ w,
+    }  # fmt: skip
+    whole = {
+        "modal": [slip.modal, stick.modal], "stuck_blocks": [b],
+        "coupled": [m == 2 and bool(linked[0, 1] or linked[1, 0])],
+    }  # fmt: skip
+    return {name: np.ascontiguousarray(x, dtype=float) for name, x in floats.items()} | {
+        name: np.array(x, dtype=np.int64) for name, x in whole.items()
+    }
 
 
 def model(problem: Problem) -> Model:
@@ -150,7 +117,7 @@ def model(problem: Problem) -> Model:
 
 def fastest_block(problem: Problem) -> float:
     """Largest frequency or decay rate of a one-contact problem in slip."""
-    w2, d = model(problem).blk[0]
+    w2, d = model(problem)["w2"][0], model(problem)["damp"][0]
     return float(max(np.sqrt(np.abs(w2)).max(initial=0.0), np.abs(d).max(initial=0.0)))
 
 
@@ -172,7 +139,7 @@ MANY_STEPS, FAR_LONGER = 2000.0, 10.0
 
 def is_stiff(problem: Problem, s: int, span: float) -> bool:
     """Whether blocks that are damped out would force short steps on the kernels for one contact."""
-    w2, d = model(problem).blk[0]
+    w2, d = model(problem)["w2"][0], model(problem)["damp"][0]
     rates = np.maximum(np.sqrt(np.abs(w2)), np.abs(d))
     ringing = rates[d <= 2.0 * CALM * np.sqrt(np.abs(w2))].max(initial=0.0)
     fastest = rates.max(initial=0.0)
@@ -197,17 +164,17 @@ def rows(n: int, m: int, s: int, size: int) -> Rows:
 @lru_cache(maxsize=64)
 def _nothing(s: int) -> Run:
     """Empty arrays, and the tables for s nodes."""
-    kinds = dict.fromkeys(("flags", "slots", "terms", "si", "kinds", "places"), np.int64)
-    axes = dict.fromkeys(("mat", "tb", "tk", "answers"), 4)
-    axes |= dict.fromkeys(("blk", "co", "ci", "row", "dof", "con", "nx", "wk"), 3)
-    axes |= dict.fromkeys(("lim", "flags", "ladder", "slots", "terms", "sx", "si", "places"), 1)
-    empty = {name: np.zeros((0,) * axes.get(name, 2), kinds.get(name, float)) for name in Run._fields}
+    kinds = {"Ints": np.int64, "Ints2": np.int64}
+    empty: dict[str, Any] = {
+        name: np.zeros((0,) * (2 if note == "Ints2" else array_type(note).ndim), kinds.get(note, float))
+        for name, note in annotations_of(Run).items() if note != "Tableau"
+    }  # fmt: skip
     return room(Run(**(empty | nodes(s)._asdict())))
 
 
-def run_of(problem: Problem, s: int, held: Rows) -> Run:
+def run_of(problem: Problem, s: int) -> Run:
     """The constants of a one-contact problem with s nodes, to look at rows with: there is nothing to work in."""
-    return with_arrays(_nothing(s), **model(problem)._asdict(), **held._asdict())
+    return once_per_problem(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)))
 
 
 def with_rows(run: Run, new: Rows) -> Run:

@@ -5,55 +5,13 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.collocation.block_motion import fundamental, two_sum
-from fricmb.integrate.collocation.layout import (
-    AT_BLOCKS,
-    AT_LENGTH,
-    AT_LOSS,
-    AT_LOW,
-    AT_TIME,
-    D_INV,
-    DAMP,
-    DIRECTION,
-    E1,
-    FIRST,
-    FREE,
-    LINES,
-    LOAD_1,
-    LOSS,
-    MODE,
-    MW,
-    N_EVENTS,
-    N_PHASES,
-    N_REJECTED,
-    N_ROWS,
-    N_STEPS,
-    NEXT,
-    OUT,
-    POS,
-    RHS,
-    ROWS,
-    S1,
-    STIFF,
-    STUCK_BLOCKS,
-    STUCK_V,
-    TIME,
-    TIME_LOW,
-    U_LOW,
-    VEL,
-    W2,
-    A,
-    G,
-    K,
-    N,
-    U,
-    V,
-)  # fmt: skip
 from fricmb.integrate.collocation.nodes import RUNGS
 from fricmb.integrate.collocation.one_contact.landing import arrive, first_stop, land, nearly_stopped
 from fricmb.integrate.collocation.one_contact.phase import (
     accelerations,
     begin_phase,
     contact_acceleration,
+    keep_row,
     settle,
     to_dofs,
 )
@@ -104,8 +62,8 @@ def rung_of(run: Run, h: float) -> int:
 @block
 def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) -> int:
     """Slip until it ends, the run ends, or the reference point should move along; DONE, or what went wrong."""
-    n = run.sd.shape[1]
-    m = run.flags[ROWS]
+    n = run.pos.shape[0]
+    m = run.belt.shape[0]
     s = run.basis.shape[0]
     begin_phase(run, 0, n, run.places)
     rates(run)
@@ -113,12 +71,12 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
     taken = 0
     fresh = True
     for a in range(m):
-        fresh = fresh and run.sm[G, a] == 0.0
+        fresh = fresh and run.g[a] == 0.0
     while taken < REBASE and not stopped():
-        left = (t_end - run.sx[TIME]) - run.sx[TIME_LOW]
+        left = (t_end - run.time[0]) - run.time_low[0]
         if left <= 0.0:
             break
-        rung = rung_of(run, run.sx[NEXT])
+        rung = rung_of(run, run.next_step[0])
         if rung >= RUNGS:
             return UNDERFLOW
         h = run.ladder[rung]
@@ -132,14 +90,14 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
         weigh(run, h)
         for a in range(m):
             for i in range(s):
-                run.nx[DIRECTION, a, i] = run.sm[N, a]
+                run.direction[a, i] = run.n[a]
         if not solve_slip(run, slot, h, tol, run.places):
-            run.sx[NEXT] = 0.5 * h
-            run.si[N_REJECTED] += 1
+            run.next_step[0] = 0.5 * h
+            run.n_rejected[0] += 1
             continue
         r0 = 0.0
         for a in range(m):
-            r0 += run.sm[G, a] * run.sm[G, a]
+            r0 += run.g[a] * run.g[a]
         r0 = math.sqrt(r0)
         stop = first_stop(run, r0, h, tol)
         if stop < 1.5:
@@ -147,14 +105,14 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
             if gone > 0.0:
                 arrive(run, since + gone, run.places)
                 return DONE
-            run.si[N_REJECTED] += 1
-            run.sx[NEXT] = max(stop * h * length_factor(-gone, s), 0.01 * h)
+            run.n_rejected[0] += 1
+            run.next_step[0] = max(stop * h * length_factor(-gone, s), 0.01 * h)
             continue
         error = step_error(run, h, tol)
         error = max(error, stop - 2.0)
         if error > 1.0:
-            run.si[N_REJECTED] += 1
-            run.sx[NEXT] = h * length_factor(error, s)
+            run.n_rejected[0] += 1
+            run.next_step[0] = h * length_factor(error, s)
             continue
         loss = keep_slip(run, h)
         end_state(run, slot, h)
@@ -162,10 +120,10 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
         since += h
         taken += 1
         if fresh:
-            run.sx[FIRST] = h
+            run.first_step[0] = h
             fresh = False
-        run.sx[NEXT] = h * length_factor(error, s) * 1.0000001
-        if nearly_stopped(run, since, tol, run.wk[LINES, RHS, s - 1], h):
+        run.next_step[0] = h * length_factor(error, s) * 1.0000001
+        if nearly_stopped(run, since, tol, run.rhs[s - 1], h):
             arrive(run, since, run.places)
             return DONE
     to_dofs(run, 0, n, since)
@@ -175,69 +133,57 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
 @block
 def stick_phase(run: Run, t_end: float, address: Ints) -> int:
     """Stick until the force reaches its cone or the run ends."""
-    n = run.sd.shape[1]
-    m = run.flags[ROWS]
-    b = run.flags[STUCK_BLOCKS]
+    n = run.pos.shape[0]
+    m = run.belt.shape[0]
+    b = run.stuck_blocks[0]
     contact_acceleration(run)
     for a in range(m):
-        run.nx[FREE, a, 0] = run.wk[LINES, OUT + 1, a]
+        run.free[a, 0] = run.out[1, a]
     begin_phase(run, 1, b, run.places)
     accelerations(run, 1, b, 0.0)
     for a in range(m):
-        # FREE: the force at the start and its rate beside the blocks' part
+        # ``free`` holds the force at the start and its rate beside the blocks' part
         value = 0.0
         for i in range(n):
-            load = run.vec[LOAD_1, i]
+            load = run.load_1[i]
             for j in range(n):
-                load -= run.dof[STIFF, i, j] * run.vec[STUCK_V, j]
-            value += run.row[MW, a, i] * load
-        run.wk[LINES, OUT, a] = value
+                load -= run.stiff[i, j] * run.stuck_v[j]
+            value += run.mw[a, i] * load
+        run.out[0, a] = value
     for a in range(m):
         value = 0.0
         for c in range(m):
-            value -= run.con[D_INV, a, c] * run.wk[LINES, OUT, c]
+            value -= run.D_inv[a, c] * run.out[0, c]
         for j in range(b):
-            value -= run.row[S1, a, j] * run.bx[E1, j]
-        run.nx[FREE, a, 1] = value
-    left = (t_end - run.sx[TIME]) - run.sx[TIME_LOW]
+            value -= run.hold_v[a, j] * run.e1[j]
+        run.free[a, 1] = value
+    left = (t_end - run.time[0]) - run.time_low[0]
     found = release_time(run, left)
     if found == -2.0:
         return ENDLESS
     h = left if found < 0.0 else found
-    at_row = run.si[N_ROWS]
-    run.kinds[at_row, 0] = STICK
-    run.kinds[at_row, 1] = run.si[N_PHASES] - 1
-    run.steps[at_row, AT_TIME] = run.sx[TIME]
-    run.steps[at_row, AT_LOW] = run.sx[TIME_LOW]
-    run.steps[at_row, AT_LENGTH] = h
-    run.steps[at_row, AT_LOSS] = run.sx[LOSS]
+    keep_row(run, STICK, b, h)
     for j in range(b):
-        run.steps[at_row, AT_BLOCKS + j] = run.bx[U, j]
-        run.steps[at_row, AT_BLOCKS + n + j] = run.bx[V, j]
-        run.steps[at_row, AT_BLOCKS + 2 * n + j] = run.bx[A, j]
-    run.si[N_ROWS] += 1
-    run.si[N_STEPS] += 1
-    for j in range(b):
-        x0, x1, x2 = fundamental(run.blk[1, W2, j], run.blk[1, DAMP, j], h)
-        run.bx[U, j], run.bx[U_LOW, j] = two_sum(
-            run.bx[U, j], run.bx[U_LOW, j], run.bx[V, j] * h + run.bx[A, j] * x1 + run.bx[K, j] * x2,
+        x0, x1, x2 = fundamental(run.w2[1, j], run.damp[1, j], h)
+        run.u[j], run.u_low[j] = two_sum(
+            run.u[j], run.u_low[j], run.v[j] * h + run.a[j] * x1 + run.k[j] * x2,
         )  # fmt: skip
-        run.bx[V, j] += run.bx[A, j] * x0 + run.bx[K, j] * x1
+        run.v[j] += run.a[j] * x0 + run.k[j] * x1
     to_dofs(run, 1, b, h)
     for a in range(m):
-        run.sm[G, a] = 0.0
+        run.g[a] = 0.0
     if found < 0.0:
-        run.sx[TIME] = t_end
-        run.sx[TIME_LOW] = 0.0
+        run.time[0] = t_end
+        run.time_low[0] = 0.0
         return DONE
-    run.sx[TIME], run.sx[TIME_LOW] = two_sum(run.sx[TIME], run.sx[TIME_LOW], h)
+    run.time[0], run.time_low[0] = two_sum(run.time[0], run.time_low[0], h)
     contact_acceleration(run)
     start_direction(run)
-    run.si[MODE] = SLIP
-    run.sx[NEXT] = run.sx[FIRST]
-    run.events[run.si[N_EVENTS], 0] = run.sx[TIME] + run.sx[TIME_LOW]
-    run.events[run.si[N_EVENTS], 1] = EVENT_SLIP
-    run.si[N_EVENTS] += 1
+    run.mode[0] = SLIP
+    run.next_step[0] = run.first_step[0]
+    run.events[run.n_events[0], 0] = run.time[0] + run.time_low[0]
+    run.events[run.n_events[0], 1] = EVENT_SLIP
+    run.n_events[0] += 1
     return DONE
 
 
@@ -245,29 +191,29 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
 def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float) -> int:
     """Run from the state until the end, or until there is no space for the rows of another phase."""
     stalled = 0
-    if run.si[MODE] == UNSETTLED:
+    if run.mode[0] == UNSETTLED:
         settle(run)
-    while run.sx[TIME] + run.sx[TIME_LOW] < t_end:
-        if run.si[N_ROWS] + REBASE + 2 > run.steps.shape[0] or run.si[N_PHASES] + 2 > run.phases.shape[0]:
+    while run.time[0] + run.time_low[0] < t_end:
+        if run.n_rows[0] + REBASE + 2 > run.steps.shape[0] or run.n_phases[0] + 2 > run.phases.shape[0]:
             return FULL
-        if run.si[N_EVENTS] + 2 > run.events.shape[0]:
+        if run.n_events[0] + 2 > run.events.shape[0]:
             return FULL
-        if run.sx[TIME] > t_pause:
+        if run.time[0] > t_pause:
             return PAUSE
         if stopped():
             return FULL
-        t = run.sx[TIME]
-        low = run.sx[TIME_LOW]
-        if run.si[MODE] == STICK:
+        t = run.time[0]
+        low = run.time_low[0]
+        if run.mode[0] == STICK:
             code = stick_phase(run, t_end, run.places)
         else:
             code = slip_phase(run, t_end, tol, stiff, run.places)
         if code != DONE:
             return code
-        for i in range(run.sd.shape[1]):
-            if not abs(run.sd[POS, i]) + abs(run.sd[VEL, i]) < 1e300:
+        for i in range(run.pos.shape[0]):
+            if not abs(run.pos[i]) + abs(run.vel[i]) < 1e300:
                 return NOT_FINITE
-        stalled = stalled + 1 if (run.sx[TIME] - t) + (run.sx[TIME_LOW] - low) <= 1e-15 * abs(t) else 0
+        stalled = stalled + 1 if (run.time[0] - t) + (run.time_low[0] - low) <= 1e-15 * abs(t) else 0
         if stalled > 50:
             return ENDLESS
     return DONE

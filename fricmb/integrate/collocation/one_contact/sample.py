@@ -5,30 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.collocation.block_motion import MOST, fundamental, two_sum
-from fricmb.integrate.collocation.layout import (
-    AT_BLOCKS,
-    AT_LENGTH,
-    AT_LOSS,
-    AT_LOW,
-    AT_TIME,
-    B0,
-    B1,
-    BELT,
-    DAMP,
-    MODAL,
-    MU_0_N,
-    Q_U,
-    Q_V,
-    ROWS,
-    STUCK_BLOCKS,
-    STUCK_V,
-    V_U,
-    V_V,
-    W2,
-    WITH_START,
-    WT,
-)  # fmt: skip
-from fricmb.integrate.collocation.one_contact.room import Run
+from fricmb.integrate.collocation.one_contact.room import AT_BLOCKS, AT_LENGTH, AT_LOSS, AT_LOW, AT_TIME, Run
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, set_lanes
 from fricmb.integrate.problem import SLIP, Floats, Floats2, Floats3, Ints
@@ -64,21 +41,21 @@ def locate(run: Run, n_rows: int, t: Floats, at: Ints, tau: Floats) -> None:
 @kernel
 def constants(run: Run, work: Floats2) -> None:
     """Put what does not change from row to row."""
-    m = run.flags[ROWS]
-    for j in range(run.blk.shape[2]):
-        w2, d = run.blk[0, W2, j], run.blk[0, DAMP, j]
+    m = run.belt.shape[0]
+    for j in range(run.w2.shape[1]):
+        w2, d = run.w2[0, j], run.damp[0, j]
         work[SQUARE, j], work[DAMPING, j] = w2, d
         work[FASTEST, j] = max(math.sqrt(abs(w2)), abs(d))
         for a in range(m):
-            work[BY_FORCE + a, j] = run.ci[B1, a, j]
-            work[BY_FORCE + m + a, j] = run.ci[B0, a, j]
+            work[BY_FORCE + a, j] = run.b1[a, j]
+            work[BY_FORCE + m + a, j] = run.b0[a, j]
 
 
 @kernel
 def force_polynomials(run: Run, k: int, polynomial: Floats2) -> None:
     """Forces of a step in slip by powers of the part of the step that is gone."""
-    s, n = run.basis.shape[0], run.blk.shape[2]
-    for a in range(run.flags[ROWS]):
+    s, n = run.basis.shape[0], run.w2.shape[1]
+    for a in range(run.belt.shape[0]):
         nodes = run.steps[k, AT_BLOCKS + 3 * n + a * s :]
         last = nodes[s - 1]
         for at in range(0, polynomial.shape[1], LANES):
@@ -92,8 +69,8 @@ def force_polynomials(run: Run, k: int, polynomial: Floats2) -> None:
 @kernel
 def slip_blocks(run: Run, k: int, work: Floats2, polynomial: Floats2, tau: float) -> None:
     """What u gains in tau, and v after it, by the Taylor series of u' = v + b0 F, v' = -w2 u - d v + b1 F + slope t."""
-    n, m, s = run.blk.shape[2], run.flags[ROWS], run.basis.shape[0]
-    modal = run.flags[MODAL] == 1
+    n, m, s = run.w2.shape[1], run.belt.shape[0], run.basis.shape[0]
+    modal = run.modal[0] == 1
     for j in range(n):
         work[START_V, j] = run.steps[k, AT_BLOCKS + n + j]
         work[START_A, j] = run.steps[k, AT_BLOCKS + 2 * n + j]
@@ -134,10 +111,10 @@ def slip_blocks(run: Run, k: int, work: Floats2, polynomial: Floats2, tau: float
 @kernel
 def stuck_blocks(run: Run, k: int, work: Floats2, tau: float) -> None:
     """What u gains in tau, and v after it, in closed form."""
-    n = run.blk.shape[2]
-    for j in range(run.flags[STUCK_BLOCKS]):
-        w2 = run.blk[1, W2, j]
-        x0, x1, x2 = fundamental(w2, run.blk[1, DAMP, j], tau)
+    n = run.w2.shape[1]
+    for j in range(run.stuck_blocks[0]):
+        w2 = run.w2[1, j]
+        x0, x1, x2 = fundamental(w2, run.damp[1, j], tau)
         v0, a0 = run.steps[k, AT_BLOCKS + n + j], run.steps[k, AT_BLOCKS + 2 * n + j]
         k0 = run.phases[run.kinds[k, 1], 2 * n + 2 + j] - w2 * v0
         work[MOVED, j] = v0 * tau + a0 * x1 + k0 * x2
@@ -147,9 +124,9 @@ def stuck_blocks(run: Run, k: int, work: Floats2, tau: float) -> None:
 @kernel
 def dofs_from_blocks(run: Run, k: int, work: Floats2, tau: float, i: int, q: Floats2, v: Floats2, g: Floats2) -> None:
     """Positions, velocities and relative velocity at sample i; the gains become block states first."""
-    n, m = run.blk.shape[2], run.flags[ROWS]
+    n, m = run.w2.shape[1], run.belt.shape[0]
     slips = run.kinds[k, 0] == SLIP
-    z, b = (0, n) if slips else (1, run.flags[STUCK_BLOCKS])
+    z, b = (0, n) if slips else (1, run.stuck_blocks[0])
     phase = run.phases[run.kinds[k, 1]]
     since = (run.steps[k, AT_TIME] - phase[2 * n]) + (run.steps[k, AT_LOW] - phase[2 * n + 1]) + tau
     moved, speed = work[MOVED], work[SPEED]
@@ -157,50 +134,50 @@ def dofs_from_blocks(run: Run, k: int, work: Floats2, tau: float, i: int, q: Flo
         moved[j] += run.steps[k, AT_BLOCKS + j]
         speed[j] -= phase[3 * n + 2 + j] + phase[4 * n + 2 + j] * since
     for a in range(m):
-        g[a, i] = -run.lim[BELT + a]
+        g[a, i] = -run.belt[a]
     for e in range(n):
-        velocity = 0.0 if slips else run.vec[STUCK_V, e]
+        velocity = 0.0 if slips else run.stuck_v[e]
         move = velocity * since
         for j in range(b):
-            move += run.mat[z, Q_U, e, j] * moved[j]
-            velocity += run.mat[z, V_V, e, j] * speed[j]
-        if run.flags[MODAL + z] == 0:
+            move += run.q_u[z, e, j] * moved[j]
+            velocity += run.v_v[z, e, j] * speed[j]
+        if run.modal[z] == 0:
             for j in range(b):
-                move += run.mat[z, Q_V, e, j] * speed[j]
-                velocity += run.mat[z, V_U, e, j] * moved[j]
+                move += run.q_v[z, e, j] * speed[j]
+                velocity += run.v_u[z, e, j] * moved[j]
         high, low = two_sum(phase[e], phase[n + e], move)
         q[e, i] = high + low
         v[e, i] = velocity
         for a in range(m):
-            g[a, i] += run.row[WT, a, e] * velocity
+            g[a, i] += run.wt[a, e] * velocity
 
 
 @kernel
 def slip_force(run: Run, polynomial: Floats2, gone: float, i: int, F: Floats2) -> None:
     """Friction at sample i, of its known size: interpolation keeps that but for its own error."""
     size = 0.0
-    for a in range(run.flags[ROWS]):
+    for a in range(run.belt.shape[0]):
         value = 0.0
         for r in range(run.basis.shape[0] - 1, -1, -1):
             value = value * gone + polynomial[a, r]
         F[a, i] = value
         size += value * value
-    size = run.lim[MU_0_N] / math.sqrt(size)
-    for a in range(run.flags[ROWS]):
+    size = run.mu_0_N[0] / math.sqrt(size)
+    for a in range(run.belt.shape[0]):
         F[a, i] *= size
 
 
 @kernel
 def loss_at(run: Run, k: int, gone: float) -> float:
     """Friction loss after a part of a step in slip."""
-    n, m, s = run.blk.shape[2], run.flags[ROWS], run.basis.shape[0]
+    n, m, s = run.w2.shape[1], run.belt.shape[0], run.basis.shape[0]
     found = run.steps[k, AT_LOSS]
     first = AT_BLOCKS + 3 * n + m * s
     power = gone * run.steps[k, AT_LENGTH]
     for r in range(s + 1):
         value = 0.0
         for l in range(s + 1):
-            value += run.nd[WITH_START, r, l] * run.steps[k, first + l]
+            value += run.tab.basis[r, l] * run.steps[k, first + l]
         found += power * value / (r + 1.0)
         power *= gone
     # the last of a landing is crossed otherwise than by this polynomial
@@ -239,7 +216,7 @@ def sample_rows(
         if slips:
             slip_force(run, polynomial, tau[i] / run.steps[k, AT_LENGTH], i, F)
             continue
-        for a in range(run.flags[ROWS]):
+        for a in range(run.belt.shape[0]):
             value = -load[0, a] - load[1, a] * t_of[i]
             for e in range(q.shape[0]):
                 value += hold[0, a, e] * q[e, i] + hold[1, a, e] * v[e, i]

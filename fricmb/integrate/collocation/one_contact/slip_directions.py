@@ -4,18 +4,6 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation.layout import (
-    COUPLED,
-    DIRECTION,
-    FREE,
-    LINES,
-    MU_0_N,
-    OUT,
-    RELATIVE,
-    ROWS,
-    D,
-    N,
-)  # fmt: skip
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lanes import LANES, lanes, roots, set_lanes
@@ -25,16 +13,16 @@ from fricmb.integrate.problem import Floats2
 @kernel
 def relative_velocity(run: Run, slot: int, d: int) -> None:
     """Relative velocity at the nodes for the directions there, F = -mu N n."""
-    nx, muN = run.nx, run.lim[MU_0_N]
+    muN = run.mu_0_N[0]
     for a in range(d):
-        for at in range(0, nx.shape[2], LANES):
-            g = lanes(nx[FREE, a], at)
+        for at in range(0, run.free.shape[1], LANES):
+            g = lanes(run.free[a], at)
             for b in range(d):
-                if a == b or run.flags[COUPLED] == 1:
+                if a == b or run.coupled[0] == 1:
                     answer = run.answers[slot, d * a + b]
                     for l in range(answer.shape[0]):
-                        g = g - muN * nx[DIRECTION, b, l] * lanes(answer[l], at)
-            set_lanes(nx[RELATIVE, a], at, g)
+                        g = g - muN * run.direction[b, l] * lanes(answer[l], at)
+            set_lanes(run.relative[a], at, g)
 
 
 @kernel
@@ -43,15 +31,15 @@ def turning(run: Run, slot: int) -> None:
 
     The right-hand side is the column behind them.
     """
-    nx, J, answers = run.nx, run.jacobian, run.answers[slot]
-    s, muN, coupled = run.basis.shape[0], run.lim[MU_0_N], run.flags[COUPLED] == 1
-    for at in range(0, nx.shape[2], LANES):
-        x, y = lanes(nx[DIRECTION, 0], at), lanes(nx[DIRECTION, 1], at)
-        gx, gy = lanes(nx[RELATIVE, 0], at), lanes(nx[RELATIVE, 1], at)
+    J, answers = run.jacobian, run.answers[slot]
+    s, muN, coupled = run.basis.shape[0], run.mu_0_N[0], run.coupled[0] == 1
+    for at in range(0, run.free.shape[1], LANES):
+        x, y = lanes(run.direction[0], at), lanes(run.direction[1], at)
+        gx, gy = lanes(run.relative[0], at), lanes(run.relative[1], at)
         set_lanes(J[s], at, x * gy - y * gx)
         r = x * gx + y * gy
         for l in range(s):
-            ux, uy = -muN * nx[DIRECTION, 1, l], muN * nx[DIRECTION, 0, l]
+            ux, uy = -muN * run.direction[1, l], muN * run.direction[0, l]
             across, along = uy * lanes(answers[3, l], at), ux * lanes(answers[0, l], at)
             if coupled:
                 across = across + ux * lanes(answers[2, l], at)
@@ -65,7 +53,7 @@ def slip_directions(run: Run, slot: int, tol: float) -> int:
 
     Regular through r = 0: a node's r may come out negative, which tells that the slip ended before it.
     """
-    d, s = run.nx[DIRECTION], run.basis.shape[0]
+    d, s = run.direction, run.basis.shape[0]
     turns = run.jacobian[s]
     for iteration in range(14):
         relative_velocity(run, slot, 2)
@@ -136,40 +124,37 @@ def start_direction(run: Run) -> float:
 
     For mu N -> |D^-1 a| it is along D^-1 a (rho = 0).
     """
-    con = run.con
-    wk = run.wk
-    sm = run.sm
-    if run.flags[ROWS] == 1:
-        sm[N, 0] = 1.0 if wk[LINES, OUT, 0] >= 0.0 else -1.0
-        return float(max(0.0, abs(wk[LINES, OUT, 0]) - run.lim[MU_0_N] * con[D, 0, 0]))
+    if run.belt.shape[0] == 1:
+        run.n[0] = 1.0 if run.out[0, 0] >= 0.0 else -1.0
+        return float(max(0.0, abs(run.out[0, 0]) - run.mu_0_N[0] * run.D[0, 0]))
     rho = 0.0
     for _ in range(60):
-        p = run.lim[MU_0_N] * con[D, 0, 0] + rho
-        q = 0.5 * run.lim[MU_0_N] * (con[D, 0, 1] + con[D, 1, 0])
-        r = run.lim[MU_0_N] * con[D, 1, 1] + rho
+        p = run.mu_0_N[0] * run.D[0, 0] + rho
+        q = 0.5 * run.mu_0_N[0] * (run.D[0, 1] + run.D[1, 0])
+        r = run.mu_0_N[0] * run.D[1, 1] + rho
         det = p * r - q * q
         if det == 0.0:
             rho = max(rho, 1e-300)
-            sm[N, 0] = wk[LINES, OUT, 0]
-            sm[N, 1] = wk[LINES, OUT, 1]
+            run.n[0] = run.out[0, 0]
+            run.n[1] = run.out[0, 1]
             break
-        sm[N, 0] = (r * wk[LINES, OUT, 0] - q * wk[LINES, OUT, 1]) / det
-        sm[N, 1] = (p * wk[LINES, OUT, 1] - q * wk[LINES, OUT, 0]) / det
-        size2 = sm[N, 0] * sm[N, 0] + sm[N, 1] * sm[N, 1]
+        run.n[0] = (r * run.out[0, 0] - q * run.out[0, 1]) / det
+        run.n[1] = (p * run.out[0, 1] - q * run.out[0, 0]) / det
+        size2 = run.n[0] * run.n[0] + run.n[1] * run.n[1]
         if size2 <= 1.0:
             break
         # Newton on 1/|n| - 1 (concave in rho: converges from the left)
-        curve = (sm[N, 0] * (r * sm[N, 0] - q * sm[N, 1]) + sm[N, 1] * (p * sm[N, 1] - q * sm[N, 0])) / det
+        curve = (run.n[0] * (r * run.n[0] - q * run.n[1]) + run.n[1] * (p * run.n[1] - q * run.n[0])) / det
         size = math.sqrt(size2)
         step = (size - 1.0) * size2 / curve
-        if step <= 1e-15 * (rho + run.lim[MU_0_N] * (con[D, 0, 0] + con[D, 1, 1])):
+        if step <= 1e-15 * (rho + run.mu_0_N[0] * (run.D[0, 0] + run.D[1, 1])):
             break
         rho += step
-    size = math.hypot(sm[N, 0], sm[N, 1])
+    size = math.hypot(run.n[0], run.n[1])
     if size > 0.0:
-        sm[N, 0] /= size
-        sm[N, 1] /= size
+        run.n[0] /= size
+        run.n[1] /= size
     else:
-        sm[N, 0] = 1.0
-        sm[N, 1] = 0.0
+        run.n[0] = 1.0
+        run.n[1] = 0.0
     return float(rho)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.collocation.block_motion import fundamental
-from fricmb.integrate.collocation.layout import DAMP, FREE, LINES, MU_S_N, OUT, ROWS, S0, S1, STUCK_BLOCKS, W2, A, K, V
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.run.stop import stopped
@@ -18,41 +17,41 @@ from fricmb.integrate.run.stop import stopped
 
 @kernel
 def stuck_force(run: Run, t: float, b: int, horizon: float) -> float:
-    """Force and rate of the stuck rows at t into OUT; returns a bound of the second derivative.
+    """Force and rate of the stuck rows at t into ``out``; returns a bound of the second derivative.
 
-    FREE holds the force at the start and its slope beside the blocks' part.
+    ``free`` holds the force at the start and its slope beside the blocks' part.
     """
-    m = run.flags[ROWS]
+    m = run.belt.shape[0]
     for a in range(m):
-        run.wk[LINES, OUT, a] = run.nx[FREE, a, 0] + run.nx[FREE, a, 1] * t
-        run.wk[LINES, OUT + 1, a] = run.nx[FREE, a, 1]
-        run.wk[LINES, OUT + 2, a] = 0.0
+        run.out[0, a] = run.free[a, 0] + run.free[a, 1] * t
+        run.out[1, a] = run.free[a, 1]
+        run.out[2, a] = 0.0
     for j in range(b):
-        x0, x1, x2 = fundamental(run.blk[1, W2, j], run.blk[1, DAMP, j], t)
-        du = run.bx[V, j] * t + run.bx[A, j] * x1 + run.bx[K, j] * x2
-        dv = run.bx[A, j] * x0 + run.bx[K, j] * x1
-        acceleration = run.bx[A, j] * (1.0 - run.blk[1, DAMP, j] * x0 - run.blk[1, W2, j] * x1) + run.bx[K, j] * x0
-        jerk = run.bx[K, j] - run.blk[1, W2, j] * dv
-        w = math.sqrt(abs(run.blk[1, W2, j]))
-        if run.blk[1, W2, j] > 0.0 and run.blk[1, DAMP, j] >= 0.0:
-            size = math.sqrt(acceleration * acceleration + jerk * jerk / run.blk[1, W2, j])
-            slope = (w + run.blk[1, DAMP, j]) * size
-        elif run.blk[1, DAMP, j] > 0.0:
-            size = max(abs(acceleration), abs(jerk) / run.blk[1, DAMP, j])
-            slope = abs(jerk) + run.blk[1, DAMP, j] * size
+        x0, x1, x2 = fundamental(run.w2[1, j], run.damp[1, j], t)
+        du = run.v[j] * t + run.a[j] * x1 + run.k[j] * x2
+        dv = run.a[j] * x0 + run.k[j] * x1
+        acceleration = run.a[j] * (1.0 - run.damp[1, j] * x0 - run.w2[1, j] * x1) + run.k[j] * x0
+        jerk = run.k[j] - run.w2[1, j] * dv
+        w = math.sqrt(abs(run.w2[1, j]))
+        if run.w2[1, j] > 0.0 and run.damp[1, j] >= 0.0:
+            size = math.sqrt(acceleration * acceleration + jerk * jerk / run.w2[1, j])
+            slope = (w + run.damp[1, j]) * size
+        elif run.damp[1, j] > 0.0:
+            size = max(abs(acceleration), abs(jerk) / run.damp[1, j])
+            slope = abs(jerk) + run.damp[1, j] * size
         else:
             # growing or free: no step is longer than the horizon, short against 1/(w + |d|)
             size = 3.0 * abs(acceleration)
             if jerk != 0.0:
                 size += 3.0 * abs(jerk) * horizon
-            slope = 3.0 * (abs(jerk) + (w + abs(run.blk[1, DAMP, j])) * size)
+            slope = 3.0 * (abs(jerk) + (w + abs(run.damp[1, j])) * size)
         for a in range(m):
-            run.wk[LINES, OUT, a] += run.row[S0, a, j] * du + run.row[S1, a, j] * dv
-            run.wk[LINES, OUT + 1, a] += run.row[S0, a, j] * (run.bx[V, j] + dv) + run.row[S1, a, j] * acceleration
-            run.wk[LINES, OUT + 2, a] += abs(run.row[S0, a, j]) * size + abs(run.row[S1, a, j]) * slope
+            run.out[0, a] += run.hold_u[a, j] * du + run.hold_v[a, j] * dv
+            run.out[1, a] += run.hold_u[a, j] * (run.v[j] + dv) + run.hold_v[a, j] * acceleration
+            run.out[2, a] += abs(run.hold_u[a, j]) * size + abs(run.hold_v[a, j]) * slope
     bound = 0.0
     for a in range(m):
-        bound += run.wk[LINES, OUT + 2, a] * run.wk[LINES, OUT + 2, a]
+        bound += run.out[2, a] * run.out[2, a]
     return math.sqrt(bound)
 
 
@@ -77,20 +76,20 @@ def safe_step(F: float, FdF: float, dF: float, bound: float, limit: float) -> fl
 @kernel
 def release_time(run: Run, longest: float) -> float:
     """First time in [0, longest] at which |F| reaches ``limit``; -1 if it does not, -2 if the search does not end."""
-    m = run.flags[ROWS]
-    b = run.flags[STUCK_BLOCKS]
-    limit = run.lim[MU_S_N]
+    m = run.belt.shape[0]
+    b = run.stuck_blocks[0]
+    limit = run.mu_s_N[0]
     fastest = 0.0
     cap = 1e300
     for j in range(b):
-        fastest = max(fastest, math.sqrt(abs(run.blk[1, W2, j])) + abs(run.blk[1, DAMP, j]))
+        fastest = max(fastest, math.sqrt(abs(run.w2[1, j])) + abs(run.damp[1, j]))
     brief = 1.0 / fastest if fastest > 0.0 else longest
     for j in range(b):
-        rate = math.sqrt(abs(run.blk[1, W2, j])) + abs(run.blk[1, DAMP, j])
-        if run.blk[1, W2, j] < 0.0 or run.blk[1, DAMP, j] < 0.0:
+        rate = math.sqrt(abs(run.w2[1, j])) + abs(run.damp[1, j])
+        if run.w2[1, j] < 0.0 or run.damp[1, j] < 0.0:
             cap = min(cap, 0.5 / rate)
-        elif run.blk[1, W2, j] == 0.0 and run.blk[1, DAMP, j] == 0.0 and run.bx[K, j] != 0.0:
-            cap = min(cap, abs(run.bx[A, j] / run.bx[K, j]) + brief)
+        elif run.w2[1, j] == 0.0 and run.damp[1, j] == 0.0 and run.k[j] != 0.0:
+            cap = min(cap, abs(run.a[j] / run.k[j]) + brief)
     t = 0.0
     for _ in range(100000000):
         if stopped():
@@ -100,9 +99,9 @@ def release_time(run: Run, longest: float) -> float:
         FdF = 0.0
         dF = 0.0
         for a in range(m):
-            F += run.wk[LINES, OUT, a] * run.wk[LINES, OUT, a]
-            FdF += run.wk[LINES, OUT, a] * run.wk[LINES, OUT + 1, a]
-            dF += run.wk[LINES, OUT + 1, a] * run.wk[LINES, OUT + 1, a]
+            F += run.out[0, a] * run.out[0, a]
+            FdF += run.out[0, a] * run.out[1, a]
+            dF += run.out[1, a] * run.out[1, a]
         F = math.sqrt(F)
         dF = math.sqrt(dF)
         least = 4e-16 * t

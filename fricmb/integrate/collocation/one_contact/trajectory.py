@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, has_ledger, powers
-from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of
+from fricmb.integrate.collocation.exact_room import has_ledger
+from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, powers
+from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
 from fricmb.integrate.compile.lanes import padded
@@ -33,7 +34,7 @@ class SingleRun(Trajectory):
     def _run(self) -> Run:
         """The arrays of the problem with the rows of this run."""
         if self._arrays is None:
-            self._arrays = run_of(self.problem, self._s, self._rows)
+            self._arrays = with_rows(run_of(self.problem, self._s), self._rows)
         return self._arrays
 
     def attach(self, problem: Problem) -> None:
@@ -119,9 +120,9 @@ class SingleRun(Trajectory):
         problem = self.problem
         p = model(problem)
         n, m, k = problem.n, problem.m, len(row)
-        stiff, visc, _ = p.dof
-        inverse = p.con[1] @ p.row[3]
-        hold, load = np.stack([inverse @ stiff, inverse @ visc]), p.vec[:2] @ inverse.T
+        inverse = p["D_inv"] @ p["mw"]
+        hold = np.stack([inverse @ p["stiff"], inverse @ p["visc"]])
+        load = np.stack([p["load_0"], p["load_1"]]) @ inverse.T
         q, v, F, g = np.empty((n, k)), np.empty((n, k)), np.empty((m, k)), np.empty((m, k))
         mode, loss = np.empty(k, dtype=np.int64), np.empty(k if with_loss else 0)
         sample_rows(
@@ -138,10 +139,10 @@ class SingleRun(Trajectory):
     def _energies(self, row: Ints, tau: Floats) -> Floats:
         """Damping loss and input (2, n_t) since the start of the run."""
         start, rate = linear_part(self.problem)
-        if not has_ledger(self.problem, rate):
+        if not has_ledger(self.problem):
             return np.zeros((2, len(row)))
         p = model(self.problem)
-        fastest = float(np.sqrt(np.abs(p.blk[:, 0])).max(initial=0.0)) + float(np.abs(p.blk[:, 1]).max(initial=0.0))
+        fastest = float(np.sqrt(np.abs(p["w2"])).max(initial=0.0)) + float(np.abs(p["damp"]).max(initial=0.0))
         since = partial(from_row_starts, self._power_states, partial(powers, self.problem, start, rate))
         tau = np.maximum(tau, 0.0)
         if self._totals is not None:

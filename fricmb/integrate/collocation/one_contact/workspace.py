@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation.layout import CHANGE
 from fricmb.integrate.collocation.nodes import RUNGS, TERMS, nodes
 from fricmb.integrate.collocation.one_contact.prepare import Model, Rows, model, rows, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
@@ -21,9 +20,22 @@ from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Floats, Problem
+from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.stop import ended
+
+#: Tables by step size; arrays by block or dof, numbers and counts of a run, and what else it works in.
+TABLES = ("S", "IS", "IIS", "Q1", "Q2", "Q3")
+BY_BLOCK = (
+    "u", "u_low", "v", "a", "k", "load", "slope", "e0", "e1", "u_end", "low_end", "v_end", "force", "rate", "pos",
+    "pos_low", "vel", "scale",
+)  # fmt: skip
+SCALARS = ("time", "time_low", "loss", "next_step", "first_step")
+COUNTS = ("mode", "n_rows", "n_phases", "n_events", "n_steps", "n_rejected", "n_iterations", "n_builds")
+WORK = (
+    "ladder", "free", "direction", "relative", "jacobian", "kappa", "terms", "radau", "rhs", "coefficients", "out",
+    "change", "g", "n",
+)  # fmt: skip
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
 MANY, LARGE = 4, 32_000_000
@@ -46,7 +58,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
     """
     size = problem.n, problem.m, s
     p = model(problem)
-    content = once_per_problem(problem, "model content", lambda: b"".join([held.tobytes() for held in p]))
+    content = once_per_problem(problem, "model content", lambda: b"".join([held.tobytes() for held in p.values()]))
     with _turn:
         free = _store.setdefault(size, [])
         place = next((i for i, (other, _) in enumerate(free) if other == content), None)
@@ -62,7 +74,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
 
 def goes_back(run: Run) -> bool:
     """Whether the arrays are put back after the run; else what it has filled may stay where it is."""
-    return bool(sum([getattr(run, name).nbytes for name in ("tb", "answers", *Rows._fields)]) <= LARGE)
+    return bool(sum([getattr(run, name).nbytes for name in (*TABLES, "answers", *Rows._fields)]) <= LARGE)
 
 
 def lengthened(held: Rows) -> Rows | None:
@@ -98,30 +110,29 @@ def within(run: Run, memory: float | None) -> Run:
 
 
 def _made(p: Model, s: int) -> Run:
-    n, m = p.blk.shape[2], p.co.shape[1]
+    m, n = p["belt"].shape[0], p["load_0"].shape[0]
     count = 1 + int(np.clip(4_000_000 // (6 * n * s + (m * s) ** 2), 12, 48))
     slots = np.full(RUNGS + 2, -1, dtype=np.int64)
     slots[-1] = 0
-    # the last line of wk has a name (CHANGE): few nodes need as many lines
-    lines = (3, max(s, CHANGE) + 1, s + 1)
     wide = padded(s)
-    tables = _zeros((count, 6, n, wide), (count, m * m, s, wide), (1, m * m, s, wide), (RUNGS + 1,))
-    steps = [*_zeros((14, n), (3, m, wide), (s + 2, wide)), np.eye(s, wide), *_zeros((n + 1, TERMS))]
-    state = [*_zeros((4, n), (2, m), (5,)), np.zeros(8, np.int64)]
-    work: list[Any] = [*tables, slots, *steps, np.zeros(n, np.int64), *_zeros(lines), *state]
-    own = [array.copy() for array in p]
-    return room(Run._make([*own, *nodes(s), *work, *rows(n, m, s, FEW), addresses(*BLOCKS)]))
-
-
-def _zeros(*shapes: tuple[int, ...]) -> list[Floats]:
-    return [np.zeros(shape) for shape in shapes]
+    shapes: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys(TABLES, (count, n, wide)), **dict.fromkeys(BY_BLOCK, (n,)), **dict.fromkeys(SCALARS, (1,)),
+        "answers": (count, m * m, s, wide), "tk": (1, m * m, s, wide), "ladder": (RUNGS + 1,),
+        "free": (m, wide), "direction": (m, wide), "relative": (m, wide), "jacobian": (s + 2, wide),
+        "kappa": (n + 1, TERMS), "radau": (s, s), "rhs": (s,), "coefficients": (s + 1,), "out": (3, m), "change": (m,),
+        "g": (m,), "n": (m,),
+    }  # fmt: skip
+    arrays: dict[str, Any] = {name: np.zeros(shape) for name, shape in shapes.items()}
+    arrays |= {name: np.zeros(1, np.int64) for name in COUNTS} | {"terms": np.zeros(n, np.int64)}
+    arrays |= {name: array.copy() for name, array in p.items()} | nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
+    return room(Run(**arrays, slots=slots, unit=np.eye(s, wide), places=addresses(*BLOCKS)))
 
 
 def _begin_anew(run: Run, p: Model) -> None:
     """The constants of another scene of the same size; nothing is left of the run before."""
-    for name, array in zip(Model._fields, p, strict=True):
+    for name, array in p.items():
         getattr(run, name)[...] = array
-    for name in ("ladder", "bx", "nx", "jacobian", "kappa", "terms", "wk", "sd", "sm", "sx", "si"):
+    for name in (*BY_BLOCK, *SCALARS, *COUNTS, *WORK):
         getattr(run, name).fill(0)
     run.slots[:-1] = -1
     run.slots[-1] = 0
