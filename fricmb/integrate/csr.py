@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,7 @@ class Csr:
         rows, columns = np.nonzero(dense)
         return cls.in_order(rows, columns, dense[rows, columns], (dense.shape[0], dense.shape[1]))
 
-    @property
+    @cached_property
     def rows(self) -> _Ints:
         """Row of every entry."""
         return np.repeat(np.arange(self.shape[0]), np.diff(self.start))

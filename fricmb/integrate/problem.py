@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,16 +88,31 @@ class Templates:
     form_constant: Floats = field(default_factory=lambda: _f(0))
 
 
-def _sparse_of(held: Any, name: str) -> Csr:
-    """A matrix of frozen arrays as a sparse one, made once."""
-    made: dict[str, Csr] = vars(held).setdefault("_made", {})
-    if name not in made:
-        made[name] = Csr.of_dense(getattr(held, name))
-    return made[name]
+class Kept:
+    """Frozen arrays that remember what was made of them; pickles do without."""
+
+    _made: ClassVar[tuple[str, ...]] = ("kept",)
+
+    @cached_property
+    def kept(self) -> dict[Any, Any]:
+        """What was made of these arrays (see :func:`~fricmb.integrate.run.problem_cache.once_per`)."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name not in self._made}
+
+
+def _sparse_of(held: Kept, name: str) -> Csr:
+    """A matrix as a sparse one, made once."""
+    key = "sparse", name
+    if key not in held.kept:
+        held.kept[key] = Csr.of_dense(getattr(held, name))
+    found: Csr = held.kept[key]
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)
-class Linear:
+class Linear(Kept):
     """The constant part of the structure.
 
     Drivers (prescribed signals u) stand beside the dofs: row and column blocks [dofs, signals].
@@ -153,7 +168,7 @@ class Signals:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contacts:
+class Contacts(Kept):
     """Contacts: rows of relative velocity, laws and normal forces.
 
     Attributes
@@ -258,7 +273,7 @@ def _no_spectrum() -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
+class Problem(Kept):
     """A scene as arrays: linear structure, signals, contacts, nonlinear elements; each but the first may be empty.
 
     ``spectrum``: what finds ``omega`` and ``zeta`` when they are asked for.  ``contact_names``, ``dof_names`` serve
@@ -275,13 +290,7 @@ class Problem:
     contact_names: tuple[str, ...] = ()
     mechanism: Mechanism | None = None
 
-    @cached_property
-    def kept(self) -> dict[Any, Any]:
-        """What was made of these arrays (see :func:`~fricmb.integrate.run.problem_cache.once_per_problem`)."""
-        return {}
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name in self.__dataclass_fields__}
+    _made: ClassVar[tuple[str, ...]] = ("kept", "_spectrum")
 
     @cached_property
     def _spectrum(self) -> tuple[Floats, Floats]:

@@ -14,7 +14,7 @@ from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Floats, Problem, Templates
-from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.run.problem_cache import once_per, once_per_problem
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 
 
@@ -65,8 +65,12 @@ def port_forms(problem: Problem) -> PortForms:
 def free_blocks(problem: Problem) -> Blocks:
     """The structure without contact forces in blocks; raises NoBlocks where it has no such form."""
     n, linear = problem.n, problem.linear
-    M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
-    return once_per_problem(problem, "free blocks", lambda: blocks(M, K, C, np.zeros((n, 0)), ()))
+
+    def make() -> Blocks:
+        M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
+        return blocks(M, K, C, np.zeros((n, 0)), ())
+
+    return once_per(linear, "free blocks", make)
 
 
 def has_ledger(problem: Problem) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
+from fricmb.integrate.run.problem_cache import once_per
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant
 #: friction, where all of them are friction's, and under constant friction at tight tolerances or where there are far
@@ -36,7 +37,7 @@ def too_far_apart(problem: Problem) -> str | None:
     w2 = np.abs(free_blocks(problem).w2)
     most = w2.max(initial=0.0)
     least = w2[w2 > most / NOTHING].min(initial=most)
-    if np.any(w2 <= most / NOTHING) and hides_springs(problem):
+    if np.any(w2 <= most / NOTHING) and once_per(problem.linear, "hides", lambda: hides_springs(problem)):
         return f"frequencies of {np.sqrt(most):.3g} beside some that an eigenproblem cannot tell from 0"
     if most <= APART * least:
         return None

@@ -11,8 +11,8 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import _table
-from fricmb.integrate.problem import Floats, Ints, Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.problem import Floats, Ints, Linear, Problem
+from fricmb.integrate.run.problem_cache import once_per, once_per_problem
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor.network import Net
@@ -58,9 +58,19 @@ def _scaled(matrix: Csr, by: Floats) -> Csr:
 
 
 def _statics(problem: Problem) -> dict[str, Any]:
-    n, linear = problem.n, problem.linear
-    inside, drivers = slice(0, n), slice(n, n + problem.n_u)
-    inverse = 1.0 / linear.csr("M").diagonal()
+    linear, n = problem.linear, problem.n
+    structure = once_per(linear, "taylor structure", lambda: _structure(linear, n))
+    return {
+        **structure, "signals": _table(problem.signals.table), **_contact_arrays(problem, 1.0 / structure["mass"]),
+    }  # fmt: skip
+
+
+def _structure(linear: Linear, n: int) -> dict[str, Any]:
+    """Arrays of the structure, per unit of mass, and what signals bring in."""
+    n_u = len(linear.fx) - n
+    inside, drivers = slice(0, n), slice(n, n + n_u)
+    mass = linear.csr("M").diagonal()
+    inverse = 1.0 / mass
     Kx, Cx, B = linear.csr("Kx"), linear.csr("Cx"), linear.csr("B")
     K, C = _scaled(Kx.block(inside, inside), inverse), _scaled(Cx.block(inside, inside), inverse)
     start, index, (k, c) = on_one_pattern([K, C], (K.index, K.rows), (C.index, C.rows))
@@ -70,21 +80,20 @@ def _statics(problem: Problem) -> dict[str, Any]:
     Ku, Cu = Kx.block(inside, drivers), Cx.block(inside, drivers)
     Fu = Csr.of_entries(
         np.concatenate([B.rows, Ku.rows]), np.concatenate([B.index, Ku.index]),
-        np.concatenate([B.value, -Ku.value]), (n, problem.n_u),
+        np.concatenate([B.value, -Ku.value]), (n, n_u),
     )  # fmt: skip
     Fu, Cu = _scaled(Fu, inverse), _scaled(Cu, -inverse)
     in_start, in_signal, (in_u, in_du, in_b) = on_one_pattern([Fu, Cu, B])
     at, weights = legendre_rule(8)
-    outside = np.zeros((3, problem.n_u, problem.n_u))
+    outside = np.zeros((3, n_u, n_u))
     outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
     outside[2, :, :1] = linear.fx[n:, None]
     return {
         "offset": offset, "tridiagonal": np.array([int(n > 2 and np.array_equal(offset, [-1, 0, 1]))]),
         "stiff": stiff, "visc": visc, "start": start, "neighbour": index, "k": k, "c": c,
         "load": inverse * linear.fx[:n], "in_start": in_start, "in_signal": in_signal, "in_u": in_u, "in_du": in_du,
-        "in_b": in_b, "mass": 1.0 / inverse, "drivers": outside,
+        "in_b": in_b, "mass": mass, "drivers": outside,
         "gauss": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "damped": np.array([int(damped)]),
-        "signals": _table(problem.signals.table), **_contact_arrays(problem, inverse),
     }  # fmt: skip
 
 

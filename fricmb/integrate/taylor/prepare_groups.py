@@ -124,26 +124,9 @@ def _groups(problem: Problem) -> tuple[int, Ints]:
 
 
 def _group_statics(problem: Problem) -> dict[str, Any]:
-    contacts, n, m = problem.contacts, problem.n, problem.m
-    inverse = 1.0 / problem.linear.csr("M").diagonal()
-    count, group = _groups(problem)
+    contacts, m = problem.contacts, problem.m
     W = contacts.csr("W")
-    dof_group = np.full(n, -1, dtype=np.int64)
-    dof_group[W.rows] = group[W.index]
-    group_start, group_contact = _lists(group, count)
-    dof_start, group_dof = _lists(dof_group, count)
-    at = np.zeros(count + 1, dtype=np.int64)
-    np.cumsum(np.diff(group_start) ** 2, out=at[1:])
-    place = np.zeros(m, dtype=np.int64)
-    place[group_contact] = np.arange(len(group_contact)) - np.repeat(group_start[:-1], np.diff(group_start))
-    G = np.zeros(at[-1])
-    if count:
-        rows = csr_array((W.value, (W.rows, W.index)), shape=(n, m))
-        product = coo_array(rows.T @ csr_array((inverse[W.rows] * W.value, (W.rows, W.index)), shape=(n, m)))
-        both = group[product.row] >= 0
-        one, other = product.row[both], product.col[both]
-        size = np.diff(group_start)[group[one]]
-        G[at[group[one]] + place[one] * size + place[other]] = product.data[both]
+    count, group = _groups(problem)
     lawful = np.full(m, -1, dtype=np.int64)
     chosen = contacts.row[:-1][contacts.law == LAW_COEFFICIENT]
     lawful[chosen] = np.arange(len(chosen))
@@ -152,10 +135,38 @@ def _group_statics(problem: Problem) -> dict[str, Any]:
     first = contacts.row[:-1][np.diff(contacts.row) == 2]
     planar[first], planar[first + 1] = np.arange(len(first)), SECOND
     return {
-        "group": group, "group_start": group_start, "group_contact": group_contact, "dof_start": dof_start,
-        "group_dof": group_dof, "dof_group": dof_group, "at": at, "G": G, "lawful": lawful,
+        **_places(problem.linear.csr("M").diagonal(), W.rows, W.index, W.value, group, count), "lawful": lawful,
         "laws": laws._replace(address=laws.address[owner], p_start=laws.p_start[owner]),
         "N": np.asarray(contacts.N, dtype=float)[owner], "planar": planar,
+    }  # fmt: skip
+
+
+@cached_by_content
+def _places(mass: Floats, dof: Ints, row: Ints, W: Floats, group: Ints, count: int) -> dict[str, Any]:
+    """Members of each group, and its matrix G.
+
+    Of W the entries ``W`` (.) with dof and row; ``group`` (m,) of every row among ``count``.
+    """
+    n, m, inverse = len(mass), len(group), 1.0 / mass
+    dof_group = np.full(n, -1, dtype=np.int64)
+    dof_group[dof] = group[row]
+    group_start, group_contact = _lists(group, count)
+    dof_start, group_dof = _lists(dof_group, count)
+    at = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(np.diff(group_start) ** 2, out=at[1:])
+    place = np.zeros(m, dtype=np.int64)
+    place[group_contact] = np.arange(len(group_contact)) - np.repeat(group_start[:-1], np.diff(group_start))
+    G = np.zeros(at[-1])
+    if count:
+        rows = csr_array((W, (dof, row)), shape=(n, m))
+        product = coo_array(rows.T @ csr_array((inverse[dof] * W, (dof, row)), shape=(n, m)))
+        both = group[product.row] >= 0
+        one, other = product.row[both], product.col[both]
+        size = np.diff(group_start)[group[one]]
+        G[at[group[one]] + place[one] * size + place[other]] = product.data[both]
+    return {
+        "group": group, "group_start": group_start, "group_contact": group_contact, "dof_start": dof_start,
+        "group_dof": group_dof, "dof_group": dof_group, "at": at, "G": G,
     }  # fmt: skip
 
 
