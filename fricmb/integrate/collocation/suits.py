@@ -37,7 +37,7 @@ def too_far_apart(problem: Problem) -> str | None:
     w2 = np.abs(free_blocks(problem).w2)
     most = w2.max(initial=0.0)
     least = w2[w2 > most / NOTHING].min(initial=most)
-    if np.any(w2 <= most / NOTHING) and once_per(problem.linear, "hides", lambda: hides_springs(problem)):
+    if bool((w2 <= most / NOTHING).any()) and once_per(problem.linear, "hides", lambda: hides_springs(problem)):
         return f"frequencies of {np.sqrt(most):.3g} beside some that an eigenproblem cannot tell from 0"
     if most <= APART * least:
         return None
