@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.bdf_history import formula_of, signals
+from fricmb.integrate.constrained.bdf_history import formula_of, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
@@ -20,7 +19,7 @@ from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
-from fricmb.integrate.methods.backward_differences import differences
+from fricmb.integrate.methods.backward_differences import differences, no_differences
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
@@ -63,8 +62,12 @@ def run_mechanism(
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
-        given = (mech, k, w, y, end, before, st, control, out, record, part)
-        go_on = _bdf_loop(problem, start, t_end, stages, given) if multistep else partial(drive, *given)
+        past, formula = no_differences(), no_formula(y, st)
+        if multistep:
+            add_blocks("multistep")
+            past = differences(signals(problem), t_end - start.t, COST * stages / 5)
+            formula = formula_of(problem, start)
+        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, past, formula)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
         code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
@@ -130,18 +133,6 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
 #: the models (pendulum, four-bar, slider crank, drive train, car axis, Andrews) at 1e-6 and 1e-8; with three stages 1.2
 #: to 2.5, median 1.9.
 COST = 3.3
-
-
-def _bdf_loop(
-    problem: Problem, start: Start, t_end: float, stages: int, workspace: tuple[Any, ...]
-) -> Callable[[], int]:
-    """The loop that takes BDF steps; its blocks are compiled for those who ask for it."""
-    from fricmb.integrate.constrained.bdf_loop import drive_bdf
-
-    add_blocks("multistep")
-    past = differences(signals(problem), t_end - start.t, COST * stages / 5)
-    together = (*workspace, past, formula_of(problem, start))
-    return partial(drive_bdf, *together)
 
 
 #: Forces of inertia that are nothing but the round-off of others; those of a load that grows from 0 at the start, which

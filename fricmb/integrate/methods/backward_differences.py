@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -72,6 +73,14 @@ def differences(n_y: int, span: float, cost: float) -> Differences:
             column=np.zeros(8),
         )
     )
+
+
+@lru_cache(maxsize=1)
+def no_differences() -> Differences:
+    """A history that waits for ever: BDF never begins, and every step is one of the one-step method."""
+    past = differences(0, 1.0, 1.0)
+    past.status[WAIT], past.status[SLOWER] = 2**62, 1
+    return past
 
 
 #: Weights of an integral over the last step by backward differences (Adams-Moulton).
