@@ -150,23 +150,24 @@ def _speed_to_come(problem: Problem, start: Start, t_end: float, load: float, ma
 
     Where there are none, either, a small part of what the load would bring.
     """
-    m, nc, span = mechanism_of(problem), problem.n_c, t_end - start.t
-    force = np.zeros((1, int(m.joints.row[-1]) + 2 * problem.m))
-    z = np.array(start.z, float)[None]
+    span = t_end - start.t
     for part in (1e-3, 1e-2, 1e-1, 1.0):
-        q, v = np.array(start.q, float)[None], np.zeros((1, m.n))
-        t = np.array([start.t + part * span])
-        a = complete_at(problem, t, q, v, z, np.ones((1, nc), np.int8), force)[4]
-        if np.isfinite(a).all() and (mass * np.abs(a.ravel())).max() > ROUND_OFF * load:
+        a = _without_friction(problem, start, start.t + part * span, np.zeros(problem.n))
+        if np.isfinite(a).all() and (mass * np.abs(a)).max() > ROUND_OFF * load:
             return float(1e-3 * part * span * np.abs(a).max())
     return float(1e-4 * span * load / mass.max())
 
 
 def _reach(problem: Problem, start: Start, t_end: float) -> float:
     """Speed that the loads of the start would bring about in a first step from rest: round-off is seen beside it."""
-    m, nc = mechanism_of(problem), problem.n_c
-    q, v, z = np.array(start.q, float)[None], np.zeros((1, m.n)), np.array(start.z, float)[None]
-    force = np.zeros((1, int(m.joints.row[-1]) + 2 * problem.m))
-    a = complete_at(problem, np.array([start.t]), q, v, z, np.ones((1, nc), np.int8), force)[4]
+    v = np.zeros(problem.n)
+    a = _without_friction(problem, start, start.t, v)
     push = float(np.abs(a).max(initial=0.0))
     return first_step(v, a, t_end - start.t, PART) * push if push < np.inf else 0.0
+
+
+def _without_friction(problem: Problem, start: Start, t: float, v: Floats) -> Floats:
+    """Accelerations (n,) at the start's positions, at time t, with velocities v."""
+    q, z = np.array(start.q, float)[None], np.array(start.z, float)[None]
+    force = np.zeros((1, mechanism_of(problem).n_rows + 2 * problem.m))
+    return complete_at(problem, np.array([t]), q, v[None], z, np.ones((1, problem.n_c), np.int8), force)[4].ravel()
