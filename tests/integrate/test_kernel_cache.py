@@ -109,7 +109,7 @@ def test_a_run_by_bdf_compiles_nothing_the_second_time():
     program = (
         "import fricmb as fm, sys; fm.simulate(fm.models.belt_oscillator(), t_end=1.0, method='bdf');"
         "kernels = [m for n, m in sys.modules.items() if n == 'fricmb.integrate.methods.bdf'];"
-        "print(sum(kernels[0].drive_bdf.stats.cache_misses.values()))"
+        "print(sum(kernels[0].drive.stats.cache_misses.values()))"
     )
     run = [sys.executable, "-c", program]
     misses = [subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()[-1] for _ in range(2)]

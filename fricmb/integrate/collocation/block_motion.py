@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats, Floats2
@@ -75,6 +76,19 @@ def fundamental(w2: float, d: float, t: float) -> tuple[float, float, float]:
     S = math.exp(x2) * math.expm1(gap) / gap if gap < 30.0 else (math.exp(x1) - math.exp(x2)) / gap
     IS = ((math.expm1(x1) / x1 if x1 != 0.0 else 1.0) - math.expm1(x2) / x2) / gap
     return t * S, t * t * IS, t * t * t * (_phi2(x1) - _phi2(x2)) / gap
+
+
+@kernel
+def between_nodes(monomial: Floats2, values: Any, theta: float) -> float:
+    """Value at the part theta of a step of the polynomial through ``values`` (s,) at the nodes."""
+    n_s = monomial.shape[0]
+    result = 0.0
+    for r in range(n_s - 1, -1, -1):
+        c = 0.0
+        for x in range(n_s):
+            c += monomial[r, x] * values[x]
+        result = result * theta + c
+    return result
 
 
 #: Most terms of a series.

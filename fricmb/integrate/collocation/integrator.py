@@ -34,14 +34,15 @@ from fricmb.integrate.collocation.one_contact.run import (
     run_single,
 )  # fmt: skip
 from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
-from fricmb.integrate.collocation.one_contact.workspace import COUNTS, borrowed, goes_back, lengthened, may_grow, within
+from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_back, lengthened, may_grow, within
 from fricmb.integrate.collocation.run import run_general
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
+from fricmb.integrate.run.chunks import counters
 from fricmb.integrate.run.stop import ended, watched
-from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
+from fricmb.integrate.trajectory import Trajectory, Transitions
 
 _FAILURES = {
     UNDERFLOW: "the step fell to nothing: the direction of slip cannot be resolved",
@@ -148,8 +149,9 @@ def nodes_for(rtol: float) -> int:
 
 
 def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
-    for name in ("pos_low", "g", "n", "time_low", "loss", *COUNTS):
-        getattr(run, name).fill(0)
+    run.pos_low[:] = 0.0
+    run.g[:] = run.n[:] = run.time_low[:] = run.loss[:] = 0.0
+    run.used[:] = run.counts[:] = 0
     run.pos[:], run.vel[:], run.scale[:] = start.q, start.v, np.abs(start.v)
     if tolerance.atol_v is not None:
         np.maximum(run.scale, tolerance.atol_v / tolerance.rtol, out=run.scale)
@@ -195,17 +197,16 @@ def _run_in(
             progress(float(run.time[0]))
         else:
             break
-    mode, n_rows, phases, n_events, steps, rejected, iterations, builds = (int(getattr(run, x)[0]) for x in COUNTS)
+    n_rows, phases, n_events = (int(i) for i in run.used)
     rows = Rows(run.steps[:n_rows], run.kinds[:n_rows], run.phases[:phases], run.events[:n_events])
     if goes_back(run):
         rows = Rows._make(x.copy() for x in rows)
     transitions = Transitions(
         t=rows.events[:, 0].copy(), contact=np.zeros(n_events, dtype=np.int64), kind=rows.events[:, 1].astype(np.int64)
     )
-    counters = Counters(n_steps=steps, n_rejected=rejected, n_rhs=iterations, n_jac=iterations, n_lu=builds)
     end = Start(
         t=float(run.time[0] + run.time_low[0]), q=run.pos + run.pos_low, v=run.vel.copy(), z=np.zeros(0),
-        mode=np.array([mode], np.int8), direction=run.n.copy(),
+        mode=run.mode.astype(np.int8), direction=run.n.copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or _FAILURES.get(code)
-    return SingleRun(problem, s, rows, transitions, counters, end, failure)
+    return SingleRun(problem, s, rows, transitions, counters(run.counts), end, failure)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.collocation.block_motion import between_nodes
 from fricmb.integrate.collocation.motion_in_step import gains_at_nodes, input_series
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_instant
@@ -43,12 +44,7 @@ def powers_on_motion(
             g[a] = -belt_velocity(packed.ports, s, n, a)
             for i in range(n):
                 g[a] += packed.ports.W[i, a] * ex.node[1, j, i]
-            F[a] = 0.0
-            for r in range(n_s - 1, -1, -1):
-                c = 0.0
-                for x in range(n_s):
-                    c += ex.monomial[r, x] * w.F[x, a]
-                F[a] = F[a] * (tau / h) + c
+            F[a] = between_nodes(ex.monomial, w.F[:, a], tau / h)
         powers(packed, s, F, N, g, power[j])
 
 

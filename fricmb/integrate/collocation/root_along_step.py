@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.collocation.block_motion import two_sum
+from fricmb.integrate.collocation.block_motion import between_nodes, two_sum
 from fricmb.integrate.collocation.finish_step import input_error, stiff_error
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.block import block
@@ -35,19 +35,6 @@ ROUND_OFF, PART = 1e-13, 1e-2
 GRAIN = 1e-11
 #: Part of a first guess by which the second one differs, to see which way to go.
 OFFSET = 1e-3
-
-
-@kernel
-def between_nodes(one: OneStep, values: Floats2, a: int, theta: float) -> float:
-    """Value at theta of the polynomial through the node values in column a."""
-    n_s = values.shape[0]
-    result = 0.0
-    for r in range(n_s - 1, -1, -1):
-        c = 0.0
-        for x in range(n_s):
-            c += one.exact.monomial[r, x] * values[x, a]
-        result = result * theta + c
-    return result
 
 
 @kernel
@@ -85,7 +72,7 @@ def move_to(
         polynomial(one.tab, y.z[a], one.margin, one.series)
         end.z[a] = evaluate(one.series, tau / h)[0]
     for a in range(m):
-        end.n[a] = between_nodes(one, w.n, a, tau / h)
+        end.n[a] = between_nodes(ex.monomial, w.n[:, a], tau / h)
     unit_directions(packed, end)
     set_time(packed.signals, s, y.t[0], n)
     for a in range(m):
@@ -138,7 +125,7 @@ def may_stay(
     error += stiff_error(y, one, acc, h, ex.safety[0] * acc.rtol[0])
     off = 0.0
     for a in range(y.F.shape[0]):
-        off = max(off, ex.weight[a] * abs(end.F[a] - between_nodes(one, one.w.F, a, tau / h)))
+        off = max(off, ex.weight[a] * abs(end.F[a] - between_nodes(ex.monomial, one.w.F[:, a], tau / h)))
     noise = 0.0
     last = ex.P.shape[1] - 1
     for c in range(ex.P.shape[0]):

@@ -14,7 +14,6 @@ from fricmb.integrate.collocation.root_along_step import exact_root
 from fricmb.integrate.collocation.sample import sample_exact
 from fricmb.integrate.compile.block_places import CORE, PLACES
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.one_step import one_step_loop
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
@@ -23,6 +22,7 @@ from fricmb.integrate.model.instant_workspace import InstantWorkspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes2, Floats, Floats2, Ints, Problem, Start
+from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.step.coulomb_newton import plain_ports
 from fricmb.integrate.step.exact_structure import Exact
 from fricmb.integrate.step.radau_step import OneStep, one_step_of
@@ -57,25 +57,11 @@ def places(plain: bool, nonlinear: bool) -> Ints:
     return table
 
 
-@lru_cache(maxsize=1)
-def _no_factor() -> Factor:
-    shapes = {"Sinv": 3, "P": 3, "G": 3, "X": 3, "S": 2, "Nq": 2, "Nv": 2}
-    kinds = {"Sinv": complex, "S": complex, "X": complex, "line": complex, "slot": np.int64}
-    kinds |= {"pivots": np.int32, "sizes": np.int32}
-    return room(Factor._make(
-        np.zeros((0,) * shapes.get(name, 1), kinds.get(name, float)) for name in Factor._fields
-    ))  # fmt: skip
-
-
 def exact_step(problem: Problem, exact: Exact) -> OneStep:
-    """Arrays for exact steps."""
+    """Arrays for exact steps, which have no factors, and of stages nothing but their times."""
     s = exact.xf.shape[1]
-    none, empty = np.zeros((0, 0)), np.zeros(0)
-    stages = Stages(
-        none, none, none, none, none, np.zeros(s), empty, empty, np.zeros((s, s)), np.zeros((0, 0), complex),
-        none, empty,
-    )  # fmt: skip
-    return one_step_of(problem, radau(s), _no_factor(), stages, exact)
+    stages = Stages(**(empty_arrays(Stages) | {"t": np.zeros(s), "hA": np.zeros((s, s))}))
+    return one_step_of(problem, radau(s), Factor(**empty_arrays(Factor)), stages, exact)
 
 
 class ExactRun(RowTrajectory):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.collocation.block_motion import between_nodes
 from fricmb.integrate.collocation.blocks_in_step import load_at_start, start_blocks
 from fricmb.integrate.collocation.motion_in_step import gains_at, input_series
 from fricmb.integrate.compile.kernel import entry, kernel
@@ -64,8 +65,8 @@ def integral_of_nodes(ex: Exact, row: Floats, at: int, width: int, theta: float)
 
 @kernel
 def inside_step(
-    packed: Packed, s: Scratch, y: State, ex: Exact, left: Floats, right: Floats, at: int, tau: float, P: Floats2,
-    series: Floats2, dq: Floats, dv: Floats,
+    y: State, ex: Exact, left: Floats, right: Floats, at: int, tau: float, P: Floats2, series: Floats2, dq: Floats,
+    dv: Floats,
 ) -> None:  # fmt: skip
     """State at tau after row ``left``, and the directions of slip from the forces' polynomials."""
     n, nz = y.q.shape[0], y.z.shape[0]
@@ -83,12 +84,7 @@ def inside_step(
     for i in range(width):
         y.work[i] = left[at - 2 * width + i] + h * integral_of_nodes(ex, right, rates + i, width, theta)
     for a in range(y.F.shape[0]):
-        y.F[a] = 0.0
-        for r in range(P.shape[1] - 1, -1, -1):
-            c = 0.0
-            for x in range(P.shape[1]):
-                c += ex.monomial[r, x] * P[a, x]
-            y.F[a] = y.F[a] * theta + c
+        y.F[a] = between_nodes(ex.monomial, P[a], theta)
 
 
 @entry
@@ -123,7 +119,7 @@ def sample_exact(
                 y.N[c] = left[at_F + m + c]
             if k != opened:
                 open_step(packed, s, y, ex, left, right, at, P, series, gain)
-            inside_step(packed, s, y, ex, left, right, at, tau, P, series, dq, dv)
+            inside_step(y, ex, left, right, at, tau, P, series, dq, dv)
             y.t[0] = t[j]
             point_against_forces(packed, y)
             point_along_slip(packed, s, y)

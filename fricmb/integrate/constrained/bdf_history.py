@@ -41,6 +41,11 @@ def formula_of(problem: Problem, start: Start) -> Formula:
     return room(Formula(base, one, np.zeros(1), np.zeros(1), q, np.zeros_like(q)))
 
 
+def no_formula(base: State, one: Stages) -> Formula:
+    """Of a run in which no step is one of BDF; ``base``, ``one``: any state and stages."""
+    return room(Formula(base, one, np.zeros(1), np.zeros(1), np.zeros(0), np.zeros(0)))
+
+
 def signals(problem: Problem) -> int:
     """Number of signals whose differences are kept."""
     m, nc = mechanism_of(problem), problem.n_c

@@ -39,13 +39,14 @@ from fricmb.integrate.methods.backward_differences import (
     change_order,
     count_step,
     predict,
+    reject,
     rescale,
 )
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
 from fricmb.integrate.step.slip_growth import too_long
-from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
+from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
 
 #: Newton stops at this part of the error that a step may make.
 NEWTON = 0.03
@@ -210,14 +211,8 @@ def multistep(
     error = scaled(y, c, past, formula, past.d, 1.0 / (order + 1))
     error = max(error, too_long(growth(mech, k, y, one, h), order))
     if not error <= 1.0:
-        past.status[REJECTIONS] += 1
-        c.counts[1] += 1
-        if not error < 1e300:
-            return HANDOVER
         # at the start nothing is known of the step but that of the other method
-        least = 0.2 if past.status[SINCE] > 0 else 1e-4
-        rescale(past, ladder(max(least, step_factor(error, order, BDF_SAFETY)), BDF_RUNGS))
-        return REJECTED
+        return reject(past, c.counts, error, 0.2 if past.status[SINCE] > 0 else 1e-4)
     update(past, formula)
     inside(st, c, past)
     find_kinks(mech, k, y, st, out)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.bdf_history import formula_of, signals
+from fricmb.integrate.constrained.bdf_history import formula_of, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
@@ -20,7 +19,7 @@ from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
-from fricmb.integrate.methods.backward_differences import differences
+from fricmb.integrate.methods.backward_differences import differences, no_differences
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
@@ -63,8 +62,12 @@ def run_mechanism(
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
-        given = (mech, k, w, y, end, before, st, control, out, record, part)
-        go_on = _bdf_loop(problem, start, t_end, stages, given) if multistep else partial(drive, *given)
+        past, formula = no_differences(), no_formula(y, st)
+        if multistep:
+            add_blocks("multistep")
+            past = differences(signals(problem), t_end - start.t, COST * stages / 5)
+            formula = formula_of(problem, start)
+        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, past, formula)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
         code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
@@ -132,18 +135,6 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
 COST = 3.3
 
 
-def _bdf_loop(
-    problem: Problem, start: Start, t_end: float, stages: int, workspace: tuple[Any, ...]
-) -> Callable[[], int]:
-    """The loop that takes BDF steps; its blocks are compiled for those who ask for it."""
-    from fricmb.integrate.constrained.bdf_loop import drive_bdf
-
-    add_blocks("multistep")
-    past = differences(signals(problem), t_end - start.t, COST * stages / 5)
-    together = (*workspace, past, formula_of(problem, start))
-    return partial(drive_bdf, *together)
-
-
 #: Forces of inertia that are nothing but the round-off of others; those of a load that grows from 0 at the start, which
 #: is taken an instant later.
 ROUND_OFF, NOTHING = 1e-10, 1e-280
@@ -159,23 +150,24 @@ def _speed_to_come(problem: Problem, start: Start, t_end: float, load: float, ma
 
     Where there are none, either, a small part of what the load would bring.
     """
-    m, nc, span = mechanism_of(problem), problem.n_c, t_end - start.t
-    force = np.zeros((1, int(m.joints.row[-1]) + 2 * problem.m))
-    z = np.array(start.z, float)[None]
+    span = t_end - start.t
     for part in (1e-3, 1e-2, 1e-1, 1.0):
-        q, v = np.array(start.q, float)[None], np.zeros((1, m.n))
-        t = np.array([start.t + part * span])
-        a = complete_at(problem, t, q, v, z, np.ones((1, nc), np.int8), force)[4]
-        if np.isfinite(a).all() and (mass * np.abs(a.ravel())).max() > ROUND_OFF * load:
+        a = _without_friction(problem, start, start.t + part * span, np.zeros(problem.n))
+        if np.isfinite(a).all() and (mass * np.abs(a)).max() > ROUND_OFF * load:
             return float(1e-3 * part * span * np.abs(a).max())
     return float(1e-4 * span * load / mass.max())
 
 
 def _reach(problem: Problem, start: Start, t_end: float) -> float:
     """Speed that the loads of the start would bring about in a first step from rest: round-off is seen beside it."""
-    m, nc = mechanism_of(problem), problem.n_c
-    q, v, z = np.array(start.q, float)[None], np.zeros((1, m.n)), np.array(start.z, float)[None]
-    force = np.zeros((1, int(m.joints.row[-1]) + 2 * problem.m))
-    a = complete_at(problem, np.array([start.t]), q, v, z, np.ones((1, nc), np.int8), force)[4]
+    v = np.zeros(problem.n)
+    a = _without_friction(problem, start, start.t, v)
     push = float(np.abs(a).max(initial=0.0))
     return first_step(v, a, t_end - start.t, PART) * push if push < np.inf else 0.0
+
+
+def _without_friction(problem: Problem, start: Start, t: float, v: Floats) -> Floats:
+    """Accelerations (n,) at the start's positions, at time t, with velocities v."""
+    q, z = np.array(start.q, float)[None], np.array(start.z, float)[None]
+    force = np.zeros((1, mechanism_of(problem).n_rows + 2 * problem.m))
+    return complete_at(problem, np.array([t]), q, v[None], z, np.ones((1, problem.n_c), np.int8), force)[4].ravel()

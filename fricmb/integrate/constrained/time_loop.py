@@ -1,4 +1,4 @@
-"""The loop of a run: steps, located transitions, and what stops it."""
+"""The loop of a run: BDF between transitions, where it is asked for, the one-step method, and what stops it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from fricmb.integrate.compile.band import spread_of_pivots
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
+from fricmb.integrate.constrained.bdf_history import Formula, start_past
+from fricmb.integrate.constrained.bdf_step import multistep
 from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
 from fricmb.integrate.constrained.mode_decision import decide, mark_rest
@@ -22,9 +24,20 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import let_go
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.methods.backward_differences import ON, Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.problem import SLIP, Codes
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
-from fricmb.integrate.run.outcomes import DONE, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_SEVERAL, FAIL_SINGULAR, FULL
+from fricmb.integrate.run.outcomes import (
+    ACCEPTED,
+    DONE,
+    FAIL_LOST,
+    FAIL_MARGIN,
+    FAIL_MODES,
+    FAIL_SEVERAL,
+    FAIL_SINGULAR,
+    FULL,
+    HANDOVER,
+)
 from fricmb.integrate.run.stop import stopped
 
 
@@ -77,9 +90,12 @@ def begin(
 @entry
 def drive(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
-    rec: Record, part: Codes,
+    rec: Record, part: Codes, past: Differences, formula: Formula,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the space for steps is used up."""
+    """Step from y until the end of the span, or until the space for steps is used up.
+
+    Steps are those of the one-step method, and where the history ``past`` lets BDF begin those of ``formula``.
+    """
     stop = set_window(c, k.s.window, y.t[0])
     while True:
         if stopped():
@@ -87,12 +103,25 @@ def drive(
         # a stop is kept until it has been gone through: a step may end on it to the last digit
         if reached(y.t[0], stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
+            past.status[ON] = 0
             if code == DONE and stop >= c.span[1]:
                 return DONE
             stop = next_stop(c, y.t[0])
         elif crowded(rec, y.mode.shape[0]):
             return FULL
+        elif past.status[ON] == 1:
+            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t[0], mech.address)
+            if code == ACCEPTED and is_slower(past, formula.usual[0]):
+                c.h[0] = formula.usual[0]
+            elif code == HANDOVER:
+                c.h[0] = max(c.h[0], past.h[0])
+                hand_over(past)
         else:
+            t = y.t[0]
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop, mech.address)
+            h = y.t[0] - t
+            if may_begin(past, code) and h > 0.0:
+                formula.usual[0] = h
+                start_past(y, past, formula, min(0.1 * h, past.good[0] if past.good[0] > 0.0 else h))
         if code > FULL:
             return code

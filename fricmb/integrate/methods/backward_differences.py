@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +15,9 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2, Ints
-from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, HANDOVER, REJECTED
 from fricmb.integrate.step.radau_step import OneStep
-from fricmb.integrate.step.step_control import BDF_SAFETY, step_factor
+from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
 
 #: What ``status`` counts: the order; steps since it or the step changed; 1 where BDF is on; rejections in a row; steps
 #: of the one-step method to wait for before BDF is tried again; the last such wait; steps since its start; the last
@@ -72,6 +73,14 @@ def differences(n_y: int, span: float, cost: float) -> Differences:
             column=np.zeros(8),
         )
     )
+
+
+@lru_cache(maxsize=1)
+def no_differences() -> Differences:
+    """A history that waits for ever: BDF never begins, and every step is one of the one-step method."""
+    past = differences(0, 1.0, 1.0)
+    past.status[WAIT], past.status[SLOWER] = 2**62, 1
+    return past
 
 
 #: Weights of an integral over the last step by backward differences (Adams-Moulton).
@@ -187,6 +196,17 @@ def rescale(past: Differences, factor: float) -> None:
             past.D[i, y] = value
     past.h[0] *= factor
     past.status[EQUAL] = 0
+
+
+@kernel
+def reject(past: Differences, counts: Ints, error: float, least: float) -> int:
+    """Shorten a step whose error is above 1, to its part ``least`` at least; HANDOVER where nothing is known of it."""
+    past.status[REJECTIONS] += 1
+    counts[1] += 1
+    if not error < 1e300:
+        return HANDOVER
+    rescale(past, ladder(max(least, step_factor(error, past.status[ORDER], BDF_SAFETY)), BDF_RUNGS))
+    return REJECTED
 
 
 @kernel

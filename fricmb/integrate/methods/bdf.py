@@ -9,94 +9,29 @@ from typing import ClassVar
 
 import numpy as np
 
-from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.mode_decision import Rest
-from fricmb.integrate.contact.transition import Before
+from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
-from fricmb.integrate.methods.attempt_step import Clock, advance
 from fricmb.integrate.methods.backward_differences import (
-    ON,
     SLOWER,
     WAIT,
-    Differences,
     differences,
-    hand_over,
-    is_slower,
-    may_begin,
-    start_history,
 )
-from fricmb.integrate.methods.bdf_stability import Guard, guard_of, spectrum
-from fricmb.integrate.methods.bdf_step import bdf_step
-from fricmb.integrate.methods.bdf_transitions import note_loads
+from fricmb.integrate.methods.bdf_stability import guard_of, spectrum
 from fricmb.integrate.methods.one_step import run_one_step
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
-from fricmb.integrate.methods.time_loop import arrive, crowded
-from fricmb.integrate.model.accelerations import slip_rate
+from fricmb.integrate.methods.time_loop import drive
 from fricmb.integrate.model.forces import Scratch, set_instant
-from fricmb.integrate.model.law_values import along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.output.recorder import Rows
-from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints, Problem, Start
-from fricmb.integrate.run.breakpoints import reached, set_window
-from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, FULL, HANDOVER
-from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.step.radau_step import Accuracy, OneStep
-from fricmb.integrate.step.step_matrix import forget, jacobians
+from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
+from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.step_matrix import jacobians
 from fricmb.integrate.step.tableau import one_stage, radau
 from fricmb.integrate.trajectory import Trajectory
 
-
-@kernel
-def calm(packed: Packed, y: State, h: float) -> bool:
-    """Whether no slipping contact lands within a few steps h, nor has only begun to slip."""
-    for k in range(y.mode.shape[0]):
-        if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
-            continue
-        if along(packed.ports.row, k, y.n, y.g) < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
-            return False
-    return True
-
-
 #: First steps of the one-step method, in which its size settles.
 SETTLE = 8
-
-
-@entry
-def drive_bdf(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
-    past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
-) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the space for rows is used up."""
-    stop = set_window(clock, s.window, y.t[0])
-    while True:
-        if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
-            return FULL
-        left = stop - y.t[0]
-        if reached(y.t[0], stop):
-            code = arrive(packed, s, y, r, old, out, clock, stop, address)
-            stop = set_window(clock, s.window, y.t[0])
-            one.last[1] = 0.0
-            past.status[ON] = 0
-        elif past.status[ON] == 1:
-            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left, address)
-            if code == ACCEPTED and is_slower(past, clock.usual[0]):
-                clock.h[0] = clock.usual[0]
-            if code == HANDOVER:
-                clock.h[0] = max(clock.h[0], past.h[0])
-                hand_over(past)
-        else:
-            code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
-            h = y.t[0] - end.t[0]
-            if may_begin(past, code) and calm(packed, y, h):
-                usual = past.good[0] if past.good[0] > 0.0 else h
-                start_history(packed, s, end, y, one, past, min(usual, 0.25 * h), address)
-                note_loads(packed, s, end, y, guard)
-                if packed.elements.address.shape[0] > 0:
-                    forget(multi.fac)
-        if code > CHANGED:
-            return code
 
 
 @entry
@@ -174,6 +109,6 @@ def bdf_loop(run: Collector, one: OneStep, multi: OneStep) -> Callable[[], int]:
     past = differences(signals, run.t_end - run.start.t, cost(problem, len(one.tab.c)) / cost(problem, 1))
     past.status[WAIT], past.status[SLOWER] = SETTLE, 1
     return partial(
-        drive_bdf, run.packed, run.scratch, run.y, run.end, one, multi, run.acc, past, guard_of(problem, spectral),
+        drive, run.packed, run.scratch, run.y, run.end, one, multi, run.acc, past, guard_of(problem, spectral),
         run.rest, run.old, run.rows, run.clock, run.address,
     )  # fmt: skip

@@ -22,10 +22,9 @@ from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, prepare_at
 from fricmb.integrate.step.stage_predictor import contacts_from_start
 from fricmb.integrate.step.stages import solve_stages
-from fricmb.integrate.step.step_matrix import prepare
 
 
 class Last(NamedTuple):
@@ -67,10 +66,7 @@ def solve_with(
         if mode[k] != last.mode[k]:
             same = False
     beta_h = formula(y, one, last, h, same)
-    again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
-    if again:
-        set_instant(packed.signals, s, y.t[0], y.q, y.v)
-    if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
+    if not prepare_at(packed, s, y, one, beta_h, True, address):
         return False
     st.t[0] = y.t[0] + h
     st.hA[0, 0] = beta_h

@@ -66,6 +66,12 @@ def guard_of(problem: Problem, spectrum: tuple[Floats, Floats]) -> Guard:
     return room(Guard(growth_table(), omega, decay, np.zeros(problem.n_c + 1)))
 
 
+@lru_cache(maxsize=1)
+def no_guard() -> Guard:
+    """Of a run in which no step is one of BDF."""
+    return room(Guard(np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros(0)))
+
+
 #: Structures of more degrees of freedom are not diagonalised for this.
 WHOLE = 256
 

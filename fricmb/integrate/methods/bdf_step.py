@@ -25,6 +25,7 @@ from fricmb.integrate.methods.backward_differences import (
     change_order,
     count_step,
     predict,
+    reject,
     rescale,
 )
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER, Guard, admissible
@@ -40,7 +41,7 @@ from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_to_position, newton_tolerances, state_noise, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.stages import solve_stages
-from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
+from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
 from fricmb.integrate.step.step_error import grain
 from fricmb.integrate.step.step_matrix import forget, prepare
 
@@ -182,12 +183,7 @@ def bdf_step(
     error = max(error, too_long(growth(packed, s, y, one, past.h[0]), k))
     error = max(error, jump_error(packed, s, y, y.t[0] + past.h[0], end.q, end.v, acc, past.h[0]))
     if not error <= 1.0:
-        past.status[REJECTIONS] += 1
-        one.counts[1] += 1
-        if not error < np.inf:
-            return HANDOVER
-        rescale(past, ladder(max(0.2, step_factor(error, k, BDF_SAFETY)), BDF_RUNGS))
-        return REJECTED
+        return reject(past, one.counts, error, 0.2)
     end.t[0] = y.t[0] + past.h[0]
     for a in range(y.n.shape[0]):
         end.n[a] = one.w.n[0, a]

@@ -73,6 +73,17 @@ def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: Gu
 
 
 @kernel
+def calm(packed: Packed, y: State, h: float) -> bool:
+    """Whether no slipping contact lands within a few steps h, nor has only begun to slip."""
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+            continue
+        if along(packed.ports.row, k, y.n, y.g) < 3.0 * h * max(0.0, -slip_rate(packed, y, k)):
+            return False
+    return True
+
+
+@kernel
 def dips(r0: float, r1: float, d0: float, d1: float) -> float:
     """Smallest value of the cubic with these values and slopes at 0 and 1: inside, else at an end."""
     if d0 >= 0.0 or d1 <= 0.0:

@@ -1,4 +1,4 @@
-"""The loop of a one-step run, and what happens at breakpoints."""
+"""The loop of a run: BDF between transitions, where it is asked for, the one-step method, and breakpoints."""
 
 from __future__ import annotations
 
@@ -6,15 +6,27 @@ from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.contact.mode_decision import Rest
 from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.methods.attempt_step import Clock, advance, settled
+from fricmb.integrate.methods.backward_differences import (
+    ON,
+    Differences,
+    hand_over,
+    is_slower,
+    may_begin,
+    start_history,
+)
+from fricmb.integrate.methods.bdf_stability import Guard
+from fricmb.integrate.methods.bdf_step import bdf_step
+from fricmb.integrate.methods.bdf_transitions import calm, note_loads
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import Ints
 from fricmb.integrate.run.breakpoints import reached, set_window
-from fricmb.integrate.run.outcomes import CHANGED, DONE, FULL
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.step_matrix import forget
 
 
 @kernel
@@ -42,19 +54,38 @@ def crowded(out: Rows, n_s: int, nc: int) -> bool:
 
 @entry
 def drive(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, r: Rest, old: Before, out: Rows,
-    clock: Clock, address: Ints,
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
+    past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the space for rows is used up."""
+    """Step from y until the end of the span, or until the space for rows is used up.
+
+    Steps are those of the one-step method ``one``, and where the history ``past`` lets BDF begin those of ``multi``.
+    """
     stop = set_window(clock, s.window, y.t[0])
     while True:
         if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
+        left = stop - y.t[0]
         if reached(y.t[0], stop):
             code = arrive(packed, s, y, r, old, out, clock, stop, address)
             stop = set_window(clock, s.window, y.t[0])
             one.last[1] = 0.0
+            past.status[ON] = 0
+        elif past.status[ON] == 1:
+            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left, address)
+            if code == ACCEPTED and is_slower(past, clock.usual[0]):
+                clock.h[0] = clock.usual[0]
+            if code == HANDOVER:
+                clock.h[0] = max(clock.h[0], past.h[0])
+                hand_over(past)
         else:
-            code = advance(packed, s, y, end, one, acc, r, old, out, clock, stop - y.t[0], address)
+            code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
+            h = y.t[0] - end.t[0]
+            if may_begin(past, code) and calm(packed, y, h):
+                usual = past.good[0] if past.good[0] > 0.0 else h
+                start_history(packed, s, end, y, one, past, min(usual, 0.25 * h), address)
+                note_loads(packed, s, end, y, guard)
+                if packed.elements.address.shape[0] > 0:
+                    forget(multi.fac)
         if code > CHANGED:
             return code

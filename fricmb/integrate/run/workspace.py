@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 
-from fricmb.integrate.compile.room import Room, room
+from fricmb.integrate.compile.room import Room, annotations_of, array_type, room
 
 _Rooms = TypeVar("_Rooms", bound=tuple[Any, ...])
 
@@ -50,6 +50,12 @@ class Workspace(Generic[_Rooms]):
     def clear(self) -> None:
         """Make all arrays what they were at first."""
         self._memory[:] = self._blank
+
+
+def empty_arrays(kind: Any) -> dict[str, Any]:
+    """Arrays of no length for the fields of a named tuple that are arrays, by their annotations."""
+    types = {name: array_type(note) for name, note in annotations_of(kind).items()}
+    return {name: np.zeros((0,) * held.ndim, str(held.dtype)) for name, held in types.items() if held is not None}
 
 
 def _arrays_of(values: Any) -> list[Any]:

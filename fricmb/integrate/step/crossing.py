@@ -18,6 +18,15 @@ def polynomial(tab: Tableau, first: float, values: Floats, series: Floats) -> No
 
 
 @kernel
+def value_at(c: Floats, x: float) -> float:
+    """Value of a polynomial."""
+    value = 0.0
+    for k in range(c.shape[0] - 1, -1, -1):
+        value = value * x + c[k]
+    return value
+
+
+@kernel
 def evaluate(c: Floats, x: float) -> tuple[float, float, float]:
     """Value, slope and half the curvature of a polynomial."""
     value = 0.0

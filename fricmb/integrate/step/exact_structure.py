@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import annotations_of, array_type, room
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints, Pivots
+from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.step.tableau import Tableau, one_stage
 
 #: Rungs of the ladder 2^(k/4) of step sizes, and the one that stands for 1.
@@ -116,16 +115,7 @@ class Exact(NamedTuple):
 @lru_cache(maxsize=1)
 def no_exact() -> Exact:
     """An empty room, for methods without exact structure."""
-    made: list[Any] = []
-    for note in annotations_of(Exact).values():
-        if note == "Tableau":
-            made.append(one_stage())
-        elif note == "Ints2":
-            made.append(np.zeros((0, 0), np.int64))
-        else:
-            kind = array_type(note)
-            made.append(np.zeros((0,) * kind.ndim, str(kind.dtype)))
-    return room(Exact._make(made))
+    return room(Exact(**empty_arrays(Exact), tab=one_stage()))
 
 
 @kernel

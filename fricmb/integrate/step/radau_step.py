@@ -103,15 +103,21 @@ def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Flo
         tol[n_c + a] = relative * max(acc.z[a], abs(y.z[a]) + h * abs(y.zd[a]))
 
 
+@kernel
+def prepare_at(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, keep: bool, address: Ints) -> bool:
+    """Factors for a step h from y, with the Jacobian there where it changes; see ``prepare``."""
+    again = packed.elements.address.shape[0] > 0 or one.w.Fin.shape[1] > y.F.shape[0]
+    if again:
+        set_instant(packed.signals, s, y.t[0], y.q, y.v)
+    return prepare(packed, one.tab, s, one.fac, one.w, one.counts, h, again, keep, address)
+
+
 @block
 def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
     """Solve the stages of a step h from y (values in ``one.st``, ``one.w``).  False without convergence."""
     n = y.q.shape[0]
     st, w, tab = one.st, one.w, one.tab
-    again = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
-    if again:
-        set_instant(packed.signals, s, y.t[0], y.q, y.v)
-    if not prepare(packed, tab, s, one.fac, w, one.counts, h, again, h == ladder(h, ONE_STEP_RUNGS), address):
+    if not prepare_at(packed, s, y, one, h, h == ladder(h, ONE_STEP_RUNGS), address):
         return False
     for i in range(n):
         st.psi_v[i] = y.v[i]

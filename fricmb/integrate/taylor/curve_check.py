@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats, Floats2
+from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.friction_curve import coefficient_at
 from fricmb.integrate.taylor.layout import FASTEST, STEP, TOL
 from fricmb.integrate.taylor.network import Net
@@ -46,10 +47,7 @@ def within(net: Net, at: int, x: Floats, last: int, length: float) -> float:
             return i / float(along.shape[0])
         part = 1.0 / 24.0
         for _ in range(60):
-            value = 0.0
-            for k in range(last, -1, -1):
-                value = value * (length * part) + x[k]
-            if holds(value, closed):
+            if holds(value_at(x[: last + 1], length * part), closed):
                 break
             part *= 0.5
         return part
@@ -65,12 +63,8 @@ def law_defect(net: Net, c: int, b: Floats2, last: int, s: float) -> float:
     """
     groups, at = net.groups, net.groups.lawful[c]
     x = b[b.shape[0] - 1]
-    argument, mu = 0.0, 0.0
-    for k in range(last, -1, -1):
-        argument = argument * s + x[k]
-        mu = mu * s + b[0, k]
-    if groups.terms[at] == 1:
-        mu = groups.curve[at, 0]
+    argument = value_at(x[: last + 1], s)
+    mu = groups.curve[at, 0] if groups.terms[at] == 1 else value_at(b[0, : last + 1], s)
     off = abs(mu - coefficient_at(net, c, groups.middle[at] + argument * groups.half[at]))
     speed = net.compliance[c] * groups.N[c] * off * net.x[STEP] * s / (last + 2)
     return float(speed / (net.x[TOL] * (net.top[net.first_dof[c]] + 0.01 * net.x[FASTEST])))

@@ -12,7 +12,7 @@ import math
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK, Floats, Ints
-from fricmb.integrate.step.crossing import lowest_between, root_between
+from fricmb.integrate.step.crossing import evaluate, lowest_between, root_between
 from fricmb.integrate.taylor.layout import LASTS, N_SEARCHES, NOISE, SHIFTED, STEP, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import lands
@@ -129,10 +129,7 @@ def first_root(y: Floats, limit: float, low: float, high: float) -> float:
     s0, d0 = low, 0.0
     for i in range(PIECES + 1):
         s = high if i == PIECES else low + i * width
-        f, d = 0.0, 0.0
-        for k in range(y.shape[0] - 1, -1, -1):
-            d = d * s + f
-            f = f * s + y[k]
+        f, d, _ = evaluate(y, s)
         sign = math.copysign(1.0, f)
         if limit >= 0.0:
             f = limit - sign * f
@@ -166,10 +163,7 @@ def end_of_hold(net: Net, c: int, low: float) -> float:
         y[k] = 0.0
         for i in range(max(0, k - last), min(k, last) + 1):
             y[k] -= F[i, c] * F[k - i, c] + F[i, c + 1] * F[k - i, c + 1]
-    here, rise = 0.0, 0.0
-    for k in range(2 * last, -1, -1):
-        rise = rise * low + here
-        here = here * low + y[k]
+    here, rise, _ = evaluate(y[: 2 * last + 1], low)
     if -here >= limit * limit * (1.0 - 2.0 * AT_LIMIT) and -rise <= 2.0 * GROWS * limit * limit:
         limit *= 1.0 + AT_LIMIT
     y[0] += limit * limit
@@ -195,10 +189,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         for k in range(last + 1):
             y[k] = force_row(net, c, k)
         limit = net.stick[c]
-        here, rise = 0.0, 0.0
-        for k in range(last, -1, -1):
-            rise = rise * low + here
-            here = here * low + y[k]
+        here, rise, _ = evaluate(y[: last + 1], low)
         # what is held at its limit, by a force that does not grow, stays there to round-off
         if abs(here) >= limit * (1.0 - AT_LIMIT) and here * rise <= GROWS * limit * limit:
             limit *= 1.0 + AT_LIMIT

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, STICK
+from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.layout import DAMPING, INPUT, STEP, UNTIL, WORK, WORK2
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import horner, horner_rate, polynomial
@@ -15,10 +16,7 @@ from fricmb.integrate.taylor.polynomials import horner, horner_rate, polynomial
 @kernel
 def signal_at(net: Net, u: int, s: float, rate: bool) -> float:
     """Signal u, or its rate, at s."""
-    value = 0.0
-    for k in range(net.series.shape[1] - 1, -1, -1):
-        value = value * s + (net.rates[u, k] if rate else net.series[u, k])
-    return float(value)
+    return float(value_at(net.rates[u] if rate else net.series[u], s))
 
 
 @kernel

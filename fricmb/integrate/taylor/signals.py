@@ -7,6 +7,7 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import Floats
+from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.layout import TOL
 from fricmb.integrate.taylor.network import Net
 
@@ -48,11 +49,7 @@ def integrate_series(net: Net, j: int, h: float, value: float, rate: float, star
 def polynomial_error(net: Net, j: int, s: float, h: float) -> float:
     """How far the powers of s are off what function j was last called for, at s, relative to its largest values."""
     x = net.window
-    value = 0.0
-    rate = 0.0
-    for k in range(net.series.shape[1] - 1, -1, -1):
-        value = value * s + net.series[j, k]
-        rate = rate * s + net.rates[j, k]
+    value, rate = value_at(net.series[j], s), value_at(net.rates[j], s)
     size = net.large[0, j]
     off = abs(rate - x[4]) / (net.large[1, j] + 0.01 * size / h + 1e-300)
     return float(max(off, abs(value - x[3]) / (size + 1e-300)))
@@ -113,10 +110,7 @@ def belt_value(net: Net, c: int, s: float) -> float:
     """Prescribed velocity of contact c at s."""
     value = net.belt[c]
     for e in range(net.wu_start[c], net.wu_start[c + 1]):
-        rate = 0.0
-        for k in range(net.rates.shape[1] - 1, -1, -1):
-            rate = rate * s + net.rates[net.wu_signal[e], k]
-        value += net.wu_coef[e] * rate
+        value += net.wu_coef[e] * value_at(net.rates[net.wu_signal[e]], s)
     return float(value)
 
 

@@ -177,9 +177,9 @@ def arrive(run: Run, since: float, address: Ints) -> None:
     project(run)
     sticks = settle(run)
     if sticks or (run.belt.shape[0] == 1 and run.n[0] * before < 0.0):
-        run.events[run.n_events[0], 0] = run.time[0] + run.time_low[0]
-        run.events[run.n_events[0], 1] = EVENT_STICK if sticks else EVENT_REVERSAL
-        run.n_events[0] += 1
+        run.events[run.used[2], 0] = run.time[0] + run.time_low[0]
+        run.events[run.used[2], 1] = EVENT_STICK if sticks else EVENT_REVERSAL
+        run.used[2] += 1
     run.next_step[0] = run.first_step[0]
 
 

@@ -27,7 +27,7 @@ def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
                 slope -= run.stiff[i, j] * run.stuck_v[j]
         run.force[i] = value
         run.rate[i] = slope
-    phase = run.n_phases[0]
+    phase = run.used[1]
     for i in range(n):
         run.phases[phase, i] = run.pos[i]
         run.phases[phase, n + i] = run.pos_low[i]
@@ -63,7 +63,7 @@ def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
         run.phases[phase, 2 * n + 2 + j] = run.slope[j]
         run.phases[phase, 3 * n + 2 + j] = e0
         run.phases[phase, 4 * n + 2 + j] = e1
-    run.n_phases[0] += 1
+    run.used[1] += 1
 
 
 @kernel
@@ -78,17 +78,17 @@ def accelerations(run: Run, z: int, b: int, since: float) -> None:
 @kernel
 def keep_row(run: Run, mode: int, b: int, h: float) -> int:
     """Begin the row of a step h with the state of its b blocks; returns its number."""
-    row, n = run.n_rows[0], run.pos.shape[0]
+    row, n = run.used[0], run.pos.shape[0]
     run.kinds[row, 0] = mode
-    run.kinds[row, 1] = run.n_phases[0] - 1
+    run.kinds[row, 1] = run.used[1] - 1
     step = run.steps[row]
     step[AT_TIME], step[AT_LOW], step[AT_LENGTH], step[AT_LOSS] = run.time[0], run.time_low[0], h, run.loss[0]
     for j in range(b):
         step[AT_BLOCKS + j] = run.u[j] + run.u_low[j]
         step[AT_BLOCKS + n + j] = run.v[j]
         step[AT_BLOCKS + 2 * n + j] = run.a[j]
-    run.n_rows[0] += 1
-    run.n_steps[0] += 1
+    run.used[0] += 1
+    run.counts[0] += 1
     return int(row)
 
 

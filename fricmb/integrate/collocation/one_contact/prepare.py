@@ -14,11 +14,12 @@ from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import blocks
 from fricmb.integrate.compile.exchange import with_arrays
-from fricmb.integrate.compile.room import annotations_of, array_type, room
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.run.workspace import empty_arrays
 
 
 def is_single(problem: Problem) -> bool:
@@ -164,12 +165,7 @@ def rows(n: int, m: int, s: int, size: int) -> Rows:
 @lru_cache(maxsize=64)
 def _nothing(s: int) -> Run:
     """Empty arrays, and the tables for s nodes."""
-    kinds = {"Ints": np.int64, "Ints2": np.int64}
-    empty: dict[str, Any] = {
-        name: np.zeros((0,) * (2 if note == "Ints2" else array_type(note).ndim), kinds.get(note, float))
-        for name, note in annotations_of(Run).items() if note != "Tableau"
-    }  # fmt: skip
-    return room(Run(**(empty | nodes(s)._asdict())))
+    return room(Run(**(empty_arrays(Run) | nodes(s)._asdict())))
 
 
 def run_of(problem: Problem, s: int) -> Run:

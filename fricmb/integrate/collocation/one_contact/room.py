@@ -36,7 +36,8 @@ class Run(NamedTuple):
     ``terms`` (n,), ``radau`` (s, s), ``rhs`` (s,), ``coefficients`` (s+1,), ``out`` (3, m), ``change`` (m,) of signals
     per impulse on a row.
     State between phases: ``pos`` with its low part, ``vel``, ``scale`` (n,); ``g``, ``n`` (m,); (1,): ``time`` with its
-    low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``mode`` and counts.
+    low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``mode``.  ``used`` (3,) rows of
+    steps, phases and events; ``counts`` (5,) work done (see Counters).
     ``steps``, ``kinds``, ``phases``, ``events``: rows of what is kept.  ``places``: table of the blocks.
     """
 
@@ -127,13 +128,8 @@ class Run(NamedTuple):
     next_step: Floats
     first_step: Floats
     mode: Ints
-    n_rows: Ints
-    n_phases: Ints
-    n_events: Ints
-    n_steps: Ints
-    n_rejected: Ints
-    n_iterations: Ints
-    n_builds: Ints
+    used: Ints
+    counts: Ints
     steps: Floats2
     kinds: Ints2
     phases: Floats2

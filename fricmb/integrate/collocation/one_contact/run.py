@@ -93,7 +93,7 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
                 run.direction[a, i] = run.n[a]
         if not solve_slip(run, slot, h, tol, run.places):
             run.next_step[0] = 0.5 * h
-            run.n_rejected[0] += 1
+            run.counts[1] += 1
             continue
         r0 = 0.0
         for a in range(m):
@@ -105,13 +105,13 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
             if gone > 0.0:
                 arrive(run, since + gone, run.places)
                 return DONE
-            run.n_rejected[0] += 1
+            run.counts[1] += 1
             run.next_step[0] = max(stop * h * length_factor(-gone, s), 0.01 * h)
             continue
         error = step_error(run, h, tol)
         error = max(error, stop - 2.0)
         if error > 1.0:
-            run.n_rejected[0] += 1
+            run.counts[1] += 1
             run.next_step[0] = h * length_factor(error, s)
             continue
         loss = keep_slip(run, h)
@@ -181,9 +181,9 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
     start_direction(run)
     run.mode[0] = SLIP
     run.next_step[0] = run.first_step[0]
-    run.events[run.n_events[0], 0] = run.time[0] + run.time_low[0]
-    run.events[run.n_events[0], 1] = EVENT_SLIP
-    run.n_events[0] += 1
+    run.events[run.used[2], 0] = run.time[0] + run.time_low[0]
+    run.events[run.used[2], 1] = EVENT_SLIP
+    run.used[2] += 1
     return DONE
 
 
@@ -194,9 +194,9 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float)
     if run.mode[0] == UNSETTLED:
         settle(run)
     while run.time[0] + run.time_low[0] < t_end:
-        if run.n_rows[0] + REBASE + 2 > run.steps.shape[0] or run.n_phases[0] + 2 > run.phases.shape[0]:
+        if run.used[0] + REBASE + 2 > run.steps.shape[0] or run.used[1] + 2 > run.phases.shape[0]:
             return FULL
-        if run.n_events[0] + 2 > run.events.shape[0]:
+        if run.used[2] + 2 > run.events.shape[0]:
             return FULL
         if run.time[0] > t_pause:
             return PAUSE

@@ -42,7 +42,7 @@ def on_ladder(run: Run, rung: int, stiff: float) -> int:
                     run.slots[r] = -1
         transfer_weights(run, run.ladder[rung], slot, stiff, run.places)
         run.slots[rung] = slot
-        run.n_builds[0] += 1
+        run.counts[4] += 1
     return int(slot)
 
 
@@ -81,7 +81,8 @@ def solve_slip(run: Run, slot: int, h: float, tol: float, address: Ints) -> bool
         1e-6, 0.1 * tol / max(1e-300, run.change[0], run.change[1]) / (run.mu_0_N[0] * h + 1e-300),
     )  # fmt: skip
     count = slip_directions(run, slot, max(enough, 1e-28))
-    run.n_iterations[0] += max(count, 1)
+    run.counts[2] += max(count, 1)
+    run.counts[3] += max(count, 1)
     return count > 0
 
 

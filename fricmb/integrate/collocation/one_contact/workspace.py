@@ -24,17 +24,16 @@ from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.stop import ended
 
-#: Tables by step size; arrays by block or dof, numbers and counts of a run, and what else it works in.
+#: Tables by step size; arrays by block or dof, numbers of a run, and what else it works in.
 TABLES = ("S", "IS", "IIS", "Q1", "Q2", "Q3")
 BY_BLOCK = (
     "u", "u_low", "v", "a", "k", "load", "slope", "e0", "e1", "u_end", "low_end", "v_end", "force", "rate", "pos",
     "pos_low", "vel", "scale",
 )  # fmt: skip
 SCALARS = ("time", "time_low", "loss", "next_step", "first_step")
-COUNTS = ("mode", "n_rows", "n_phases", "n_events", "n_steps", "n_rejected", "n_iterations", "n_builds")
 WORK = (
     "ladder", "free", "direction", "relative", "jacobian", "kappa", "terms", "radau", "rhs", "coefficients", "out",
-    "change", "g", "n",
+    "change", "g", "n", "mode", "used", "counts",
 )  # fmt: skip
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
@@ -74,7 +73,8 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
 
 def goes_back(run: Run) -> bool:
     """Whether the arrays are put back after the run; else what it has filled may stay where it is."""
-    return bool(sum([getattr(run, name).nbytes for name in (*TABLES, "answers", *Rows._fields)]) <= LARGE)
+    tables = len(TABLES) * run.S.nbytes + run.answers.nbytes
+    return bool(tables + run.steps.nbytes + run.kinds.nbytes + run.phases.nbytes + run.events.nbytes <= LARGE)
 
 
 def lengthened(held: Rows) -> Rows | None:
@@ -123,7 +123,8 @@ def _made(p: Model, s: int) -> Run:
         "g": (m,), "n": (m,),
     }  # fmt: skip
     arrays: dict[str, Any] = {name: np.zeros(shape) for name, shape in shapes.items()}
-    arrays |= {name: np.zeros(1, np.int64) for name in COUNTS} | {"terms": np.zeros(n, np.int64)}
+    whole = {"mode": 1, "used": 3, "counts": 5, "terms": n}
+    arrays |= {name: np.zeros(size, np.int64) for name, size in whole.items()}
     arrays |= {name: array.copy() for name, array in p.items()} | nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
     return room(Run(**arrays, slots=slots, unit=np.eye(s, wide), places=addresses(*BLOCKS)))
 
@@ -132,7 +133,7 @@ def _begin_anew(run: Run, p: Model) -> None:
     """The constants of another scene of the same size; nothing is left of the run before."""
     for name, array in p.items():
         getattr(run, name)[...] = array
-    for name in (*BY_BLOCK, *SCALARS, *COUNTS, *WORK):
+    for name in (*BY_BLOCK, *SCALARS, *WORK):
         getattr(run, name).fill(0)
     run.slots[:-1] = -1
     run.slots[-1] = 0
