@@ -95,6 +95,7 @@ def _build(scene: Any, plan: Any) -> System:
         scene, ("structure", dofs), standing, signals, lambda: _structure(scene, motions, parts, chosen)
     )
     contacts = half_of(scene, ("contacts", dofs), touching, signals, lambda: _contacts(scene, motions, chosen))
+    motions.forget_scene()
     return _system(scene, dofs, structure, contacts, signals)
 
 

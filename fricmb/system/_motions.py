@@ -140,6 +140,10 @@ class Motions:
                 self.signals.need_position(name)
         return Row(tuple(q), tuple(u), constant)
 
+    def forget_scene(self) -> None:
+        """Nothing more is asked: what was built of some parts is kept longer than the scene it was built for."""
+        self._scene = None
+
     def named_row(self, name: str) -> Row:
         """The row of a named motion."""
         return self.row(self._scene.motion(name))

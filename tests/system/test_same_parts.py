@@ -1,5 +1,8 @@
 """Scenes that differ in one value share what they have the same parts of."""
 
+import gc
+import weakref
+
 import numpy as np
 import sympy
 
@@ -83,3 +86,14 @@ def test_large_scenes_keep_nothing():
     first = build(scene).problem.contacts
     name = next(part.name for part in scene.parts if isinstance(part, fm.Spring))
     assert build(scene.with_parameters({f"{name}.stiffness": 3.0})).problem.contacts is not first
+
+
+def test_what_is_kept_keeps_no_scene_alive():
+    scene = M.brake4dof()
+    other = scene.with_parameters({"pad.mass": 2.0})
+    build(other)
+    kept = weakref.ref(build(other).problem)
+    del other
+    gc.collect()
+    assert kept() is None
+    assert build(scene.with_parameters({"pad.mass": 2.0})).problem.n == 4
