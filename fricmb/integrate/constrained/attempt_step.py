@@ -25,7 +25,7 @@ from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, 
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
-#: A step ends a try at this part of the span.
+#: Shortest step, as a part of the span.
 SMALLEST = 1e-14
 
 
@@ -64,6 +64,14 @@ def arrive(
     return CHANGED if code == DONE else code
 
 
+@kernel
+def reject(c: Control, h: float) -> int:
+    """Leave the state where it is; the next step is h."""
+    c.counts[1] += 1
+    c.h[0] = h
+    return REJECTED
+
+
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
@@ -95,24 +103,17 @@ def radau_step(
         made = try_step(mech, k, y, st, c, h, mech.address)
     if not made:
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
-        c.counts[1] += 1
-        c.h[0], c.h[1] = 0.4 * h, 0.0
-        return REJECTED
+        c.h[1] = 0.0
+        return reject(c, 0.4 * h)
     error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol[0])
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
-        c.counts[1] += 1
-        c.h[0] = 0.4 * h
-        return REJECTED
+        return reject(c, 0.4 * h)
     factor = step_factor(error, s + 1, ONE_STEP_SAFETY)
     if error > 1.0:
-        c.counts[1] += 1
-        c.h[0] = h * max(0.2, factor)
-        return REJECTED
+        return reject(c, h * max(0.2, factor))
     if not end_step(mech, k, w, y, end, st, c, h, mech.address):
-        c.counts[1] += 1
-        c.h[0] = 0.4 * h
-        return REJECTED
+        return reject(c, 0.4 * h)
     if margins(mech, k, w, end, out, False, mech.address) <= 0.0:
         h = last_unique(mech, k, w, y, end, st, c, out, h)
         if h > 0.0:
@@ -124,9 +125,7 @@ def radau_step(
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
-            c.counts[1] += 1
-            c.h[0] *= 0.3
-            return REJECTED
+            return reject(c, 0.3 * c.h[0])
     record_step(mech, rec, y, end, st, c, h, mech.address)
     if h == left:
         end.t[0] = stop

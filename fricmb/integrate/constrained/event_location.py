@@ -6,7 +6,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.event_functions import gaps, grain, triggers, violated
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, end_step, try_step
+from fricmb.integrate.constrained.radau_step import Control, step_to
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
@@ -47,9 +47,7 @@ def locate_trigger(
         step = min(max(step, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
         if inside < 1.0:
             step = inside * high
-        if not (
-            try_step(mech, k, y, st, c, step, mech.address) and end_step(mech, k, w, y, end, st, c, step, mech.address)
-        ):
+        if not step_to(mech, k, w, y, end, st, c, step):
             return 0.0, j
         worst = violated(mech, k, out, y, end, st, mech.address)
         if inside < 1.0 and (worst < 0 or (out.where[0] < 1.0 and i >= DOUBTS)):
@@ -90,16 +88,12 @@ def last_unique(
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        made = try_step(mech, k, y, st, c, middle, mech.address) and end_step(
-            mech, k, w, y, end, st, c, middle, mech.address
-        )
-        if made and margins(mech, k, w, end, out, False, mech.address) > 0.0:
+        if step_to(mech, k, w, y, end, st, c, middle) and margins(mech, k, w, end, out, False, mech.address) > 0.0:
             low = middle
         else:
             high = middle
         if high - low <= 1e-13 * h + 4.0 * EPS * abs(y.t[0]):
             break
-    if low > 0.0 and try_step(mech, k, y, st, c, low, mech.address):
-        end_step(mech, k, w, y, end, st, c, low, mech.address)
+    if low > 0.0 and step_to(mech, k, w, y, end, st, c, low):
         margins(mech, k, w, end, out, True, mech.address)
     return low

@@ -8,15 +8,16 @@ from fricmb.integrate.constrained.jacobian_layers import Layers, add
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.plane_slip import add_along, add_found, plane_residual
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_load, add_slip, add_stick, friction_coefficient
+from fricmb.integrate.constrained.slip_rows import (
+    SETTING_OUT,
+    add_load,
+    add_slip,
+    add_stick,
+    carried,
+    friction_coefficient,
+)
 from fricmb.integrate.model.law_values import magnitude, smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats, Ints
-
-
-@kernel
-def load_of(mech: Mech, c: int, N: Floats) -> float:
-    """Normal force of port c: not below 0, but for a joint's (where it passes through 0 is a transition)."""
-    return float(N[c]) if mech.port.joint[c] >= 0 else max(N[c], 0.0)
 
 
 @block
@@ -31,7 +32,7 @@ def friction_residual(
     """
     port = mech.port
     for c in range(mode.shape[0]):
-        load = load_of(mech, c, N)
+        load = carried(mech, c, N[c])
         first = port.row[c]
         d = port.row[c + 1] - first
         if port.law[c] == LAW_SMOOTH:
@@ -65,7 +66,7 @@ def add_friction(
     for c in range(mode.shape[0]):
         first, last = port.row[c], port.row[c + 1]
         row = force0 + first
-        load = load_of(mech, c, N)
+        load = carried(mech, c, N[c])
         if port.law[c] == LAW_SMOOTH:
             add_smooth(mech, k, c, mode[c] == OPEN, lam, z, load, g, L, full)
         elif mode[c] == STICK:

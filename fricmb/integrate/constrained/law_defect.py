@@ -15,7 +15,7 @@ from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control
-from fricmb.integrate.constrained.slip_rows import lightness
+from fricmb.integrate.constrained.slip_rows import carried, lightness
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats2, Ints
@@ -68,8 +68,7 @@ def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float
         for j in range(tab.c.shape[0]):
             gap = h * (tab.c[j] - (tab.c[j - 1] if j > 0 else 0.0))
             line = tab.mid[j]
-            load = by_line(line, y.N[p], st.N, p)
-            load = load if port.joint[p] >= 0 else max(load, 0.0)
+            load = carried(mech, p, by_line(line, y.N[p], st.N, p))
             ask_between(port, port.laws, k.s, p, line, y.g, st.g, load, y.z, st.Z)
             for a in range(d if y.mode[p] != OPEN else 0):
                 off = force_off(port, k.s, p, a, line, y.F, st.F, st.x[2 * a], gap, h)

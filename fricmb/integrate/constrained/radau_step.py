@@ -236,3 +236,12 @@ def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
     forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i], mech.address)
+
+
+@kernel
+def step_to(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float
+) -> bool:
+    """Solve a step h from y and put its end into ``end``; False where it could not be made."""
+    solved = try_step(mech, k, y, st, c, h, mech.address)
+    return bool(solved and end_step(mech, k, w, y, end, st, c, h, mech.address))

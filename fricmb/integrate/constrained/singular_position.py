@@ -10,7 +10,7 @@ from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, sol
 from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, end_step, try_step
+from fricmb.integrate.constrained.radau_step import Control, step_to
 from fricmb.integrate.constrained.recorder import copy_state
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
@@ -120,7 +120,6 @@ def sigma_after(
     h: float, address: Ints,
 ) -> float:  # fmt: skip
     """Least singular value of the constraints after a step h, left in ``end``; a large one where none can be made."""
-    made = try_step(mech, k, y, st, c, h, mech.address) and end_step(mech, k, w, y, end, st, c, h, mech.address)
-    if not made or not instant_matrix(mech, k, w, end, NONE, mech.address):
+    if not step_to(mech, k, w, y, end, st, c, h) or not instant_matrix(mech, k, w, end, NONE, mech.address):
         return 1e300
     return float(least_singular(mech, w, out, 1))

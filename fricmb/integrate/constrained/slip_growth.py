@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import lightness
+from fricmb.integrate.constrained.slip_rows import carried, lightness
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.law_values import coefficient, magnitude
@@ -17,7 +17,7 @@ from fricmb.integrate.step.slip_growth import LONGEST, drive, fall_between
 def fall_at(mech: Mech, k: Moving, p: int, g: Floats, N: float, z: Floats, h: float) -> float:
     """Slope by which friction of port p falls with slip speed."""
     port = mech.port
-    load = N if port.joint[p] >= 0 else max(N, 0.0)
+    load = carried(mech, p, N)
     if port.law[p] == LAW_SMOOTH:
         return drive(port.laws, port.row, port.z_start, k.s, p, g, load, z, h)
     return float(-coefficient(port, port.laws, p, k.s, magnitude(port.row, p, g), load)[1] * abs(load))

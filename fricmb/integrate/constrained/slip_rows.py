@@ -26,6 +26,12 @@ def plane(mech: Mech, c: int) -> bool:
 
 
 @kernel
+def carried(mech: Mech, c: int, N: float) -> float:
+    """Normal force N of port c: not below 0, but for a joint's (where it passes through 0 is a transition)."""
+    return float(N) if mech.port.joint[c] >= 0 else max(N, 0.0)
+
+
+@kernel
 def friction_coefficient(mech: Mech, k: Moving, c: int, speed: float, load: float) -> tuple[float, float, float]:
     """mu, dmu/dr, dmu/dN of port c, as far as friction acts (``friction_share``)."""
     mu, by_speed, by_load = coefficient(mech.port, mech.port.laws, c, k.s, speed, load)
