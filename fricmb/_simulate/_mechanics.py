@@ -159,7 +159,7 @@ class SceneMechanics:
         """Names of what the arrays hold; stiffness, damping and loads are in none of them."""
         parts = [part for part in self.placed.parts if not isinstance(part, Element | MatrixElement)]
         key = "names", self.plan.dofs, self.plan.parts
-        return of_same_parts(self.placed, key, parts, self._names)
+        return of_same_parts(self.placed, key, parts, self._names, but=frozenset(("mass", "position", "velocity")))
 
     def _names(self) -> Names:
         held = set(self.plan.parts)

@@ -60,7 +60,8 @@ def outline_of(scene: Scene) -> tuple[int, ...]:
     for part in scene.parts:
         known = parts.get(part.name)
         if known is None or known[0] is not part:
-            known = parts[part.name] = part, _number(_outline(scene, part))
+            same = known is not None and part.differs_in(known[0]) == set()
+            known = parts[part.name] = part, known[1] if same else _number(_outline(scene, part))
         found.append(known[1])
     return tuple(found)
 

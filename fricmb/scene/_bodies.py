@@ -109,6 +109,13 @@ class Body(PartEnd):
         """Always."""
         return True
 
+    def moves_like(self, other: object) -> bool:
+        """Whatever its numbers, with the same name and axes."""
+        return (
+            isinstance(other, Body) and type(self) is type(other) is Body
+            and (self.name, self.axes) == (other.name, other.axes)
+        )  # fmt: skip
+
     def motion(self, letter: str) -> LinearForm:
         """A degree of freedom."""
         return LinearForm.of({f"{self.name}.{letter}": 1.0})

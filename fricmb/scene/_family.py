@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from operator import is_
 from typing import TypeVar
 
+from fricmb.scene._bodies import Body
 from fricmb.scene._part import Part
 from fricmb.scene._scene import Scene
 
@@ -15,7 +15,9 @@ _T = TypeVar("_T")
 MANY = 500
 
 
-def of_same_parts(scene: Scene, key: Hashable, parts: Sequence[Part], make: Callable[[], _T]) -> _T:
+def of_same_parts(
+    scene: Scene, key: Hashable, parts: Sequence[Part], make: Callable[[], _T], *, but: frozenset[str] = frozenset()
+) -> _T:
     """What ``make`` makes of some parts, or made of the very same ones for another scene of the family.
 
     Scenes that differ in one value differ in one part, so that a sweep over a stiffness needs its contacts made once,
@@ -27,7 +29,9 @@ def of_same_parts(scene: Scene, key: Hashable, parts: Sequence[Part], make: Call
     key : hashable
         What is made, and all that it depends on beside the parts; of each key the last is kept.
     parts : sequence of Part
-        All that it is made of; what is kept is found again where these are the same objects in the same order.
+        All that it is made of; what is kept is found again where these hold the same objects in the same order.
+    but : set of str
+        Fields of bodies that it does not depend on.
     make : callable
         Its result must never be changed.
     """
@@ -35,8 +39,16 @@ def of_same_parts(scene: Scene, key: Hashable, parts: Sequence[Part], make: Call
         return make()
     kept = scene._shared.setdefault("of same parts", {})
     held, made = kept.get(key, ((), None))
-    if len(held) != len(parts) or not parts or not all(map(is_, held, parts)):
+    if len(held) != len(parts) or not parts or not all(_is_same(a, b, but) for a, b in zip(held, parts, strict=True)):
         made = make()
         kept[key] = tuple(parts), made
     found: _T = made
     return found
+
+
+def _is_same(one: Part, other: Part, but: frozenset[str]) -> bool:
+    """Whether two parts hold the same objects, in bodies those fields left out."""
+    if one is other:
+        return True
+    differs = one.differs_in(other)
+    return differs is not None and differs <= (but if type(one) is Body else frozenset())

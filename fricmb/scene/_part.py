@@ -88,7 +88,23 @@ class Part(Declaration):
                 end = value.moved_to(changed[value.owner.name])
                 if end is not value:
                     new[field.name] = end
-        return dataclasses.replace(self, **new) if new else self
+        if not new:
+            return self
+        if not all(end.moves_like(getattr(self, name)) for name, end in new.items()):
+            return dataclasses.replace(self, **new)
+        # nothing that was checked can be wrong now
+        copy = object.__new__(type(self))
+        vars(copy).update(vars(self), **new)
+        return copy
+
+    def differs_in(self, other: Part) -> set[str] | None:
+        """Fields that are not the same objects, ends that move alike left out; None for a part of another type."""
+        if type(self) is not type(other):
+            return None
+        kind: Any = type(self)
+        read = _field_values(kind)
+        values = zip(field_names(kind), read(self), read(other), strict=True)
+        return {n for n, a, b in values if not (a is b or (isinstance(a, End) and a.moves_like(b)))}
 
 
 @cache
@@ -126,6 +142,10 @@ class End:
     def motion(self, letter: str) -> LinearForm:
         """The coordinate along an axis."""
         raise NotImplementedError
+
+    def moves_like(self, other: object) -> bool:
+        """Whether it has the same motions by the same names, so that what refers to the one may refer to the other."""
+        return self is other
 
     def moved_to(self, part: Part) -> End:
         """The same end of another version of its part."""

@@ -55,6 +55,8 @@ def build(scene: Any, plan: Any = None) -> System:
     return found  # type: ignore[no-any-return]
 
 
+#: Fields of bodies that no array depends on.
+STARTS = frozenset(("position", "velocity"))
 #: Above this no spectrum is computed.
 SPECTRUM = 500
 
@@ -92,9 +94,11 @@ def _build(scene: Any, plan: Any) -> System:
     standing = [part for part in parts if not isinstance(part, Contact)]
     touching = [part for part in parts if not isinstance(part, Element | MatrixElement | Gravity)]
     structure = half_of(
-        scene, ("structure", dofs), standing, signals, lambda: _structure(scene, motions, parts, chosen)
+        scene, ("structure", dofs), standing, signals, lambda: _structure(scene, motions, parts, chosen), STARTS
     )
-    contacts = half_of(scene, ("contacts", dofs), touching, signals, lambda: _contacts(scene, motions, chosen))
+    contacts = half_of(
+        scene, ("contacts", dofs), touching, signals, lambda: _contacts(scene, motions, chosen), STARTS | {"mass"}
+    )
     motions.forget_scene()
     return _system(scene, dofs, structure, contacts, signals)
 

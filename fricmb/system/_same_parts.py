@@ -14,11 +14,12 @@ _T = TypeVar("_T")
 
 
 def half_of(
-    scene: Scene, key: tuple[Hashable, ...], parts: Sequence[Part], signals: Signals, build: Callable[[], _T]
-) -> _T:
+    scene: Scene, key: tuple[Hashable, ...], parts: Sequence[Part], signals: Signals, build: Callable[[], _T],
+    but: frozenset[str],
+) -> _T:  # fmt: skip
     """What ``build`` makes of some parts, or made of them for another scene; what it adds to the signals is added.
 
-    ``key``: which half it is, and for which degrees of freedom.
+    ``key``: which half it is, and for which degrees of freedom; ``but``: fields of bodies that it does not depend on.
     """
     before = tuple(signals.index)
 
@@ -26,7 +27,7 @@ def half_of(
         built = build()
         return list(zip(signals.index, signals.held, strict=True))[len(before) :], built
 
-    added, built = of_same_parts(scene, (*key, before), parts, make)
+    added, built = of_same_parts(scene, (*key, before), parts, make, but=but)
     for name, signal in added[len(signals.index) - len(before) :]:  # none of what was built just now
         signals.put(name, signal)
     return built

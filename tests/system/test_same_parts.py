@@ -4,6 +4,7 @@ import gc
 import weakref
 
 import numpy as np
+import pytest
 import sympy
 
 import fricmb as fm
@@ -31,13 +32,37 @@ def test_a_stiffness_leaves_the_contacts_and_a_coefficient_the_structure():
     assert slower.N[0] == 0.5
 
 
-def test_a_mass_leaves_nothing():
+def test_a_mass_leaves_the_contacts_and_a_start_all():
     scene = M.brake4dof()
     linear, contacts = halves(scene)
-    heavier, others = halves(scene.with_parameters({"pad.mass": 2.0}))
+    heavier, same_contacts = halves(scene.with_parameters({"pad.mass": 2.0}))
     assert heavier is not linear
-    assert others is not contacts
-    np.testing.assert_array_equal(others.W, contacts.W)
+    assert heavier.M[0, 0] == 2.0
+    assert same_contacts is contacts
+    moved = scene.with_parameters({"pad.position.x": 0.3, "rotor.velocity.x": 2.0, "pad.mass": 2.0})
+    assert halves(moved) == (heavier, contacts)
+    assert build(moved).start.q[0] == 0.3
+
+
+def test_a_body_with_other_axes_is_looked_at_again():
+    scene = M.brake4dof()
+    build(scene)
+    with pytest.raises(fm.SceneError, match="axis"):
+        build(scene.replace("pad", axes="x", position={}, velocity={}))
+
+
+def test_bodies_of_other_kinds_are_never_taken_for_the_same():
+    """Where its points are is a number of a modal body, which contacts feel."""
+    def plate(tip):
+        shapes = {"tip": [[tip, 1.0]]}
+        return fm.ModalBody("plate", frequencies=[1.0, 2.0], damping_ratios=[0.0, 0.0], shapes=shapes)
+
+    held, belt = plate(1.0), fm.Driven("belt", velocity={"x": 0.2})
+    law = fm.laws.Coulomb(mu_s=0.3, mu_k=0.2)
+    scene = fm.Scene("plate", [held, belt, fm.Contact("rub", held.point("tip"), belt, law=law, normal_force=1.0)])
+    other = scene.replace("plate", shapes=plate(3.0).shapes)
+    assert build(scene).problem.contacts.W[:, 0].tolist() == [1.0, 1.0]
+    assert build(other).problem.contacts.W[:, 0].tolist() == [3.0, 1.0]
 
 
 def test_signals_of_what_is_shared_are_there():
@@ -73,7 +98,7 @@ def test_equal_parts_that_are_not_the_same_are_looked_at_again():
         made.append(1)
         return len(made)
 
-    twin = fm.Body(body.name, mass=body.mass, axes=body.axes, position=body.position, velocity=body.velocity)
+    twin = fm.Body(body.name, mass=2.0, axes=body.axes, position=body.position, velocity=body.velocity)
     assert [of_same_parts(scene, "k", [body], make) for _ in range(2)] == [1, 1]
     assert of_same_parts(scene, "k", [twin], make) == 2
     assert of_same_parts(scene, "other", [body], make) == 3
