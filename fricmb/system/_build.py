@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -129,25 +130,45 @@ def _contacts(scene: Any, motions: _motions.Motions, chosen: Chosen) -> tuple[Co
     return contacts, contacts.build(len(motions.dofs), len(motions.signals.held))
 
 
-def _system(
-    scene: Any, dofs: tuple[str, ...], structure: Structure, touching: tuple[ContactArrays, Contacts],
-    signals: _motions.Signals,
-) -> System:  # fmt: skip
+def _problem_in_use(structure: Structure, touching: tuple[ContactArrays, Contacts]) -> Problem | None:
+    """That of another scene which nothing tells from this one but where it starts, while somebody has it."""
+    linear, _ = structure.arrays(0)
+    found = linear.kept.get("problem", lambda: None)()
+    return found if found is not None and found.contacts is touching[1] else None
+
+
+def _problem(
+    dofs: tuple[str, ...], structure: Structure, touching: tuple[ContactArrays, Contacts], signals: _motions.Signals,
+    breakpoints: Floats,
+) -> Problem:  # fmt: skip
     n, n_u = len(dofs), len(signals.held)
-    contacts, contact_arrays = touching
     linear, elements = structure.arrays(n_u)
     _check_mass(linear, dofs)
-    timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
-    known, searched = switches_of(timed)
+    contacts, contact_arrays = touching
+    table = signals.table.build(n, n_u)
     problem = Problem(
         linear=linear,
-        signals=SignalArrays(table=signals.table.build(n, n_u), breakpoints=known, uniform=signals.uniform()),
+        signals=SignalArrays(table=table, breakpoints=breakpoints, uniform=signals.uniform()),
         contacts=contact_arrays,
         elements=elements,
         spectrum=partial(_spectrum, linear, n),
         dof_names=dofs,
         contact_names=tuple(contacts.names),
     )
+    linear.kept["problem"] = weakref.ref(problem)
+    return problem
+
+
+def _system(
+    scene: Any, dofs: tuple[str, ...], structure: Structure, touching: tuple[ContactArrays, Contacts],
+    signals: _motions.Signals,
+) -> System:  # fmt: skip
+    contacts, _ = touching
+    timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
+    known, searched = switches_of(timed)
+    problem = _problem_in_use(structure, touching) if not timed else None
+    if problem is None:
+        problem = _problem(dofs, structure, touching, signals, known)
     q, v = scene.initial_values(dofs)
     system = System(
         problem=problem,

@@ -122,3 +122,13 @@ def test_what_is_kept_keeps_no_scene_alive():
     gc.collect()
     assert kept() is None
     assert build(scene.with_parameters({"pad.mass": 2.0})).problem.n == 4
+
+
+def test_one_problem_serves_all_starts_while_somebody_has_it():
+    scene = M.brake4dof()
+    problem = build(scene).problem
+    assert build(scene.with_parameters({"pad.position.x": 0.3})).problem is problem
+    assert build(scene.with_parameters({"lining.normal_force": 0.5})).problem is not problem
+    stiff = build(scene.replace("k1x", stiffness=2.0)).problem
+    assert stiff is not problem
+    assert build(scene.with_parameters({"pad.position.x": 0.3})).problem is not stiff
