@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import stick_limit_slope
-from fricmb.integrate.problem import EVENT_STICK, STICK
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, STICK
 from fricmb.integrate.timestepping._layout import HERE, LEEWAY, LIMIT, MIDDLE, POSITION, THERE, TOL, VELOCITY, WHOLE
 from fricmb.integrate.timestepping._run import Run
 
@@ -58,6 +58,8 @@ def holding_error(run: Run) -> float:
 FEW = 2
 #: Part of a step behind which a contact comes to rest too late in it to know what holds it then.
 LATE = 0.75
+#: Part of its limit by which what would hold a contact has to differ from it; in half a step it changes by less.
+CLOSE = 0.05
 
 
 @kernel
@@ -71,6 +73,32 @@ def count_transitions(run: Run) -> None:
 
 
 @kernel
+def hardly_decided(run: Run, c: int, t: float, h: float) -> bool:
+    """Whether it hangs on the step that a contact whose slip ends along a line rests there, or goes on the other way.
+
+    In the step that is said by the mean of what would hold it from the end of slip on.  Of two means over times of
+    different length a line is drawn back to the instant itself; where both times are the same, a mean close to the
+    limit does not tell.
+    """
+    if run.row[c + 1] - run.row[c] != 1:
+        return False
+    if turns_or_ends(run.what[MIDDLE, c]) and turns_or_ends(run.what[WHOLE, c]):
+        longer, shorter = t + h - run.moment[WHOLE, c], t + 0.5 * h - run.moment[MIDDLE, c]
+        if not longer > shorter:
+            return False
+        mean = run.strain[MIDDLE, c]
+        there = mean - (run.strain[WHOLE, c] - mean) * shorter / (longer - shorter)
+        return bool((there <= 1.0) != (run.what[MIDDLE, c] == EVENT_STICK))
+    return bool(turns_or_ends(run.what[THERE, c]) and abs(run.strain[THERE, c] - 1.0) < CLOSE)
+
+
+@kernel
+def turns_or_ends(what: int) -> bool:
+    """Whether a transition is of a contact that has come to rest for an instant."""
+    return bool(what == EVENT_STICK or what == EVENT_REVERSAL)
+
+
+@kernel
 def doubtful(run: Run, t: float, h: float) -> bool:
     """Whether the few transitions of a part in the step are others by halves than done whole, or too late to tell."""
     count_transitions(run)
@@ -79,7 +107,8 @@ def doubtful(run: Run, t: float, h: float) -> bool:
         if (whole < 0 and first < 0 and second < 0) or run.events[run.part_of[c]] > FEW:
             continue
         late = second == EVENT_STICK and run.moment[THERE, c] > t + 0.5 * (1.0 + LATE) * h
-        if late or (first >= 0 and second >= 0) or max(first, second) != whole:
+        others = (first >= 0 and second >= 0) or max(first, second) != whole
+        if late or others or hardly_decided(run, c, t, h):
             return True
     return False
 

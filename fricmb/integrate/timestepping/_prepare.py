@@ -148,7 +148,7 @@ def _states(n: int, m: int, nc: int, n_u: int) -> dict[str, Any]:
         "F": z((4, m)), "ends": z((4, m)), "hold": z((4, m)), "grip": z((4, nc)),
         "when": z((4, nc)), "known": z((4, nc), np.int8), "jolted": z((4, nc), np.int8),
         "mode": z((4, nc), np.int8), "push": z((4, nc)), "loss": z((4, nc)), "spent": z((4, 2)),
-        "what": z((4, nc), np.int8), "moment": z((4, nc)),
+        "what": z((4, nc), np.int8), "moment": z((4, nc)), "strain": z((4, nc)),
     }  # fmt: skip
 
 
