@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from fricmb._simulate._common_times import common_times
 from fricmb._simulate._members import Idle, Member
 from fricmb.integrate import OPEN, STICK, MotionSamples, Samples, Start, Trajectory, Transitions
 from fricmb.integrate.problem import Floats, Ints
@@ -16,13 +17,13 @@ from fricmb.scene import Contact
 from fricmb.solution import IslandStats, Names
 from fricmb.values import value_of
 
-#: Most numbers that the rows of a joined run may hold: accepted steps of many islands are thinned beyond.
-MOST = 20_000_000
 THINNED = "rows are thinned: accepted steps of many islands; the dense output has everything"
 
 
 class JoinedRun(Trajectory):
     """Trajectories of islands as one: rows at the steps of all of them, between them each one's dense output.
+
+    None lies within a step that went over a transition of another island: what a contact does there is not known.
 
     Parameters
     ----------
@@ -76,7 +77,8 @@ class JoinedRun(Trajectory):
         kept = [run for run in runs if isinstance(run, KeptTrajectory)]
         # a long run holds its values at the times asked for alone: these are the rows of all
         times = [run.t for run in kept[:1]] or [run.t for run in runs]
-        self._t, thinned = _common_times(times, self.end.t, self._width)
+        hidden = [] if kept else [run.unlocated for run in runs]
+        self._t, thinned = common_times(times, self.end.t, self._width, hidden)
         return thinned
 
     def _take(self, members: Sequence[Member], idle: Idle | None) -> None:
@@ -203,31 +205,6 @@ def _resting_forces(members: Sequence[Member], run: set[int], n_c: int) -> Float
             contacts = [part for name in member.contacts if isinstance(part := member.scene[name], Contact)]
             pressed[member.place.contacts] = [max(0.0, float(value_of(c.normal_force))) for c in contacts]
     return pressed
-
-
-def _common_times(times: Sequence[Floats], t_end: float, width: int) -> tuple[Floats, bool]:
-    """Times of all runs, rising, one that is several times in a run (a transition) as often; whether thinned.
-
-    Thinned are the times that occur once, so that rows of ``width`` numbers stay within MOST.
-    """
-    every: Floats = np.unique(np.concatenate([*times, [t_end]]))
-    often = np.ones(every.size, dtype=np.int64)
-    for t in times:
-        here, count = np.unique(t, return_counts=True)
-        place = np.searchsorted(every, here)
-        often[place] = np.maximum(often[place], count)
-    inside = every <= t_end
-    every, often = every[inside], often[inside]
-    most = MOST // width
-    thinned = bool(often.sum() > most)
-    if thinned:
-        keep = often > 1
-        keep[[0, -1]] = True
-        once = np.flatnonzero(~keep)
-        left = max(most - int(often[keep].sum()), 100)
-        keep[once[np.unique(np.linspace(0, once.size - 1, min(left, once.size)).astype(np.int64))]] = True
-        every, often = every[keep], often[keep]
-    return np.repeat(every, often), thinned
 
 
 _Samples = TypeVar("_Samples", bound=MotionSamples)

@@ -37,6 +37,8 @@ class SceneMechanics:
         the start of a run that does not start at t = 0, or goes on from that of another run.
     together : bool
         Whether all islands are run as one.
+    gathered : tuple of int
+        Numbers of the islands, among those of the plan, that are run as one.
     """
 
     scene: Scene
@@ -45,11 +47,12 @@ class SceneMechanics:
     observe: tuple[str, ...] | None
     shift: Mapping[str, float]
     together: bool = False
+    gathered: tuple[int, ...] = ()
 
     @cached_property
     def members(self) -> tuple[Member, ...]:
         """What is run on its own."""
-        return members_of(self.placed, self.plan, self.names, self.together)
+        return members_of(self.placed, self.plan, self.names, self.together, self.gathered)
 
     @cached_property
     def rest(self) -> Rest:
@@ -151,7 +154,9 @@ class SceneMechanics:
     @cached_property
     def origin(self) -> Origin:
         """How to make this again in another process."""
-        options = {"observe": self.observe, "shift": dict(self.shift), "together": self.together}
+        options = {
+            "observe": self.observe, "shift": dict(self.shift), "together": self.together, "gathered": self.gathered,
+        }  # fmt: skip
         return Origin(scene=self.scene, build=mechanics_of, options=options)
 
     @cached_property
@@ -180,6 +185,10 @@ class SceneMechanics:
         """The same with all islands run as one."""
         return mechanics_of(self.scene, observe=self.observe, shift=self.shift, together=True)
 
+    def gather(self, islands: tuple[int, ...]) -> SceneMechanics:
+        """The same with some islands, by their numbers in the plan, run as one."""
+        return mechanics_of(self.scene, observe=self.observe, shift=self.shift, gathered=islands)
+
 
 def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
     """Check scene, values and names to observe, and build."""
@@ -201,17 +210,20 @@ def mechanics_of(
     observe: tuple[str, ...] | None = None,
     shift: Mapping[str, float] | None = None,
     together: bool = False,
+    gathered: Iterable[int] = (),
 ) -> SceneMechanics:
     """Plan a scene, or take what is kept on it."""
     by = dict(shift or {})
     together = together or scene.is_mechanism  # run as one
-    key = ("mechanics", observe, tuple(sorted(by.items())), together)
+    one = tuple(gathered)
+    key = ("mechanics", observe, tuple(sorted(by.items())), together, one)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):
         placed = truncated(shifted(scene, by)).scene
         found = scene._cache[key] = SceneMechanics(
-            scene=scene, placed=placed, plan=make_plan(placed, observe), observe=observe, shift=by, together=together
-        )
+            scene=scene, placed=placed, plan=make_plan(placed, observe), observe=observe, shift=by, together=together,
+            gathered=one,
+        )  # fmt: skip
     return found
 
 

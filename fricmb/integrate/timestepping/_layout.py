@@ -16,3 +16,5 @@ N_STEPS, N_REJECTED, N_ROUNDS, N_NEWTON, N_FACTOR, N_ROWS, N_EVENTS, N_STOP, CON
 FREE, HELD, BROKEN, CAUGHT, PASSED = range(5)
 # slots of the state: start of the step, end of the whole step, middle and end by two halves
 HERE, WHOLE, MIDDLE, THERE = range(4)
+# columns of the largest values of a part
+POSITION, VELOCITY, LIMIT = range(3)

@@ -135,7 +135,7 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, 
         "lu": z((slots, n * (2 * band + 1))), "of": z((slots, 3 * nc + 1)), "used": z(slots, i),
         "Y": z((slots if k else 0, k, n)), "D": z((slots if k else 0, k, k)), "J": z(k * k),
         "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "s": scratch_of(problem),
-        "x": z(16), "i": z(16, i),
+        "x": z(16), "i": z(16, i), "part": z(n, i), "part_of": z(nc, i), "largest": z((1, 3)), "events": z(1, i),
         **no_rows(n, m, nc, capacity), "places": addresses("newton_condensed" if condensed else "newton_band", *BLOCKS),
     }  # fmt: skip
     return room(Run(**{name: _solid(arrays[name]) for name in Run._fields})), condensed, band
@@ -148,7 +148,7 @@ def _states(n: int, m: int, nc: int, n_u: int) -> dict[str, Any]:
         "F": z((4, m)), "ends": z((4, m)), "hold": z((4, m)), "grip": z((4, nc)),
         "when": z((4, nc)), "known": z((4, nc), np.int8), "jolted": z((4, nc), np.int8),
         "mode": z((4, nc), np.int8), "push": z((4, nc)), "loss": z((4, nc)), "spent": z((4, 2)),
-        "what": z((4, nc), np.int8), "moment": z((4, nc)),
+        "what": z((4, nc), np.int8), "moment": z((4, nc)), "strain": z((4, nc)),
     }  # fmt: skip
 
 

@@ -36,11 +36,14 @@ class Run(NamedTuple):
     where leaps of Newton's method began; ``H``, ``weight`` (3 n_c,) derivative of the projection; ``rho``, ``slide``,
     ``brake``, ``soft``, ``share`` (n_c,); ``delta``, ``away`` (m,); ``status``, ``tried`` (n_c,): whether it was let go
     in vain; ``jolt`` (n,), ``last`` (n_c,): the last jump of forces in the step on a dof and on a contact at rest, as a
-    fraction of it (-1: none); ``loss`` (s, n_c), ``spent`` (s, 2): energies of a step; ``what``, ``moment`` (s, n_c):
-    transitions in it; ``instant`` (n_c, 2): rate of the distance and dV/de of varying normal forces.
+    fraction of it (-1: none); ``loss`` (s, n_c), ``spent`` (s, 2): energies of a step; ``what``, ``moment``,
+    ``strain`` (s, n_c): transitions in it, and what would hold a contact that comes to rest, over its limit; ``instant`` (n_c, 2): rate of the distance and dV/de of varying normal forces.
     Factors: ``lu`` (k, n (2 b + 1)), ``of`` (k, 3 n_c + 1): h and weights each was made for, ``used`` (k,);
     ``Y`` (k, m, n), ``D`` (k, m, m): responses A^-1 W and h W^T A^-1 W; ``J``, ``rhs``, ``sizes``, ``pivots``.
-    Run: ``top_q``, ``top_v`` (n,) running maxima, ``floor_q``, ``floor_v``; ``total`` (n_c,) losses; ``stops``;
+    Run: ``top_q``, ``top_v`` (n,) running maxima, ``floor_q``, ``floor_v``; ``part`` (n,), ``part_of`` (n_c,): which of
+    the parts that touch nowhere it belongs to; ``largest`` (n_parts, 3): of each the largest position and velocity
+    so far and limit of friction in this step; ``events`` (n_parts,): its transitions in a step; ``total`` (n_c,)
+    losses; ``stops``;
     ``s``: space for calling templates; ``x``, ``i``: see _layout.
     Rows: ``row_t``, ``row_q``, ``row_v``, ``row_F``, ``row_g``, ``row_N``, ``row_mode``, ``row_loss``, ``row_x``;
     ``event`` (e, 3).  ``places``: table of blocks.
@@ -128,6 +131,7 @@ class Run(NamedTuple):
     spent: Floats2
     what: Codes2
     moment: Floats2
+    strain: Floats2
     instant: Floats2
     lu: Floats2
     of: Floats2
@@ -142,6 +146,10 @@ class Run(NamedTuple):
     top_v: Floats
     floor_q: Floats
     floor_v: Floats
+    part: Ints
+    part_of: Ints
+    largest: Floats2
+    events: Ints
     total: Floats
     stops: Floats
     s: Scratch

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
+from fricmb.integrate.model.friction_cone import friction_size
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import (
     EVENT_CLOSE,
@@ -124,6 +125,7 @@ def keep_end(run: Run, one: int, two: int, t: float, h: float) -> None:
             for a in range(row0, run.row[c + 1]):
                 run.hold[two, a] = run.away[a] if caught else run.F[two, a]
         what_happened(run, one, two, c, t, h)
+        run.strain[two, c] = friction_size(run.row, c, run.away) / run.brake[c] if run.brake[c] > 0.0 else 0.0
     add_powers(run, one, two, h)
 
 

@@ -42,6 +42,7 @@ from fricmb.integrate.timestepping._layout import (
 )  # fmt: skip
 from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
 from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping._scales import add_floors, with_parts
 from fricmb.integrate.timestepping._start import begin
 from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
 from fricmb.integrate.trajectory import Counters, Transitions
@@ -82,6 +83,7 @@ class TimeStepping(Integrator):
     order: ClassVar[str] = "2"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports"})
     pauses: ClassVar[bool] = True
+    steps_over: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         h = self.fixed_step
@@ -146,7 +148,8 @@ class TimeStepping(Integrator):
             run.floor_q[:] = tolerance.atol_q / tolerance.rtol
         if tolerance.atol_v is not None:
             run.floor_v[:] = tolerance.atol_v / tolerance.rtol
-        _add_floors(run, t_end - start.t)
+        run = with_parts(run, tolerance.parts)
+        add_floors(run, t_end - start.t)
         breaks = problem.signals.breakpoints
         inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
         span = t_end - start.t
@@ -161,22 +164,6 @@ class TimeStepping(Integrator):
         x[SAME] = float(isinstance(start, SteppedStart))
         run.i[VARYING] = int(run.var.any())
         return with_arrays(run, stops=np.append(inside, t_end))
-
-
-def _add_floors(run: Run, span: float) -> None:
-    """Scales of velocity and position that friction brings about in a radian of the fastest mode, a tenth of them."""
-    rows = np.repeat(np.arange(len(run.load)), np.diff(run.start))
-    mass = np.bincount(rows, run.mass * (rows == run.column), len(run.load))
-    fastest = np.sqrt(np.max(np.bincount(rows, np.abs(run.stiff), len(run.load)) / mass, initial=0.0))
-    time = min(0.1 * span, 1.0 / fastest) if fastest > 0.0 else 0.1 * span
-    normal = np.where(run.var == 1, 0.0, run.N)
-    row_of = np.repeat(np.arange(len(run.row) - 1), np.diff(run.row))
-    contact = np.repeat(row_of, np.diff(run.w_start))
-    push = np.zeros(len(run.load))
-    np.maximum.at(push, run.w_dof, np.abs(run.w_coef) * (np.abs(run.mu_s) * normal)[contact])
-    largest = float(np.max(push / mass, initial=0.0))
-    run.floor_v[:] += 0.1 * largest * time
-    run.floor_q[:] += 0.1 * largest * time**2
 
 
 _HELD = ("F", "ends", "hold", "grip", "when", "known")

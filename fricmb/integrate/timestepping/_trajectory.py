@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import SLIP, Codes, Floats, Problem, Start
-from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem, Start
+from fricmb.integrate.trajectory import Counters, Samples, Stretches, Trajectory, Transitions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +63,17 @@ class SteppedRun(Trajectory):
         chunks = vars(self).get("_chunks")
         return (float(chunks[0]["row_t"][0]), float(chunks[-1]["row_t"][-1])) if chunks else super().ends
 
+    @property
+    def unlocated(self) -> Stretches:
+        """Steps that went over a transition."""
+        t, event = self._samples.t, self.transitions.t
+        over = (np.diff(self._samples.mode, axis=1) != 0).any(axis=0)
+        at = np.searchsorted(t, event, side="right") - 1
+        inside = (at >= 0) & (at < len(over))
+        over[at[inside & (t[at] < event)]] = True
+        over &= np.diff(t) > 0.0
+        return t[:-1][over], t[1:][over]
+
     def rows(self) -> Samples:
         """Values at the ends of steps."""
         return self._samples
@@ -85,9 +96,12 @@ class SteppedRun(Trajectory):
         v0 = rows.v[:, k]
         q = rows.q[:, k] + h * (s * v0 + 0.5 * s * s * (rows.v[:, k + 1] - v0))
         g = line(rows.g)
+        # where slip begins or ends within the step its velocity, a line, is not 0 anywhere inside
+        begins = (s > 0.0) & (rows.mode[:, k] == STICK) & (rows.mode[:, k + 1] == SLIP)
+        mode = np.where(begins, SLIP, rows.mode[:, np.clip(at, 0, len(rows.t) - 1)])
         return Samples(
-            t=t, q=q, v=line(rows.v), z=np.empty((0, len(t))), F=self._forces(k, s, g), g=g,
-            N=rows.N[:, k + 1], mode=rows.mode[:, np.clip(at, 0, len(rows.t) - 1)],
+            t=t, q=q, v=line(rows.v), z=np.empty((0, len(t))), F=self._forces(k, s, g, mode), g=g,
+            N=rows.N[:, k + 1], mode=mode,
             friction_loss=self._losses(k, s),
             damping_loss=line(rows.damping_loss), input=line(rows.input) + self._belt_work(k, s),
         )  # fmt: skip
@@ -119,23 +133,29 @@ class SteppedRun(Trajectory):
 
     def _speeds(self, k: np.ndarray) -> Floats:
         """Slip speeds (n_c, n_t) in rows."""
-        first = self.problem.contacts.row[:-1]
-        squares = self._samples.g[:, k] ** 2
-        return np.sqrt(np.add.reduceat(squares, first, axis=0) if len(first) else squares)
+        g = self._samples.g[:, k]
+        return self._sizes(g) if len(self.problem.contacts.row) > 1 else np.abs(g)
 
-    def _forces(self, k: np.ndarray, s: Floats, g: Floats) -> Floats:
-        """Forces within steps: lines where a contact's mode stays, along the slip; else those before the transition."""
+    def _forces(self, k: np.ndarray, s: Floats, g: Floats, mode: np.ndarray) -> Floats:
+        """Forces within steps: lines where a contact's mode stays; those of slip along it, also where it begins."""
         rows, row = self._samples, self.problem.contacts.row
         if len(row) < 2:
             return rows.F[:, k]
         owner = self.problem.contacts.of_row
-        mine, mode = rows.F[:, k], rows.mode[:, k]
-        same = (mode == rows.mode[:, k + 1])[owner]
-        found: Floats = mine + np.where(same, s, 0.0) * (rows.F[:, k + 1] - mine)
-        size = np.sqrt(np.add.reduceat(found**2, row[:-1], axis=0))[owner]
-        speed = np.sqrt(np.add.reduceat(g**2, row[:-1], axis=0))[owner]
-        along = (mode == SLIP)[owner] & (speed > 0.0)
-        return np.where(along, -size * g / np.where(speed > 0.0, speed, 1.0), found)
+        before, after = rows.F[:, k], rows.F[:, k + 1]
+        left, right = rows.mode[:, k], rows.mode[:, k + 1]
+        share = np.where(left == right, s, (mode == right).astype(float))
+        found: Floats = before + share[owner] * (after - before)
+        # in slip it is the size that is on a line: where slip turns round, forces do
+        size = self._sizes(before) + share * (self._sizes(after) - self._sizes(before))
+        speed = self._sizes(g)
+        along = ((mode == SLIP) & (speed > 0.0))[owner]
+        return np.where(along, -size[owner] * g / np.where(speed > 0.0, speed, 1.0)[owner], found)
+
+    def _sizes(self, rows: Floats) -> Floats:
+        """Lengths (n_c, n_t) of what has the rows of contacts."""
+        found: Floats = np.sqrt(np.add.reduceat(rows**2, self.problem.contacts.row[:-1], axis=0))
+        return found
 
 
 def _take(rows: Samples, k: np.ndarray, t: Floats) -> Samples:
