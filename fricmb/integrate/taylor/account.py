@@ -9,7 +9,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.groups import SECOND
-from fricmb.integrate.taylor.layout import INPUT, N_TOUCHED, STEP
+from fricmb.integrate.taylor.layout import INPUT, N_TOUCHED, STEP, TIME
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative
 from fricmb.integrate.taylor.rubbing import is_lost, rubbing_at
@@ -19,7 +19,7 @@ from fricmb.integrate.taylor.signals import belt_value
 @kernel
 def displacement(net: Net, c: int, q: float, s: float) -> float:
     """Relative displacement of plain contact c, up to a constant, where its dof is at q at s."""
-    return float(net.row_coef[net.row_start[c]] * q - net.belt[c] * (net.x[0] + s * net.x[STEP]))
+    return float(net.row_coef[net.row_start[c]] * q - net.belt[c] * (net.x[TIME] + s * net.x[STEP]))
 
 
 @kernel
