@@ -14,12 +14,13 @@ from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.methods.backward_differences import best_order
-from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.problem import Complexes, Floats, Ints, Pivots
-from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
+from fricmb.integrate.model.law_values import along, magnitude, point_along
+from fricmb.integrate.problem import Complexes, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.run.breakpoints import next_stop, reached, set_window, set_window_around
 from fricmb.integrate.run.chunks import Chunks
 from fricmb.integrate.run.outcomes import DONE, FULL
 from fricmb.integrate.step.step_control import ladder, step_factor
+from fricmb.integrate.step.tableau import by_line, largest_in_step, radau
 
 
 class Stops(NamedTuple):
@@ -74,6 +75,28 @@ def order_of(k: int, lower: float, error: float, higher: float, out: Floats) -> 
 
 
 @entry
+def window_of(stops: Floats, window: Floats, t: float) -> None:
+    """Between breakpoints, of a sample."""
+    set_window_around(stops, window, t)
+
+
+@entry
+def directions(row: Ints, x: Floats, sense: float, n: Floats, part: Floats) -> None:
+    """Directions along x, or against it, and the part of x along them."""
+    for k in range(part.shape[0]):
+        point_along(row, k, x, sense, n)
+        part[k] = along(row, k, n, x)
+
+
+@entry
+def in_step(line: Floats, start: float, values: Floats2, out: Floats) -> None:
+    """Of every column what a line of a tableau makes, and its largest magnitude."""
+    for a in range(values.shape[1]):
+        out[2 * a] = by_line(line, start, values, a)
+        out[2 * a + 1] = largest_in_step(start, values, a)
+
+
+@entry
 def lengths(row: Ints, x: Floats, out: Floats) -> int:
     """Length of the part of every contact."""
     for k in range(out.shape[0]):
@@ -88,6 +111,35 @@ def test_stops_and_windows():
         assert stop_and_window(times, window, float(t)) == stop
         assert low < window[0] <= low + 1e-14
         assert high - 1e-13 <= window[1] < high
+
+
+def test_windows_around_samples():
+    window = np.zeros(2)
+    for t, low, high in ((1.0, -np.inf, 2.0), (2.0, 2.0, 5.0), (4.0, 2.0, 5.0), (6.0, 5.0, np.inf)):
+        window_of(np.array([2.0, 5.0]), window, t)
+        assert low <= window[0] <= low + 1e-14
+        assert high - 1e-13 <= window[1] <= high
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_directions_are_along_what_is_given(sense):
+    row, x, n, part = np.array([0, 1, 3, 6, 8]), np.array([-2.0, 3, 4, 1, 2, 2, 0, 0]), np.full(8, 7.0), np.zeros(4)
+    directions(row, x, sense, n, part)
+    expected = sense * np.array([-1, 0.6, 0.8, 1 / 3, 2 / 3, 2 / 3])
+    np.testing.assert_allclose(n, [*expected, 7, 7], rtol=1e-15)  # where there is nothing to go by they stay
+    np.testing.assert_allclose(part, [2 * sense, 5 * sense, 3 * sense, 0], rtol=1e-15)
+
+
+def test_lines_of_a_tableau_are_its_polynomial():
+    tab, out = radau(4), np.zeros(4)
+    c = np.append(0.0, tab.c)
+    values = np.stack([1 + c**4, 1 - 3 * c**2], axis=1)[1:]
+    for j in range(4):
+        half = 0.5 * (c[j] + c[j + 1])
+        in_step(tab.mid[j], 1.0, values, out)
+        np.testing.assert_allclose(out, [1 + half**4, 2, 1 - 3 * half**2, 2], rtol=1e-13)
+    in_step(tab.top[0], 1.0, values, out)
+    np.testing.assert_allclose(out[::2], [1 / 70, 0], atol=1e-14)  # x^4 = P_4/70 + ... on [0, 1]
 
 
 def band_of(matrix, half):

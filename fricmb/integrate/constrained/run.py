@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from fricmb.integrate.constrained.bdf_history import formula_of, no_formula, signals
+from fricmb.integrate.constrained.bdf_history import Formula, formula_of, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
@@ -19,7 +19,7 @@ from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
-from fricmb.integrate.methods.backward_differences import differences, no_differences
+from fricmb.integrate.methods.backward_differences import Differences, differences, no_differences
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
@@ -62,12 +62,8 @@ def run_mechanism(
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
-        past, formula = no_differences(), no_formula(y, st)
-        if multistep:
-            add_blocks("multistep")
-            past = differences(signals(problem), t_end - start.t, COST * stages / 5)
-            formula = formula_of(problem, start)
-        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, past, formula)
+        past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
+        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, *past)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
         code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
@@ -133,6 +129,13 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
 #: the models (pendulum, four-bar, slider crank, drive train, car axis, Andrews) at 1e-6 and 1e-8; with three stages 1.2
 #: to 2.5, median 1.9.
 COST = 3.3
+
+
+def _history(problem: Problem, start: Start, t_end: float, stages: int) -> tuple[Differences, Formula]:
+    """What BDF keeps of a run; its block is compiled for those who ask for it."""
+    add_blocks("multistep")
+    past = differences(signals(problem), t_end - start.t, COST * stages / 5)
+    return past, formula_of(problem, start)
 
 
 #: Forces of inertia that are nothing but the round-off of others; those of a load that grows from 0 at the start, which

@@ -20,6 +20,7 @@ from fricmb.integrate.methods.backward_differences import (
     ORDER,
     REJECTIONS,
     Differences,
+    begin_at,
     best_order,
     bring_forward,
     change_order,
@@ -204,3 +205,47 @@ def bdf_step(
         acc.z[i] = max(acc.z[i], abs(y.z[i]))
     select_order(packed, y, one, acc, past, guard, error, left)
     return ACCEPTED
+
+
+@block
+def start_history(
+    packed: Packed, s: Scratch, before: State, y: State, one: OneStep, past: Differences, h: float, address: Ints
+) -> None:
+    """Differences of order up to 4 from the polynomial of the one-step step just done, from ``before`` to y."""
+    tab, st, w = one.tab, one.st, one.w
+    n_s = tab.c.shape[0]
+    n, nz, nr = y.q.shape[0], y.z.shape[0], y.rate.shape[0]
+    H = y.t[0] - before.t[0]
+    k = min(4, n_s)
+    step = min(h, H / k)
+    for j in range(k + 1):
+        x = 1.0 - j * step / H
+        for i in range(past.D.shape[1]):
+            past.D[j, i] = 0.0
+        for c in range(n_s + 1):
+            weight = 0.0
+            for p in range(n_s, -1, -1):
+                weight = weight * x + tab.basis[p, c]
+            for i in range(n):
+                # ways from the end of the step, free of the round-off of large positions
+                for i_s in range(n_s):
+                    part = st.hA[c - 1, i_s] if c > 0 else 0.0
+                    past.D[j, i] += weight * (part - st.hA[n_s - 1, i_s]) * st.V[i_s, i]
+                past.D[j, n + i] += weight * (before.v[i] if c == 0 else st.V[c - 1, i])
+            for i in range(nz):
+                past.D[j, 2 * n + i] += weight * (before.z[i] if c == 0 else w.z[c - 1, i])
+            for i in range(nr):
+                past.D[j, 2 * n + nz + i] += weight * (before.rate[i] if c == 0 else one.power[c - 1, i])
+    for i in range(n):
+        past.D[0, i] = 0.0
+        past.D[0, n + i] = y.v[i]
+    for i in range(1, k + 1):
+        for j in range(k, i - 1, -1):
+            for x in range(past.D.shape[1]):
+                past.D[j, x] = past.D[j - 1, x] - past.D[j, x]
+    for j in range(k + 1, 8):
+        for i in range(past.D.shape[1]):
+            past.D[j, i] = 0.0
+    for i in range(n):
+        past.D[0, i] = y.q[i]
+    begin_at(past, k, step)

@@ -12,10 +12,9 @@ from fricmb.integrate.methods.backward_differences import (
     hand_over,
     is_slower,
     may_begin,
-    start_history,
 )
 from fricmb.integrate.methods.bdf_stability import Guard
-from fricmb.integrate.methods.bdf_step import bdf_step
+from fricmb.integrate.methods.bdf_step import bdf_step, start_history
 from fricmb.integrate.methods.bdf_transitions import calm, note_loads
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed

@@ -12,7 +12,7 @@ from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.nodes import RUNGS, Z_EXACT, nodes
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
-from fricmb.integrate.collocation.structure_blocks import blocks
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.friction_cone import stick_limits
@@ -66,6 +66,22 @@ def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
     return Minv, MW, D, Dinv, Dinv @ MW.T
 
 
+def _both_structures(slip: Blocks, stick: Blocks, M: Floats) -> Model:
+    """Blocks of the structure in slip (0) and in stick (1)."""
+    n = len(M)
+    by_force = {"force_0": "start_0", "force_1": "start_1"}
+    parts: Model = {name: np.zeros((2, n, n)) for name in ("q_u", "q_v", "v_u", "v_v", *by_force, *by_force.values())}
+    parts |= {"w2": np.zeros((2, n)), "damp": np.zeros((2, n))}
+    for z, part in enumerate((slip, stick)):
+        b = len(part.w2)
+        parts["w2"][z, :b], parts["damp"][z, :b] = part.w2, part.d
+        for name in ("q_u", "q_v", "v_u", "v_v"):
+            parts[name][z, :, :b] = getattr(part, name)
+        for name, by_velocity in by_force.items():
+            parts[name][z, :b], parts[by_velocity][z, :b] = getattr(part, name), getattr(part, name) @ M
+    return parts
+
+
 def _model(problem: Problem) -> Model:
     n, linear, contacts = problem.n, problem.linear, problem.contacts
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
@@ -76,16 +92,6 @@ def _model(problem: Problem) -> Model:
     Ku = linear.B - linear.Kx[:n, n:]
     Minv, MW, D, Dinv, hold = _port(M, W)
     w = contacts.w + contacts.Wu @ rate
-    by_mass = ("start_0", "force_0"), ("start_1", "force_1")
-    parts: Model = {name: np.zeros((2, n, n)) for name in ("q_u", "q_v", "v_u", "v_v", *by_mass[0], *by_mass[1])}
-    parts |= {"w2": np.zeros((2, n)), "damp": np.zeros((2, n))}
-    for z, part in enumerate((slip, stick)):
-        b = len(part.w2)
-        parts["w2"][z, :b], parts["damp"][z, :b] = part.w2, part.d
-        for name in ("q_u", "q_v", "v_u", "v_v"):
-            parts[name][z, :, :b] = getattr(part, name)
-        for start_of, name in by_mass:
-            parts[name][z, :b], parts[start_of][z, :b] = getattr(part, name), getattr(part, name) @ M
     b = len(stick.w2)
     hold_u, hold_v = np.zeros((m, n)), np.zeros((m, n))
     hold_u[:, :b], hold_v[:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u), hold @ (K @ stick.q_v + C @ stick.v_v)
@@ -96,7 +102,7 @@ def _model(problem: Problem) -> Model:
         "mu_s_N": stick_limits(contacts)[0], "mu_0_N": contacts.mu_0[0] * N,
         "fastest": np.sqrt(np.abs(slip.w2)).max(initial=0.0),
     }  # fmt: skip
-    floats = parts | {name: np.array([value]) for name, value in numbers.items()} | {
+    floats = _both_structures(slip, stick, M) | {name: np.array([value]) for name, value in numbers.items()} | {
         "c0": c0, "c1": c1, "b0": b0, "b1": b1, "linked": linked, "hold_u": hold_u, "hold_v": hold_v, "wt": W.T,
         "mw": MW.T, "D": D, "D_inv": Dinv, "belt": w, "stiff": K, "visc": C, "minv": Minv,
         "load_0": linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate, "load_1": Ku @ rate,
