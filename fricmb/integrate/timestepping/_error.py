@@ -95,7 +95,7 @@ def hardly_decided(run: Run, c: int, t: float, h: float) -> bool:
 @kernel
 def turns_or_ends(what: int) -> bool:
     """Whether a transition is of a contact that has come to rest for an instant."""
-    return bool(what == EVENT_STICK or what == EVENT_REVERSAL)
+    return bool(what in (EVENT_STICK, EVENT_REVERSAL))
 
 
 @kernel
