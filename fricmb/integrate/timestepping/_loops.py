@@ -49,6 +49,8 @@ def _left(W: Floats) -> tuple[Floats, int]:
 @kernel
 def count_held(run: Run, two: int) -> None:
     """How many rows of each loop are held in this step, and how many of its contacts could hold more."""
+    if run.held.shape[0] == 0:
+        return
     for k in range(run.held.shape[0]):
         run.held[k] = 0
         run.spare[k] = 0
