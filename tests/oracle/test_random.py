@@ -42,6 +42,9 @@ FOUND = {
     ("stack", 3005): "Taylor steps: plates went with a belt whose velocity jumps",
     ("stack", 2026): "time stepping: contacts broke away on lines through the jumps of what holds them",
     ("stack", 1001): "time stepping: a rest that came late in a step was left again",
+    ("modes", 170007): "time stepping: a rest of 3e-4 was passed by, for the mean force of the step could not be held",
+    ("loop", 210006): "time stepping: one of three that share a load let go at its own limit",
+    ("loop", 211016): "time stepping: one at its limit in a loop that others hold stuck and slipped in turn",
 }
 
 

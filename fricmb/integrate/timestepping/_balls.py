@@ -125,6 +125,9 @@ def residual(run: Run, F: Floats, g: Floats) -> float:
 @kernel
 def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
     """Make g exactly 0 where the force is inside its ball, or on its rim and no more than that is solved to."""
+    largest = 0.0
+    for c in range(run.status.shape[0]):
+        largest = max(largest, run.rho[c])
     for c in range(run.status.shape[0]):
         row0 = run.row[c]
         d = run.row[c + 1] - row0
@@ -133,11 +136,14 @@ def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
             distance = math.hypot(distance, F[a] - run.delta[a])
         inside = run.H[3 * c] == STIFF / run.soft[c] and (d == 1 or run.H[3 * c + 2] == run.H[3 * c])
         held = inside and distance <= run.rho[c]
-        if run.status[c] in (HELD, CAUGHT, BROKEN):
+        # one whose loop is held by others is at rest on its rim, too
+        if run.status[c] in (HELD, CAUGHT, BROKEN) or run.loop[c] >= 0:
             size = 0.0
             for a in range(row0, row0 + d):
                 size = math.hypot(size, g[a])
-            held = held or size <= 2.0 * run.x[RESIDUAL] * run.rho[c] * run.soft[c]
+            # all are solved to a part of the largest force: so are the loads that a loop shares out
+            radius = largest if run.loop[c] >= 0 else run.rho[c]
+            held = held or size <= 2.0 * run.x[RESIDUAL] * radius * run.soft[c]
         if held and run.rho[c] > 0.0:
             for a in range(row0, row0 + d):
                 g[a] = 0.0

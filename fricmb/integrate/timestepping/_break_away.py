@@ -9,6 +9,7 @@ from fricmb.integrate.model.friction_cone import friction_size, stick_limit_slop
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.timestepping._balls import slide_radius
 from fricmb.integrate.timestepping._layout import BROKEN, RESIDUAL
+from fricmb.integrate.timestepping._loops import shares
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -18,6 +19,8 @@ def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool
     gap = t + 0.5 * h - run.when[one, c]
     if run.known[one, c] == 0 or gap <= 0.0 or run.last[c] >= 0.0 or run.tried[c] == 1:
         return False
+    if shares(run, c):
+        return False  # what is more than it holds goes over to others, until the step itself says that these cannot
     for a in range(run.row[c], run.row[c + 1]):
         run.gf[a] = run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a])
     limit = run.brake[c] + 0.5 * h / gap * (run.brake[c] - run.grip[one, c])

@@ -63,13 +63,16 @@ CLOSE = 0.05
 
 
 @kernel
-def count_transitions(run: Run) -> None:
-    """How many contacts of each part have a transition in the step, done whole or by halves."""
+def count_transitions(run: Run) -> bool:
+    """How many contacts of each part have a transition in the step, done whole or by halves; whether any has."""
     for k in range(run.events.shape[0]):
         run.events[k] = 0
+    some = False
     for c in range(run.status.shape[0]):
         if run.what[WHOLE, c] >= 0 or run.what[MIDDLE, c] >= 0 or run.what[THERE, c] >= 0:
             run.events[run.part_of[c]] += 1
+            some = True
+    return some
 
 
 @kernel
@@ -95,13 +98,14 @@ def hardly_decided(run: Run, c: int, t: float, h: float) -> bool:
 @kernel
 def turns_or_ends(what: int) -> bool:
     """Whether a transition is of a contact that has come to rest for an instant."""
-    return bool(what == EVENT_STICK or what == EVENT_REVERSAL)
+    return bool(what in (EVENT_STICK, EVENT_REVERSAL))
 
 
 @kernel
 def doubtful(run: Run, t: float, h: float) -> bool:
     """Whether the few transitions of a part in the step are others by halves than done whole, or too late to tell."""
-    count_transitions(run)
+    if not count_transitions(run):
+        return False
     for c in range(run.status.shape[0]):
         whole, first, second = run.what[WHOLE, c], run.what[MIDDLE, c], run.what[THERE, c]
         if (whole < 0 and first < 0 and second < 0) or run.events[run.part_of[c]] > FEW:

@@ -14,6 +14,7 @@ from fricmb.integrate.model.forces import scratch_of
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
 from fricmb.integrate.run.problem_cache import once_per_problem
+from fricmb.integrate.timestepping._loops import loops_of
 from fricmb.integrate.timestepping._run import Run
 
 #: Most contact rows that may be condensed, and numbers that a factorisation may hold.
@@ -104,7 +105,9 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
     contacts = problem.contacts
     W, Wu, Wn = contacts.csr("W").transposed(), contacts.csr("Wu"), contacts.csr("Wn").transposed()
     varies = contacts.normal != NORMAL_CONSTANT
+    loop, rank = loops_of(problem)
     return {
+        "loop": loop, "rank": rank, "held": np.zeros(len(rank), np.int64), "spare": np.zeros(len(rank), np.int64),
         "row": contacts.row, "w_start": W.start, "w_dof": W.index, "w_coef": W.value, "belt": contacts.w,
         "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "law": contacts.law,
         "mu_s": contacts.mu_s, "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N),

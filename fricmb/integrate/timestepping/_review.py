@@ -18,6 +18,7 @@ from fricmb.integrate.problem import STICK, Ints
 from fricmb.integrate.timestepping._balls import slide_radius
 from fricmb.integrate.timestepping._break_away import break_away, pressed_in_slip, will_break
 from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FREE, HELD, PASSED
+from fricmb.integrate.timestepping._loops import count_held
 from fricmb.integrate.timestepping._run import Run
 
 #: Rounds in which a contact may still change between resting, passing and going on.
@@ -156,6 +157,7 @@ def choose_statuses(run: Run, one: int, two: int, t: float, h: float, turn: int)
         if slip_on(run, one, two, c, turn):
             news = True
     mark_jolts(run)
+    count_held(run, two)
     for c in range(0 if news and turn < DECIDING else run.status.shape[0]):
         hold_on(run, one, two, c, t, h)
 

@@ -26,8 +26,9 @@ class Run(NamedTuple):
     (B - Ku), ``in_b`` (B), ``in_du`` (-Cu); ``back_start``, ``back_dof``, ``back_k``, ``back_c``: rows of the drivers;
     ``drivers`` (3, n_u, n_u): K, C and, in the first column, f of the signals.
     Contacts: ``row`` (n_c+1,); ``w_start``, ``w_dof``, ``w_coef``: W by columns; ``belt`` (m,), ``wu_start``,
-    ``wu_signal``, ``wu_coef``: w and Wu; ``law``, ``mu_s``, ``mu_0``, ``N`` (n_c,); ``var``, ``acts`` (n_c,): varying
-    normal force, felt by the bodies along ``n_start``, ``n_dof``, ``n_coef`` from ``N0``.
+    ``wu_signal``, ``wu_coef``: w and Wu; ``loop`` (n_c,), ``rank``,
+    ``held``, ``spare`` (n_loops,): see _loops; ``law``, ``mu_s``, ``mu_0``, ``N`` (n_c,); ``var``, ``acts`` (n_c,):
+    varying normal force, felt by the bodies along ``n_start``, ``n_dof``, ``n_coef`` from ``N0``.
     State: ``q``, ``v`` (s, n); ``u``, ``du`` (s, n_u); ``g``, ``w`` (s, m); ``F``, ``ends`` (s, m): mean force of the
     step before and force at its end; ``hold`` (s, m), ``grip``, ``when`` (s, n_c): last force that held the contact,
     the limit it was under and its time; ``known`` (s, n_c): whether there is one; ``mode``, ``push`` (s, n_c): modes
@@ -37,7 +38,8 @@ class Run(NamedTuple):
     ``brake``, ``soft``, ``share`` (n_c,); ``delta``, ``away`` (m,); ``status``, ``tried`` (n_c,): whether it was let go
     in vain; ``jolt`` (n,), ``last`` (n_c,): the last jump of forces in the step on a dof and on a contact at rest, as a
     fraction of it (-1: none); ``loss`` (s, n_c), ``spent`` (s, 2): energies of a step; ``what``, ``moment``,
-    ``strain`` (s, n_c): transitions in it, and what would hold a contact that comes to rest, over its limit; ``instant`` (n_c, 2): rate of the distance and dV/de of varying normal forces.
+    ``strain`` (s, n_c): transitions in it, and what would hold a contact that comes to rest, over its
+    limit; ``instant`` (n_c, 2): rate of the distance and dV/de of varying normal forces.
     Factors: ``lu`` (k, n (2 b + 1)), ``of`` (k, 3 n_c + 1): h and weights each was made for, ``used`` (k,);
     ``Y`` (k, m, n), ``D`` (k, m, m): responses A^-1 W and h W^T A^-1 W; ``J``, ``rhs``, ``sizes``, ``pivots``.
     Run: ``top_q``, ``top_v`` (n,) running maxima, ``floor_q``, ``floor_v``; ``part`` (n,), ``part_of`` (n_c,): which of
@@ -73,6 +75,10 @@ class Run(NamedTuple):
     w_dof: Ints
     w_coef: Floats
     belt: Floats
+    loop: Ints
+    rank: Ints
+    held: Ints
+    spare: Ints
     wu_start: Ints
     wu_signal: Ints
     wu_coef: Floats

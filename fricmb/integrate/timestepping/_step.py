@@ -125,7 +125,8 @@ def keep_end(run: Run, one: int, two: int, t: float, h: float) -> None:
             for a in range(row0, run.row[c + 1]):
                 run.hold[two, a] = run.away[a] if caught else run.F[two, a]
         what_happened(run, one, two, c, t, h)
-        run.strain[two, c] = friction_size(run.row, c, run.away) / run.brake[c] if run.brake[c] > 0.0 else 0.0
+        if run.what[two, c] >= 0:
+            run.strain[two, c] = friction_size(run.row, c, run.away) / run.brake[c] if run.brake[c] > 0.0 else 0.0
     add_powers(run, one, two, h)
 
 

@@ -133,8 +133,7 @@ class SteppedRun(Trajectory):
 
     def _speeds(self, k: np.ndarray) -> Floats:
         """Slip speeds (n_c, n_t) in rows."""
-        g = self._samples.g[:, k]
-        return self._sizes(g) if len(self.problem.contacts.row) > 1 else np.abs(g)
+        return self._sizes(self._samples.g[:, k])
 
     def _forces(self, k: np.ndarray, s: Floats, g: Floats, mode: np.ndarray) -> Floats:
         """Forces within steps: lines where a contact's mode stays; those of slip along it, also where it begins."""
@@ -154,7 +153,10 @@ class SteppedRun(Trajectory):
 
     def _sizes(self, rows: Floats) -> Floats:
         """Lengths (n_c, n_t) of what has the rows of contacts."""
-        found: Floats = np.sqrt(np.add.reduceat(rows**2, self.problem.contacts.row[:-1], axis=0))
+        first = self.problem.contacts.row[:-1]
+        if len(first) == len(rows):
+            return np.abs(rows)
+        found: Floats = np.sqrt(np.add.reduceat(rows**2, first, axis=0))
         return found
 
 
