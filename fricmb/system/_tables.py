@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -51,6 +52,14 @@ class Row:
         return [*self.q, *((n + j, c) for j, c in self.u)]
 
 
+@lru_cache(maxsize=64)
+def _bare(address: tuple[int, ...]) -> Templates:
+    """A table without numbers and arguments, such as that of contacts under constant forces."""
+    count = len(address)
+    starts = np.zeros(count + 1, dtype=np.int64)
+    return Templates(address=np.array(address, dtype=np.int64), p_start=starts, x_start=starts)
+
+
 class TableBuilder:
     """Collects templates one by one and packs them into a :class:`Templates`."""
 
@@ -82,6 +91,8 @@ class TableBuilder:
         """The packed table for n degrees of freedom and n_u signals."""
         if not self._address:
             return Templates()
+        if not self._p and not self._arguments:
+            return _bare(tuple(self._address))
         offset = (0, 1, 1 + n, 1 + 2 * n, 1 + 2 * n + n_u)
         entries = [entry for argument in self._arguments for entry in argument.entries]
         lengths = [len(argument.entries) for argument in self._arguments]

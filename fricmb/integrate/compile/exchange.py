@@ -17,11 +17,14 @@ def with_arrays(values: _Tuple, **new: Any) -> _Tuple:
     made._show(old._tuple._replace(**new))
     made.room_type, made._rooms = old.room_type, old._rooms
     made._memory = old._memory.copy()
+    words, kind = made._memory.data, old.room_type
     for name, array in new.items():
-        before = getattr(old._tuple, name)
-        if array.dtype != before.dtype or array.ndim != before.ndim or not array.flags.c_contiguous:
-            raise TypeError(f"{name} is {array.dtype} with {array.ndim} axes; expected {old.room_type.of[name]}")
-        first = old.room_type.at[name] // _WORD
-        made._memory[first : first + 1 + array.ndim] = (address_of(array), *array.shape)
+        if (array.dtype, array.ndim) != kind.takes[name] or not array.flags.c_contiguous:
+            raise TypeError(f"{name} is {array.dtype} with {array.ndim} axes; expected {kind.of[name]}")
+        place = kind.at[name] // _WORD
+        words[place] = address_of(array)
+        for size in array.shape:
+            place += 1
+            words[place] = size
     made.address = address_of(made._memory)
     return cast(_Tuple, made)

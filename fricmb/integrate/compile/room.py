@@ -53,10 +53,10 @@ class RoomType(types.Type):
         self.at: dict[str, int] = {}
         self.of: dict[str, Any] = dict(fields)
         #: What each field takes: dtype and number of axes of an array, None for a room.
-        self.wanted: list[tuple[str, tuple[Any, int] | None]] = []
+        self.takes: dict[str, tuple[Any, int] | None] = {}
         words = 0
         for name, kind in fields:
-            self.wanted.append((name, None if isinstance(kind, RoomType) else (np.dtype(str(kind.dtype)), kind.ndim)))
+            self.takes[name] = None if isinstance(kind, RoomType) else (np.dtype(str(kind.dtype)), kind.ndim)
             self.at[name] = words * _WORD
             words += 1 if isinstance(kind, RoomType) else 1 + kind.ndim
         inside = ", ".join(f"{name}: {kind}" for name, kind in fields)
@@ -111,7 +111,7 @@ class Room:
         self.room_type: RoomType = _inner(type(values))
         words: list[int] = []
         self._rooms = []
-        for (name, wanted), value in zip(self.room_type.wanted, values, strict=True):
+        for (name, wanted), value in zip(self.room_type.takes.items(), values, strict=True):
             if wanted is None:
                 inner = value if isinstance(value, Room) else Room(value)
                 self._rooms.append(inner)
