@@ -23,7 +23,10 @@ def loops_of(problem: Problem) -> tuple[Ints, Ints]:
     loop, none = np.full(problem.n_c, -1, dtype=np.int64), np.zeros(0, dtype=np.int64)
     if not 2 <= problem.m <= MANY:
         return loop, none
-    W = problem.contacts.csr("W").dense().T
+    entries = problem.contacts.csr("W")
+    touched, dof = np.unique(entries.rows, return_inverse=True)
+    W = np.zeros((problem.m, touched.size))
+    W[entries.index, dof] = entries.value
     U, rank = _left(W)
     if rank == problem.m:
         return loop, none
@@ -40,9 +43,11 @@ def loops_of(problem: Problem) -> tuple[Ints, Ints]:
 
 
 def _left(W: Floats) -> tuple[Floats, int]:
-    """Left singular vectors of rows of one length, and their rank."""
+    """Left singular vectors (m, m) of rows W (m, .) scaled to one length, and their rank."""
     size = np.linalg.norm(W, axis=1, keepdims=True)
-    U, s, _ = np.linalg.svd(W / np.where(size > 0.0, size, 1.0), full_matrices=True)
+    # of a factor that has the same: rows are few, but may be long
+    factor = np.linalg.qr((W / np.where(size > 0.0, size, 1.0)).T).R.T
+    U, s, _ = np.linalg.svd(factor, full_matrices=True)
     return U, int(np.count_nonzero(s > 1e-10 * s.max(initial=0.0)))
 
 
