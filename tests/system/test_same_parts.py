@@ -2,6 +2,7 @@
 
 import gc
 import weakref
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -88,6 +89,36 @@ def test_signals_of_what_is_shared_are_there():
         np.testing.assert_array_equal(found.signals.uniform, wanted.signals.uniform)
         times = np.linspace(0.0, 2.0, 5)
         np.testing.assert_array_equal(build(changed).signals(times), build(anew).signals(times))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slack(fm.Element):
+    """A spring of somebody's own, as long as its ends are apart at the start, and longer for a heavy body."""
+
+    a: fm.Body
+    b: fm.Body
+    stiffness: float
+    length: float = 0.0
+
+    def __post_init__(self):
+        super().__post_init__()
+        self._set("length", self.b.position["x"] - self.a.position["x"] + self.a.mass)
+
+    def local_coordinates(self):
+        return (self.b.motion("x") - self.a.motion("x"),)
+
+    def define_potential(self, x):
+        return self.stiffness * (x[0] - self.length) ** 2 / 2
+
+
+def test_elements_of_others_may_read_anything_of_a_body():
+    a, b = fm.Body("a", mass=1.0), fm.Body("b", mass=2.0, position={"x": 1.0})
+    scene = fm.Scene("own", [a, b, Slack("s", a=a, b=b, stiffness=3.0)])
+    assert build(scene).problem.linear.fx.tolist() == [-6.0, 6.0]
+    moved = scene.with_parameters({"b.position.x": 1.5})
+    assert build(moved).problem.linear.fx.tolist() == [-7.5, 7.5]
+    heavy = moved.with_parameters({"a.mass": 2.0})
+    assert build(heavy).problem.linear.fx.tolist() == [-10.5, 10.5]
 
 
 def test_equal_parts_that_are_not_the_same_are_looked_at_again():
