@@ -114,7 +114,13 @@ def _mobility(inverse: Csr, W: Floats) -> Floats:
 
 def softness(problem: Problem) -> float:
     """What :class:`Ports` calls ``soft``; known without all that is packed beside it."""
-    return once_per_problem(problem, "softness", lambda: _softness(mobility_at_contacts(problem)))
+
+    def find() -> float:
+        if problem.m == 1 and np.any(problem.contacts.W):  # one row that moves depends on no other
+            return 0.0
+        return _softness(mobility_at_contacts(problem))
+
+    return once_per_problem(problem, "softness", find)
 
 
 def _table(templates: Templates) -> Table:
