@@ -17,7 +17,7 @@ from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
 from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
-from fricmb.scene._family import of_same_parts
+from fricmb.scene._family import NUMBERS, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
 
@@ -164,7 +164,7 @@ class SceneMechanics:
         """Names of what the arrays hold; stiffness, damping and loads are in none of them."""
         parts = [part for part in self.placed.parts if not isinstance(part, Element | MatrixElement)]
         key = "names", self.plan.dofs, self.plan.parts
-        return of_same_parts(self.placed, key, parts, self._names, but=frozenset(("mass", "position", "velocity")))
+        return of_same_parts(self.placed, key, parts, self._names, but=NUMBERS)
 
     def _names(self) -> Names:
         held = set(self.plan.parts)

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.csr import Csr, LazyMatrices
+from fricmb.integrate.kept import Kept, once_per
 
 if TYPE_CHECKING:
     from fricmb.integrate.mechanism import Mechanism
@@ -88,27 +88,9 @@ class Templates:
     form_constant: Floats = field(default_factory=lambda: _f(0))
 
 
-class Kept:
-    """Frozen arrays that remember what was made of them; pickles do without."""
-
-    _made: ClassVar[tuple[str, ...]] = ("kept",)
-
-    @cached_property
-    def kept(self) -> dict[Any, Any]:
-        """What was made of these arrays (see :func:`~fricmb.integrate.run.problem_cache.once_per`)."""
-        return {}
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name not in self._made}
-
-
 def _sparse_of(held: Kept, name: str) -> Csr:
     """A matrix as a sparse one, made once."""
-    key = "sparse", name
-    if key not in held.kept:
-        held.kept[key] = Csr.of_dense(getattr(held, name))
-    found: Csr = held.kept[key]
-    return found
+    return once_per(held, ("sparse", name), lambda: Csr.of_dense(getattr(held, name)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -290,21 +272,15 @@ class Problem(Kept):
     contact_names: tuple[str, ...] = ()
     mechanism: Mechanism | None = None
 
-    _made: ClassVar[tuple[str, ...]] = ("kept", "_spectrum")
-
-    @cached_property
-    def _spectrum(self) -> tuple[Floats, Floats]:
-        return self.spectrum()
-
     @property
     def omega(self) -> Floats:
         """Angular frequencies of the linear structure without friction, rising; empty where they are not known."""
-        return self._spectrum[0]
+        return once_per(self, "spectrum", self.spectrum)[0]
 
     @property
     def zeta(self) -> Floats:
         """Its damping ratios."""
-        return self._spectrum[1]
+        return once_per(self, "spectrum", self.spectrum)[1]
 
     @property
     def n(self) -> int:

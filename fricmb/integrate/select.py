@@ -10,12 +10,12 @@ from fricmb.integrate.collocation.one_contact.prepare import is_single
 from fricmb.integrate.collocation.suits import against, port_rows, too_far_apart
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.methods.bdf import Bdf
 from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import LAW_SMOOTH, Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.suits_taylor import against_taylor, fastest
 
 
@@ -62,7 +62,7 @@ def is_banded(problem: Problem) -> bool:
 
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
     """The integrator for a problem at a tolerance, and why: the fastest that takes it, else the general one."""
-    return once_per_problem(problem, ("choice", rtol), lambda: _choose(problem, rtol))
+    return once_per(problem, ("choice", rtol), lambda: _choose(problem, rtol))
 
 
 def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 def against_taylor(problem: Problem) -> str | None:
     """What stands against Taylor steps in the structure and the laws, or None."""
-    return once_per_problem(problem, "against taylor", lambda: _against_taylor(problem))
+    return once_per(problem, "against taylor", lambda: _against_taylor(problem))
 
 
 def _against_taylor(problem: Problem) -> str | None:
@@ -32,7 +32,7 @@ def _against_taylor(problem: Problem) -> str | None:
 
 def fastest(problem: Problem) -> float:
     """A bound on the frequencies and decay rates of a structure whose masses are uncoupled (Gershgorin)."""
-    return once_per_problem(problem, "taylor fastest", lambda: _fastest(problem))
+    return once_per(problem, "taylor fastest", lambda: _fastest(problem))
 
 
 def _fastest(problem: Problem) -> float:

@@ -11,6 +11,9 @@ from fricmb.scene._scene import Scene
 
 _T = TypeVar("_T")
 
+#: Fields of bodies: where they start, and all numbers, by which no motion is named.
+STARTS = frozenset(("position", "velocity"))
+NUMBERS = STARTS | {"mass"}
 #: Parts above which nothing is kept: putting something together is little beside running it.
 MANY = 500
 

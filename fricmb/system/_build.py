@@ -12,6 +12,7 @@ import numpy as np
 from fricmb.integrate.problem import Contacts, Floats, Linear, Problem, Start
 from fricmb.integrate.problem import Signals as SignalArrays
 from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
+from fricmb.scene._family import NUMBERS, STARTS
 from fricmb.scene._lines import lines_of
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
@@ -56,8 +57,6 @@ def build(scene: Any, plan: Any = None) -> System:
     return found  # type: ignore[no-any-return]
 
 
-#: Fields of bodies that no array depends on.
-STARTS = frozenset(("position", "velocity"))
 #: Above this no spectrum is computed.
 SPECTRUM = 500
 
@@ -98,7 +97,7 @@ def _build(scene: Any, plan: Any) -> System:
         scene, ("structure", dofs), standing, signals, lambda: _structure(scene, motions, parts, chosen), STARTS
     )
     contacts = half_of(
-        scene, ("contacts", dofs), touching, signals, lambda: _contacts(scene, motions, chosen), STARTS | {"mass"}
+        scene, ("contacts", dofs), touching, signals, lambda: _contacts(scene, motions, chosen), NUMBERS
     )
     motions.forget_scene()
     return _system(scene, dofs, structure, contacts, signals)

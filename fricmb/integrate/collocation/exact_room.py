@@ -13,8 +13,8 @@ from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.problem import Floats, Problem, Templates
-from fricmb.integrate.run.problem_cache import once_per, once_per_problem
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 
 
@@ -144,7 +144,7 @@ def exact_lent(problem: Problem, s: int, safety: float, exact_up_to: float | Non
 
     Its tables are kept for the next run, where workspaces are lent as they were when they were made.
     """
-    free: list[Exact] = once_per_problem(problem, ("exact", s, exact_up_to), list)
+    free: list[Exact] = once_per(problem, ("exact", s, exact_up_to), list)
     try:
         found = free.pop()  # of several threads one gets it
     except IndexError:

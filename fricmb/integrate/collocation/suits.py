@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from fricmb.integrate.collocation.exact_room import free_blocks
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
-from fricmb.integrate.run.problem_cache import once_per
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant
 #: friction, where all of them are friction's, and under constant friction at tight tolerances or where there are far

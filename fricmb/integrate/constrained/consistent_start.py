@@ -10,9 +10,9 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.constrained.least_change import Constrained, Least, constraints_at, names_of_rows, unit_rows
 from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
-from fricmb.integrate.run.problem_cache import once_per_problem
 
 #: A constraint is satisfied to this part of the sizes that occur.
 CLOSED = 1e-12
@@ -47,7 +47,7 @@ def assembled(problem: Problem, start: Start) -> Assembled:
     """What :func:`consistent_start` finds, with the Jacobian; raises as that."""
     q, v = np.array(start.q, float), np.array(start.v, float)
     key = ("start", start.t, q.tobytes(), v.tobytes())
-    return once_per_problem(problem, key, lambda: _assembled(problem, start.t, q, v))
+    return once_per(problem, key, lambda: _assembled(problem, start.t, q, v))
 
 
 def _assembled(problem: Problem, t: float, q: Floats, v: Floats) -> Assembled:

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 
 _T = TypeVar("_T")
 
@@ -20,7 +20,7 @@ _store: dict[Any, dict[str, Any]] = {}
 
 def of_pattern(problem: Problem, name: str, make: Callable[[], _T]) -> _T:
     """What was made under a name for a problem with the same pattern; it must never be written to."""
-    facts = once_per_problem(problem, "pattern", lambda: _facts(tuple(_pattern(problem))))
+    facts = once_per(problem, "pattern", lambda: _facts(tuple(_pattern(problem))))
     if name not in facts:
         facts[name] = make()
     value: _T = facts[name]

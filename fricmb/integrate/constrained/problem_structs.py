@@ -14,10 +14,10 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.problem_structs import Spread, Table, _table, spread_of
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 class Linear(NamedTuple):
@@ -118,7 +118,7 @@ class Mech(NamedTuple):
 
 def mech_of(problem: Problem) -> Mech:
     """The problem as the kernels take it, made once per problem object."""
-    return once_per_problem(problem, "mechanism", lambda: _pack(problem))
+    return once_per(problem, "mechanism", lambda: _pack(problem))
 
 
 def mechanism_of(problem: Problem) -> Mechanism:

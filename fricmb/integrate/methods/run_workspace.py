@@ -10,12 +10,12 @@ import numpy as np
 
 from fricmb.integrate.contact.mode_decision import Rest, rest_of
 from fricmb.integrate.contact.transition import Before
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.model.forces import Scratch, scratch_of
 from fricmb.integrate.model.instant_workspace import sizes_of
 from fricmb.integrate.model.state import State, state_of
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.workspace import Store, lent
 from fricmb.integrate.step.exact_structure import Exact, no_exact
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, one_step_of
@@ -57,7 +57,7 @@ def exact_step_workspace(
     problem: Problem, exact: Exact, make: Callable[[], OneStep]
 ) -> AbstractContextManager[StepWorkspace]:
     """Workspace for steps with an exact structure, which is the scene's own and lives as long as it."""
-    among: Store = once_per_problem(problem, "workspaces of exact steps", dict)
+    among: Store = once_per(problem, "workspaces of exact steps", dict)
     return lent(id(exact), lambda: StepWorkspace(make()), among)
 
 

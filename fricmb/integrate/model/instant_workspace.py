@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.forces import Scratch, longest_call, scratch_of
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.model.state import State, state_of
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.workspace import lent
 
 
@@ -30,7 +30,7 @@ def instant_workspace(problem: Problem) -> AbstractContextManager[InstantWorkspa
 
 def sizes_of(problem: Problem) -> tuple[int, ...]:
     """All that the arrays of a problem's workspaces are long."""
-    return once_per_problem(problem, "sizes of workspaces", lambda: _find_sizes(problem))
+    return once_per(problem, "sizes of workspaces", lambda: _find_sizes(problem))
 
 
 def _find_sizes(problem: Problem) -> tuple[int, ...]:

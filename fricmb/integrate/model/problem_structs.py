@@ -8,6 +8,7 @@ import numpy as np
 
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
 from fricmb.integrate.problem import (
     NORMAL_CONSTANT,
@@ -21,7 +22,6 @@ from fricmb.integrate.problem import (
     Templates,
 )
 from fricmb.integrate.run.array_cache import cached_by_content
-from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 class Table(NamedTuple):
@@ -100,7 +100,7 @@ def mobility_at_contacts(problem: Problem) -> Floats:
             return _mobility(inverse_mass(problem), W)
         return _mobility_by_mass(problem.linear.M, W)
 
-    return once_per_problem(problem, "mobility at contacts", make)
+    return once_per(problem, "mobility at contacts", make)
 
 
 @cached_by_content
@@ -120,7 +120,7 @@ def softness(problem: Problem) -> float:
             return 0.0
         return _softness(mobility_at_contacts(problem))
 
-    return once_per_problem(problem, "softness", find)
+    return once_per(problem, "softness", find)
 
 
 def _table(templates: Templates) -> Table:
@@ -142,7 +142,7 @@ def spread_of(problem: Problem) -> Spread:
 
 def packed_of(problem: Problem) -> Packed:
     """The problem as the kernels take it, made once per problem object."""
-    return once_per_problem(problem, "packed", lambda: _pack(problem))
+    return once_per(problem, "packed", lambda: _pack(problem))
 
 
 def _pack(problem: Problem) -> Packed:

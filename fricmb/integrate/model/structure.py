@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fricmb.integrate.csr import Csr, on_one_pattern
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import band_order
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, SparseLinear
 from fricmb.integrate.run.array_cache import cached_by_content
-from fricmb.integrate.run.problem_cache import once_per_problem
 
 
 class Structure(NamedTuple):
@@ -52,7 +52,7 @@ class Structure(NamedTuple):
 
 def inverse_mass(problem: Problem) -> Csr:
     """M^-1, made once per problem object: a diagonal where M is one."""
-    return once_per_problem(problem, "inverse mass", lambda: _inverse_mass(problem))
+    return once_per(problem, "inverse mass", lambda: _inverse_mass(problem))
 
 
 def _inverse_mass(problem: Problem) -> Csr:

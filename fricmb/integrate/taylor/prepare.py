@@ -9,10 +9,10 @@ import numpy as np
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
-from fricmb.integrate.run.problem_cache import once_per, once_per_problem
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor.network import Net
@@ -35,7 +35,7 @@ BLOCKS = ("taylor_series", "taylor_search", "taylor_change")
 
 def refusal(problem: Problem) -> str | None:
     """What stands against Taylor steps for a problem, or None."""
-    return once_per_problem(problem, "taylor refusal", lambda: _refusal(problem))
+    return once_per(problem, "taylor refusal", lambda: _refusal(problem))
 
 
 def _refusal(problem: Problem) -> str | None:
@@ -124,12 +124,12 @@ def _fit() -> Floats:
 
 def net_of(problem: Problem, degree: int) -> Net:
     """The arrays of a run with polynomials of this degree, all but what is kept of it; made once."""
-    return once_per_problem(problem, ("taylor", degree), lambda: _net(problem, degree))
+    return once_per(problem, ("taylor", degree), lambda: _net(problem, degree))
 
 
 def _net(problem: Problem, P: int) -> Net:
     n, m, n_u = problem.n, problem.m, problem.n_u
-    statics = once_per_problem(problem, "taylor statics", lambda: _statics(problem))
+    statics = once_per(problem, "taylor statics", lambda: _statics(problem))
     # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
     wide = 8 * ((n + 7) // 8 | 1)
     i, z = np.int64, np.zeros

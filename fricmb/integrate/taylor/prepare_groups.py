@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.taylor.groups import SECOND, Groups
 from fricmb.integrate.taylor.layout import PLAN
 
@@ -54,20 +54,20 @@ def _labels_of(rows: Ints, columns: Ints, n: int, m: int) -> tuple[int, Ints]:
 
 def plain_contacts(problem: Problem) -> NDArray[np.bool_]:
     """Contacts of one dof each, that no other is of, against belts of constant velocity, of constant coefficients."""
-    return once_per_problem(problem, "taylor plain", lambda: _plain_contacts(problem))
+    return once_per(problem, "taylor plain", lambda: _plain_contacts(problem))
 
 
 def _plain_contacts(problem: Problem) -> NDArray[np.bool_]:
     contacts, m = problem.contacts, problem.m
     W, Wu, law = contacts.csr("W"), contacts.csr("Wu"), contacts.law[problem.contacts.of_row]
-    _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
+    _, label = once_per(problem, "taylor labels", lambda: _labels(problem))
     plain = (np.bincount(W.index, minlength=m) == 1) & (np.diff(Wu.start) == 0) & (law == LAW_CONSTANT)
     return np.asarray(plain & (np.bincount(label)[label] == 1))
 
 
 def coupled_or_rate_dependent(problem: Problem) -> bool:
     """Whether contacts touch each other, or friction depends on slip speed."""
-    count, _ = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
+    count, _ = once_per(problem, "taylor labels", lambda: _labels(problem))
     return count < problem.n_c or bool((problem.contacts.law != LAW_CONSTANT).any())
 
 
@@ -111,14 +111,14 @@ def _lists(label: Ints, count: int) -> tuple[Ints, Ints]:
 
 def group_statics(problem: Problem) -> dict[str, Any]:
     """Groups with their matrices, laws with their places."""
-    return once_per_problem(problem, "taylor groups", lambda: _group_statics(problem))
+    return once_per(problem, "taylor groups", lambda: _group_statics(problem))
 
 
 def _groups(problem: Problem) -> tuple[int, Ints]:
     """Number of groups, and the group of every row, -1 of plain contacts."""
     group = np.full(problem.m, -1, dtype=np.int64)
     others = ~plain_contacts(problem)
-    _, label = once_per_problem(problem, "taylor labels", lambda: _labels(problem))
+    _, label = once_per(problem, "taylor labels", lambda: _labels(problem))
     found, group[others] = np.unique(label[others], return_inverse=True)
     return len(found), group
 

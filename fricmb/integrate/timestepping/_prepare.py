@@ -9,11 +9,11 @@ import numpy as np
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import on_one_pattern
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import narrow_order
 from fricmb.integrate.model.forces import scratch_of
 from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.timestepping._loops import loops_of
 from fricmb.integrate.timestepping._run import Run
 
@@ -25,7 +25,7 @@ BLOCKS = ("review_balls", "take_step")
 
 def refusal(problem: Problem) -> str | None:
     """What stands against time stepping, or None."""
-    return once_per_problem(problem, "timestepping refusal", lambda: _refusal(problem))
+    return once_per(problem, "timestepping refusal", lambda: _refusal(problem))
 
 
 def _refusal(problem: Problem) -> str | None:
@@ -120,7 +120,7 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
 
 def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, bool, int]:
     """The arrays of a run with space for so many rows; whether contacts are condensed, and the band's half width."""
-    statics = once_per_problem(problem, ("timestepping", contacts), lambda: _statics(problem, contacts))
+    statics = once_per(problem, ("timestepping", contacts), lambda: _statics(problem, contacts))
     n, m, nc, n_u = problem.n, problem.m, problem.n_c, problem.n_u
     band, condensed = statics["band"], statics["condensed"]
     slots = (SLOTS if n * (2 * band + 1) < 1e6 else 4) if condensed else 2

@@ -15,10 +15,10 @@ from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.workspace import empty_arrays
 
 
@@ -33,13 +33,13 @@ def is_single(problem: Problem) -> bool:
         and contacts.mu_0[0] > 0
         and problem.n_z == 0
         and len(problem.elements.table.address) == 0
-        and once_per_problem(problem, "linear signals", lambda: linear_signals(problem)) is not None
+        and once_per(problem, "linear signals", lambda: linear_signals(problem)) is not None
     )
 
 
 def linear_part(problem: Problem) -> tuple[Floats, Floats]:
     """(u at t = 0, u') of signals that are linear in time."""
-    found = once_per_problem(problem, "linear signals", lambda: linear_signals(problem))
+    found = once_per(problem, "linear signals", lambda: linear_signals(problem))
     return found if found is not None else (np.zeros(problem.n_u), np.zeros(problem.n_u))
 
 
@@ -119,7 +119,7 @@ def _model(problem: Problem) -> Model:
 
 def model(problem: Problem) -> Model:
     """Constants of a one-contact problem."""
-    return once_per_problem(problem, "model", lambda: _model(problem))
+    return once_per(problem, "model", lambda: _model(problem))
 
 
 def fastest_block(problem: Problem) -> float:
@@ -176,7 +176,7 @@ def _nothing(s: int) -> Run:
 
 def run_of(problem: Problem, s: int) -> Run:
     """The constants of a one-contact problem with s nodes, to look at rows with: there is nothing to work in."""
-    return once_per_problem(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)))
+    return once_per(problem, ("run", s), lambda: with_arrays(_nothing(s), **model(problem)))
 
 
 def with_rows(run: Run, new: Rows) -> Run:

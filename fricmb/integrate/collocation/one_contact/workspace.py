@@ -20,8 +20,8 @@ from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.kept import once_per
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.run.problem_cache import once_per_problem
 from fricmb.integrate.run.stop import ended
 
 #: Tables by step size; arrays by block or dof, numbers of a run, and what else it works in.
@@ -57,7 +57,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
     """
     size = problem.n, problem.m, s
     p = model(problem)
-    content = once_per_problem(problem, "model content", lambda: b"".join([held.tobytes() for held in p.values()]))
+    content = once_per(problem, "model content", lambda: b"".join([held.tobytes() for held in p.values()]))
     with _turn:
         free = _store.setdefault(size, [])
         place = next((i for i, (other, _) in enumerate(free) if other == content), None)
