@@ -57,7 +57,7 @@ CALM, APART = 0.1, 100.0
 
 def is_banded(problem: Problem) -> bool:
     """Whether implicit steps keep banded factors."""
-    return int(packed_of(problem).structure.half[0]) >= 0
+    return int(packed_of(problem).structure.half) >= 0
 
 
 def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:

@@ -10,9 +10,11 @@ from numba import njit
 
 from fricmb.integrate.compile.block import block, block_address
 from fricmb.integrate.compile.block_places import CORE, FURTHER, LAPACK, PLACES
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.compile.room import Room, room, room_type
+from fricmb.integrate.compile.room import Layout, room, room_type
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
+from fricmb.integrate.run.workspace import Workspace
 
 
 class Inner(NamedTuple):
@@ -114,10 +116,76 @@ def test_an_array_of_another_kind_is_refused(name, wrong):
         room(outer()._replace(**{name: wrong}))
 
 
+class Clock(Layout):
+    h: float
+    stops: Floats
+    steps: int
+
+
+class Run(Layout):
+    clock: Clock
+    t: float
+
+
+class Two(NamedTuple):
+    own: Run
+    other: Run
+
+
+@njit(error_model="numpy")
+def tick(run, steps):
+    for _ in range(steps):
+        run.t += run.clock.h
+        run.clock.steps += 1
+        run.clock.h = 2 * run.clock.h
+    return run.t
+
+
+def test_numbers_stand_in_a_room_and_are_read_and_written_by_name_in_kernels_and_outside():
+    run = room(Run(Clock(0.5, np.zeros(2), 3), 1))
+    assert (run.t, run.clock.h, run.clock.steps) == (1.0, 0.5, 3)
+    assert isinstance(run.t, float)
+    assert isinstance(run.clock.steps, int)
+    run.clock.h = 0.25
+    assert tick(run, 3) == 1.0 + 0.25 + 0.5 + 1.0
+    assert (run.t, run.clock.h, run.clock.steps) == (2.75, 2.0, 6)
+
+
+def test_a_room_with_another_number_or_array_leaves_the_old_one_as_it_is():
+    clock = room(Clock(0.5, np.zeros(2), 3))
+    clock.steps = 4
+    other = with_arrays(clock, h=0.1, stops=np.ones(5))
+    assert (other.h, other.steps, other.stops.tolist()) == (0.1, 4, [1.0] * 5)
+    tick(room(Run(other, 0.0)), 1)
+    assert (clock.h, clock.steps, clock.stops.shape) == (0.5, 4, (2,))
+    assert (other.h, other.steps) == (0.2, 5)
+
+
+def test_a_workspace_makes_its_numbers_what_they_were_but_not_those_of_rooms_from_elsewhere():
+    elsewhere = room(Clock(0.5, np.zeros(2), 3))
+    work = Workspace(Two(Run(Clock(0.1, np.ones(1), 0), 2.0), Run(elsewhere, 7.0)))
+    for run in work.rooms:
+        tick(run, 2)
+    work.rooms.own.clock.stops[0] = 5.0
+    work.clear()
+    own, other = work.rooms
+    assert (own.t, own.clock.h, own.clock.steps, own.clock.stops[0]) == (2.0, 0.1, 0, 1.0)
+    assert (other.t, other.clock.h, other.clock.steps) == (7.0, 2.0, 5)
+
+
+def test_a_kernel_does_not_write_to_an_array_itself():
+    @njit(error_model="numpy")
+    def replace(clock):
+        clock.stops = np.zeros(3)
+
+    with pytest.raises(TypeError, match=r"stops of a room Clock .* is no number"):
+        replace(room(Clock(0.5, np.zeros(2), 3)))
+
+
 def test_the_type_of_a_room_is_that_of_its_tuple_and_made_once():
     assert room_type(Outer) is room_type(Outer)
     assert room_type(Outer) != room_type(Inner)
-    assert Room(outer()).room_type is room_type(Outer)
+    assert room(outer()).room_type is room_type(Outer)
     # eight bytes to an address and to each length
     assert room_type(Outer).at == {"A": 0, "inner": 24, "mode": 32, "T": 48}
 

@@ -50,8 +50,11 @@ def test_a_run_inside_another_changes_nothing(name, method):
 
 
 def arrays(held):
-    """All numbers of nested tuples of arrays, one after another."""
-    return b"".join(a.tobytes() if isinstance(a, np.ndarray) else arrays(a) for a in (getattr(held, "_tuple", held)))
+    """All numbers of nested rooms and tuples, one after another."""
+    if isinstance(held, int | float | np.ndarray):
+        return np.asarray(held).tobytes()
+    parts = held if isinstance(held, tuple) else [getattr(held, name) for name in held.room_type.of]
+    return b"".join(arrays(part) for part in parts)
 
 
 @pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])

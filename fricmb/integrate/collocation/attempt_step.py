@@ -67,7 +67,7 @@ def guess_ports(packed: Packed, y: State, one: OneStep, h: float) -> None:
     for a in range(y.z.shape[0]):
         w.psi_z[a] = y.z[a]
     for i in range(n_s):
-        st.t[i] = y.t[0] + ex.tab.c[i] * h
+        st.t[i] = y.t + ex.tab.c[i] * h
         for j in range(n_s):
             st.hA[i, j] = h * ex.tab.A[i, j]
         contacts_from_start(packed, y, w, i)
@@ -174,16 +174,16 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
 def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
     """Solve a step h from y on an exact structure (stands in for :func:`attempt`).  False without convergence."""
     ex = one.exact
-    set_instant(packed.signals, s, y.t[0], y.q, y.v)
+    set_instant(packed.signals, s, y.t, y.q, y.v)
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
     slot = slot_of(one, h, address)
-    ex.length[0] = h
+    ex.length = h
     outputs_at_start(packed, s, y, one, h)
-    free_outputs(ex, slot, h, ex.unknown[0])
+    free_outputs(ex, slot, h, ex.unknown)
     guess_ports(packed, y, one, h)
-    if one.last[0] == y.t[0] and h <= one.last[1]:
-        guess_forces(packed, y, one, h / one.last[1])
+    if one.last_t == y.t and h <= one.last_h:
+        guess_forces(packed, y, one, h / one.last_h)
     weigh_inputs(packed, y, one, acc, h)
     newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
@@ -191,8 +191,8 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
         solved = exact_ports(packed, s, y, one, acc, slot, address)
     else:
         solved = solve_linear(packed, s, y, one, slot, h, address)
-    one.last[0] = y.t[0]
-    one.last[1] = h if solved else 0.0
+    one.last_t = y.t
+    one.last_h = h if solved else 0.0
     if not solved:
         return False
     end_blocks(ex, slot, h)

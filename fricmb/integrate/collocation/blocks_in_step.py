@@ -17,8 +17,8 @@ from fricmb.integrate.step.radau_step import OneStep
 def exact_tables(one: OneStep, h: float, slot: int, address: Ints) -> None:
     """Fill a slot of the tables for the step h."""
     ex = one.exact
-    modal = ex.modal[0] == 1
-    free_weights(ex, modal, h, ex.stiff_at[0], slot)
+    modal = ex.modal == 1
+    free_weights(ex, modal, h, ex.stiff_at, slot)
     port_weights(ex, modal, h, slot)
 
 
@@ -66,7 +66,7 @@ def load_at_start(packed: Packed, s: Scratch, q: Floats, f: Floats) -> None:
 def start_blocks(ex: Exact, v: Floats) -> None:
     """Block states at the start of a step under the load in ``f``, displacements counted from there."""
     n = v.shape[0]
-    modal = ex.modal[0] == 1
+    modal = ex.modal == 1
     for j in range(ex.w2.shape[1]):
         u, w, e0, e1 = 0.0, 0.0, 0.0, 0.0
         for i in range(n):
@@ -104,7 +104,7 @@ def outputs_at_start(packed: Packed, s: Scratch, y: State, one: OneStep, h: floa
     varies = ex.xf.shape[0] > m
     for i in range(ex.xf.shape[1]):
         if nu > 0 or varies:
-            set_time(packed.signals, s, y.t[0] + ex.tab.c[i] * h, n)
+            set_time(packed.signals, s, y.t + ex.tab.c[i] * h, n)
         for a in range(m):
             ex.xf[a, i] -= belt_velocity(packed.ports, s, n, a)
         for c in range(2 * nu):
@@ -130,7 +130,7 @@ def free_outputs(ex: Exact, slot: int, h: float, first: int) -> None:
     tk = ex.tk
     n_s = ex.xf.shape[1]
     n_in = ex.b1.shape[0]
-    modal = ex.modal[0] == 1
+    modal = ex.modal == 1
     for o in range(ex.c1.shape[0]):
         for j in range(ex.w2.shape[1]):
             c1 = ex.c1[o, j]
@@ -163,7 +163,7 @@ def all_outputs(ex: Exact, slot: int) -> None:
         for i in range(n_s):
             value = ex.xf[o, i]
             for c in range(n_in):
-                if ex.linked[o, c] != 0.0 and c < ex.unknown[0]:
+                if ex.linked[o, c] != 0.0 and c < ex.unknown:
                     for x in range(n_s):
                         value += ex.tk[slot, n_in * o + c, i, x] * ex.P[c, x]
             ex.x[o, i] = value
@@ -174,7 +174,7 @@ def end_blocks(ex: Exact, slot: int, h: float) -> None:
     """Gains of block states over the step, then of positions and velocities, into ``end``."""
     n_s = ex.xf.shape[1]
     last = n_s - 1
-    modal = ex.modal[0] == 1
+    modal = ex.modal == 1
     for j in range(ex.w2.shape[1]):
         du = ex.v0[j] * h + ex.a0[j] * ex.IS[slot, j, last] + ex.k0[j] * ex.IIS[slot, j, last]
         dv = ex.a0[j] * ex.S[slot, j, last] + ex.k0[j] * ex.IS[slot, j, last]

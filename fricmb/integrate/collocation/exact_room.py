@@ -110,11 +110,11 @@ def _exact(problem: Problem, s: int) -> Exact:
     wide = s * problem.m
     # with nonlinear elements or normal forces the equations of contacts change from one iteration to the next
     held = 0 if nv or nf else int(np.clip(HELD_NUMBERS // (3 * wide * wide + 1), 0, 256))
-    whole = {"modal": part.modal and not c[0].any(), "ledger": has_ledger(problem), "unknown": forms.unknown}
-    numbers = {"safety": 1.0, "stiff_at": Z_EXACT[s] * 1.0001, "cap": np.inf, "fastest": fastest, "length": 0.0}
+    numbers: dict[str, Any] = {
+        "modal": part.modal and not c[0].any(), "ledger": has_ledger(problem), "unknown": forms.unknown, "held_next": 0,
+        "safety": 1.0, "stiff_at": Z_EXACT[s] * 1.0001, "cap": np.inf, "fastest": fastest, "length": 0.0,
+    }  # fmt: skip
     made: dict[str, Any] = {
-        **{name: np.array([value], np.int64) for name, value in whole.items()},
-        **{name: np.array([value]) for name, value in numbers.items()},
         "w2": part.w2[None], "damp": part.d[None], "c0": c[0], "c1": c[1], "b0": by[0], "b1": by[1],
         "linked": linked.astype(float), "q_u": part.q_u, "q_v": part.q_v, "v_u": part.v_u, "v_v": part.v_v,
         "force_0": part.force_0, "force_1": part.force_1, "start_0": part.force_0 @ problem.linear.M,
@@ -127,15 +127,16 @@ def _exact(problem: Problem, s: int) -> Exact:
         "now": np.zeros(n_in), "weight": np.zeros(n_in), "low": np.zeros((2, n + 1)), "end": np.zeros((2, n)),
         "node": np.zeros((2, s, n)), "f": np.zeros(n),
         "held": np.zeros((held, 3, wide, wide)), "held_for": np.zeros((held, 2), np.int64),
-        "held_next": np.zeros(1, np.int64), "rows": np.zeros(wide, np.int64),
+        "rows": np.zeros(wide, np.int64),
         "J": np.zeros((s, nf, xs)), "JN": np.zeros((s, nv, ys)), "fe": np.zeros((s, nf)),
         "A": np.zeros(inner * inner), "R": np.zeros((s * (problem.m + nv) + 1, inner)),
         "pivots": np.zeros(max(1, inner), np.int32),
     }  # fmt: skip
-    return room(Exact(tab=table.tab, **{
+    arrays: dict[str, Any] = {
         name: np.ascontiguousarray(value, dtype=None if value.dtype.kind == "i" else float)
         for name, value in made.items()
-    }))  # fmt: skip
+    }
+    return room(Exact(tab=table.tab, **numbers, **arrays))
 
 
 @contextmanager
@@ -149,9 +150,9 @@ def exact_lent(problem: Problem, s: int, safety: float, exact_up_to: float | Non
         found = free.pop()  # of several threads one gets it
     except IndexError:
         found = _exact(problem, s)
-    found.safety[0] = safety
-    found.stiff_at[0] = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
-    found.cap[0] = np.inf
+    found.safety = safety
+    found.stiff_at = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
+    found.cap = np.inf
     found.low[:] = 0.0
     yield found
     free.append(found)

@@ -107,22 +107,22 @@ def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
 def stiff_error(y: State, one: OneStep, acc: Accuracy, h: float, tol: float) -> float:
     """Error of blocks that take Radau's answer; sets the longest step at which blocks that ring stay exact."""
     ex = one.exact
-    ex.cap[0] = np.inf
-    if 5.0 * h * ex.fastest[0] <= ex.stiff_at[0]:
+    ex.cap = np.inf
+    if 5.0 * h * ex.fastest <= ex.stiff_at:
         return 0.0
     n_s = ex.P.shape[1]
     worst = 0.0
     gain = np.empty((2, n_s + 1))
     for j in range(ex.w2.shape[1]):
         rate = max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j]))
-        if 5.0 * h * rate <= ex.stiff_at[0]:
+        if 5.0 * h * rate <= ex.stiff_at:
             continue
         seen = visible(y, one, acc, j, h)
         swing = 0.0
         for i in range(y.a.shape[0]):
             swing += ex.start_1[j, i] * y.a[i]
-        if abs(swing) / rate * seen > 0.1 * tol and ex.stiff_at[0] > 0.0:
-            ex.cap[0] = min(ex.cap[0], ex.stiff_at[0] / rate)
+        if abs(swing) / rate * seen > 0.1 * tol and ex.stiff_at > 0.0:
+            ex.cap = min(ex.cap, ex.stiff_at / rate)
         if is_stiff(ex, j, h):
             stiff_nodes(ex, ex.P, j, h, gain)
             tail = 0.0
@@ -137,12 +137,12 @@ def exact_error(
     packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
 ) -> float:
     """Error of the step just solved in units of the tolerance (stands in for :func:`step_error`)."""
-    tol = one.exact.safety[0] * acc.rtol[0]
+    tol = one.exact.safety * acc.rtol
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
     off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
-    error = max(error, off / acc.rtol[0], too_long(growth(packed, s, y, one, h), one.tab.c.shape[0]))
+    error = max(error, off / acc.rtol, too_long(growth(packed, s, y, one, h), one.tab.c.shape[0]))
     end = one.exact.end
-    error = max(error, jump_error(packed, s, y, y.t[0] + h, y.q + end[0], y.v + end[1], acc, h))
+    error = max(error, jump_error(packed, s, y, y.t + h, y.q + end[0], y.v + end[1], acc, h))
     return float(max(error, search_error(packed, y, one, acc, h)))
 
 
@@ -155,7 +155,7 @@ def exact_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accura
     for i in range(n):
         y.q[i], ex.low[1, i] = two_sum(y.q[i], ex.low[0, i], ex.end[0, i])
         y.v[i] += ex.end[1, i]
-    y.t[0], ex.low[1, n] = two_sum(y.t[0], ex.low[0, n], h)
+    y.t, ex.low[1, n] = two_sum(y.t, ex.low[0, n], h)
     for a in range(y.z.shape[0]):
         y.z[a] = w.z[last, a]
     for a in range(y.n.shape[0]):
@@ -191,8 +191,8 @@ def exact_record(
     n_s = w.F.shape[0]
     n = y.q.shape[0]
     width = y.rate.shape[0]
-    h = ex.length[0]
-    span = (end.t[0] - y.t[0]) + (ex.low[1, n] - ex.low[0, n])
+    h = ex.length
+    span = (end.t - y.t) + (ex.low[1, n] - ex.low[0, n])
     scales_of_step(packed, y, end, one, acc)
     row = out.values[out.used[0]]
     at = 1 + 3 * n + 2 * y.z.shape[0] + y.F.shape[0] + y.mode.shape[0] + 2 * width

@@ -30,7 +30,7 @@ def pattern_of(packed: Packed, mode: Codes) -> int:
     """Which contacts stick, by bits; 0 where none does, or where friction is not constant or loads are shared."""
     ports = packed.ports
     pattern = 0
-    if ports.soft[0] > 0.0 or mode.shape[0] > 60:
+    if ports.soft > 0.0 or mode.shape[0] > 60:
         return 0
     for k in range(mode.shape[0]):
         if ports.law[k] != LAW_CONSTANT or ports.var[k] >= 0:
@@ -102,8 +102,8 @@ def place_of(packed: Packed, one: OneStep, mode: Codes, pattern: int, h: float, 
     if count == 0:
         return -1
     if place == count:
-        place = ex.held_next[0] % count
-        ex.held_next[0] += 1
+        place = ex.held_next % count
+        ex.held_next += 1
         ex.held_for[place, PATTERN] = 0
         stuck = list_rows(packed, mode, one.w.F.shape[0], ex.rows)
         if not eliminate_stuck(ex, one.w, place, stuck, address):

@@ -150,22 +150,23 @@ def nodes_for(rtol: float) -> int:
 
 def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
     run.pos_low[:] = 0.0
-    run.g[:] = run.n[:] = run.time_low[:] = run.loss[:] = 0.0
+    run.g[:] = run.n[:] = 0.0
+    run.time_low = run.loss = 0.0
     run.used[:] = run.counts[:] = 0
     run.pos[:], run.vel[:], run.scale[:] = start.q, start.v, np.abs(start.v)
     if tolerance.atol_v is not None:
         np.maximum(run.scale, tolerance.atol_v / tolerance.rtol, out=run.scale)
-    run.time[0], run.next_step[0], run.first_step[0] = start.t, run.ladder[8], run.ladder[8]
+    run.time, run.next_step, run.first_step = start.t, run.ladder[8], run.ladder[8]
     w = run.belt
     g = run.wt @ start.v - w
     speed = float(np.linalg.norm(g))
-    run.mode[0] = UNSETTLED
+    run.mode = UNSETTLED
     if start.mode is not None and start.mode[0] == STICK:
-        run.mode[0] = STICK
+        run.mode = STICK
     elif speed > 1e-15 * (np.abs(run.wt) @ np.abs(start.v) + np.abs(w)).max(initial=0.0):
-        run.mode[0], run.g[:], run.n[:] = SLIP, g, g / speed
+        run.mode, run.g[:], run.n[:] = SLIP, g, g / speed
     elif start.mode is not None and start.mode[0] == SLIP and start.direction is not None:
-        run.mode[0], run.n[:] = SLIP, start.direction
+        run.mode, run.n[:] = SLIP, start.direction
 
 
 def _run_single(
@@ -186,7 +187,7 @@ def _run_in(
     _set_state(run, start, tolerance)
     pause = (t_end - start.t) / 100.0 if progress is not None else np.inf
     while True:
-        code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.time[0] + pause)
+        code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.time + pause)
         if code == FULL and ended() is None:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
             longer = lengthened(rows) if may_grow(rows, memory) else None
@@ -194,7 +195,7 @@ def _run_in(
                 break
             run = held[0] = with_rows(run, longer)
         elif code == PAUSE and progress is not None and ended() is None:
-            progress(float(run.time[0]))
+            progress(float(run.time))
         else:
             break
     n_rows, phases, n_events = (int(i) for i in run.used)
@@ -205,8 +206,8 @@ def _run_in(
         t=rows.events[:, 0].copy(), contact=np.zeros(n_events, dtype=np.int64), kind=rows.events[:, 1].astype(np.int64)
     )
     end = Start(
-        t=float(run.time[0] + run.time_low[0]), q=run.pos + run.pos_low, v=run.vel.copy(), z=np.zeros(0),
-        mode=run.mode.astype(np.int8), direction=run.n.copy(),
+        t=float(run.time + run.time_low), q=run.pos + run.pos_low, v=run.vel.copy(), z=np.zeros(0),
+        mode=np.array([run.mode], np.int8), direction=run.n.copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or _FAILURES.get(code)
     return SingleRun(problem, s, rows, transitions, counters(run.counts), end, failure)

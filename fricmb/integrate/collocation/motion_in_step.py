@@ -16,7 +16,7 @@ from fricmb.integrate.step.exact_structure import Exact
 @kernel
 def is_stiff(ex: Exact, j: int, h: float) -> bool:
     """Whether block j takes Radau's own answer in a step h."""
-    return bool(max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j])) * h > ex.stiff_at[0])
+    return bool(max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j])) * h > ex.stiff_at)
 
 
 @kernel
@@ -67,7 +67,7 @@ def input_series(ex: Exact, P: Floats2, h: float, series: Floats2, gain: Floats2
                     series[place * b + j, r] = value
             continue
         for place in range(2):
-            if place == 0 and ex.modal[0] == 1:
+            if place == 0 and ex.modal == 1:
                 for r in range(n_s):
                     series[j, r] = 0.0
                 continue
@@ -102,7 +102,7 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, terms: 
 @kernel
 def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: Floats) -> None:
     """Gains of positions and velocities at tau after the start of the step, after :func:`input_series`."""
-    modal = ex.modal[0] == 1
+    modal = ex.modal == 1
     terms = np.empty((2, MOST + 1))
     for i in range(dq.shape[0]):
         dq[i] = 0.0
@@ -149,7 +149,7 @@ def gains_at_nodes(ex: Exact, h: float, span: float, series: Floats2, dq: Floats
     :func:`gains_at` at all nodes side by side.
     """
     n_s = series.shape[1] - 1
-    modal = ex.modal[0] == 1
+    modal = ex.modal == 1
     terms, gain = np.empty((2, MOST + 1)), np.empty((2, n_s))
     dq[:, :] = 0.0
     dv[:, :] = 0.0

@@ -219,7 +219,7 @@ def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     mi = w.Fin.shape[1]
     n_s = w.F.shape[0]
     first_normal = m + ex.J.shape[2]
-    enough = 0.01 * ex.safety[0] * acc.rtol[0]
+    enough = 0.01 * ex.safety * acc.rtol
     JR = np.zeros((1 + n_s * mi, ex.J.shape[1], n_s))
     first_inputs(packed, s, y, one)
     last = np.inf

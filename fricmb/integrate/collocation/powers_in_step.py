@@ -33,7 +33,7 @@ def powers_on_motion(
         for i in range(n):
             ex.node[0, j, i] += y.q[i]
             ex.node[1, j, i] += y.v[i]
-        set_instant(packed.signals, s, y.t[0] + tau, ex.node[0, j], ex.node[1, j])
+        set_instant(packed.signals, s, y.t + tau, ex.node[0, j], ex.node[1, j])
         if whole:
             powers(packed, s, w.F[j], w.N[j], w.g[j], power[j])
             continue
@@ -53,7 +53,7 @@ def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, ro
     """Powers at the nodes into a row, node by node."""
     w = one.w
     width = y.rate.shape[0]
-    if one.exact.ledger[0] == 1:
+    if one.exact.ledger == 1:
         powers_on_motion(packed, s, y, one, h, h, True, one.power)
     else:
         one.power[:, :] = 0.0

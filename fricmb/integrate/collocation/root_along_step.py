@@ -65,7 +65,7 @@ def move_to(
         gain[1, i] = ex.end[1, i] + (gain[1, i] - gain[3, i])
         end.q[i], ex.low[1, i] = two_sum(y.q[i], ex.low[0, i], gain[0, i])
         end.v[i] += gain[1, i]
-    end.t[0], ex.low[1, n] = two_sum(y.t[0], ex.low[0, n], tau)
+    end.t, ex.low[1, n] = two_sum(y.t, ex.low[0, n], tau)
     for a in range(y.z.shape[0]):
         for j in range(w.z.shape[0]):
             one.margin[j] = w.z[j, a]
@@ -74,7 +74,7 @@ def move_to(
     for a in range(m):
         end.n[a] = between_nodes(ex.monomial, w.n[:, a], tau / h)
     unit_directions(packed, end)
-    set_time(packed.signals, s, y.t[0], n)
+    set_time(packed.signals, s, y.t, n)
     for a in range(m):
         gain[0, n + a] = belt_velocity(ports, s, n, a)
     done = complete(packed, s, end, w.sizes, w.pivots, address)
@@ -122,7 +122,7 @@ def may_stay(
     ex = one.exact
     beyond = abs(tau - h) / h
     error = input_error(one) + state_error(packed, y, one, acc, h)
-    error += stiff_error(y, one, acc, h, ex.safety[0] * acc.rtol[0])
+    error += stiff_error(y, one, acc, h, ex.safety * acc.rtol)
     off = 0.0
     for a in range(y.F.shape[0]):
         off = max(off, ex.weight[a] * abs(end.F[a] - between_nodes(ex.monomial, one.w.F[:, a], tau / h)))
@@ -131,7 +131,7 @@ def may_stay(
     for c in range(ex.P.shape[0]):
         for x in range(last):
             noise = max(noise, ex.weight[c] * abs(ex.P[c, x] - ex.P[c, last]))
-    allowed = ROUND_OFF + (PART * acc.rtol[0] if exact_as_its_tolerance(packed, y, k) else 0.0)
+    allowed = ROUND_OFF + (PART * acc.rtol if exact_as_its_tolerance(packed, y, k) else 0.0)
     return bool(min(1.0, GROWTH * beyond) * error + beyond * (off + GRAIN * noise) <= allowed)
 
 
@@ -147,7 +147,7 @@ def exact_root(
     gain = np.empty((4, n + y.g.shape[0]))
     input_series(ex, ex.P, h, series, np.empty((2, n_s + 1)))
     gains_at(ex, h, h, series, gain[2, :n], gain[3, :n])
-    t_unit = EPS * max(abs(y.t[0]), h)
+    t_unit = EPS * max(abs(y.t), h)
     first = guess
     if not move_to(packed, s, y, end, one, h, first, series, gain, address):
         return np.nan

@@ -120,7 +120,7 @@ def sample_exact(
             if k != opened:
                 open_step(packed, s, y, ex, left, right, at, P, series, gain)
             inside_step(y, ex, left, right, at, tau, P, series, dq, dv)
-            y.t[0] = t[j]
+            y.t = t[j]
             point_against_forces(packed, y)
             point_along_slip(packed, s, y)
             complete(packed, s, y, sizes, pivots, address)

@@ -1,30 +1,47 @@
-"""Rooms with other arrays in some places, without a look at all the others."""
+"""Rooms with other arrays or numbers in some places, without a look at all the others; their numbers, all at once."""
 
 from __future__ import annotations
 
 from typing import Any, TypeVar, cast
 
+import numpy as np
+
 from fricmb.integrate.compile.room import Room, address_of
 
+Words = np.ndarray[Any, np.dtype[np.int64]]
 _Tuple = TypeVar("_Tuple")
 _WORD = 8
 
 
 def with_arrays(values: _Tuple, **new: Any) -> _Tuple:
-    """A room with other arrays of the same type in some places; the old one stays as it is."""
+    """A room with other arrays of the same type, or other numbers, in some places; the old one stays as it is."""
     old = cast(Room, values)
-    made = object.__new__(Room)
-    made._show(old._tuple._replace(**new))
-    made.room_type, made._rooms = old.room_type, old._rooms
-    made._memory = old._memory.copy()
+    made = object.__new__(type(old))
+    made.__dict__.update(old.__dict__ | new)
+    made._own = []
+    made._keep(old._memory.copy())
     words, kind = made._memory.data, old.room_type
-    for name, array in new.items():
-        if (array.dtype, array.ndim) != kind.takes[name] or not array.flags.c_contiguous:
-            raise TypeError(f"{name} is {array.dtype} with {array.ndim} axes; expected {kind.of[name]}")
+    for name, value in new.items():
+        if name in kind.numbers:
+            setattr(made, name, value)
+            continue
+        if (value.dtype, value.ndim) != kind.takes[name] or not value.flags.c_contiguous:
+            raise TypeError(f"{name} is {value.dtype} with {value.ndim} axes; expected {kind.of[name]}")
         place = kind.at[name] // _WORD
-        words[place] = address_of(array)
-        for size in array.shape:
+        words[place] = address_of(value)
+        for size in value.shape:
             place += 1
             words[place] = size
-    made.address = address_of(made._memory)
     return cast(_Tuple, made)
+
+
+def numbers_of(values: Any) -> Words:
+    """A copy of the numbers of a room, as it holds them."""
+    held = cast(Room, values)
+    return cast(Words, held._memory[held.room_type.words])
+
+
+def put_numbers(values: Any, numbers: Words) -> None:
+    """Give a room the numbers of another one of its type, or those that it had."""
+    held = cast(Room, values)
+    held._memory[held.room_type.words] = numbers

@@ -2,7 +2,14 @@
 
 Numba passes a named tuple by value, array by array, seven words each; a program of some sixty arrays takes minutes to
 compile so.  A *room* puts the descriptors of the arrays of a (nested) named tuple into memory once, and kernels get its
-address.
+address.  Single numbers stand in that memory themselves: kernels, and Python, read and write them by name.
+
+    class Clock(Layout):
+        h: float
+        stops: Floats
+
+    clock = room(Clock(h=0.1, stops=np.zeros(3)))
+    clock.h *= 2.0              in a kernel or outside
 """
 
 from __future__ import annotations
@@ -11,7 +18,7 @@ import hashlib
 import sys
 from ctypes import addressof, c_char
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast, dataclass_transform
 
 import numpy as np
 from llvmlite import ir
@@ -22,6 +29,7 @@ from numba.extending import (
     NativeValue,
     infer_getattr,
     lower_getattr_generic,
+    lower_setattr_generic,
     models,
     register_model,
     typeof_impl,
@@ -32,7 +40,29 @@ _Tuple = TypeVar("_Tuple")
 _WORD = 8
 _Nothing = c_char * 0
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Self
+
+    @dataclass_transform()
+    class Layout:
+        """What is in a room, by annotations: ``float`` and ``int`` numbers, arrays (Floats2: two axes), other layouts.
+
+        A named tuple, but for those who check types: numbers of a room may be written to.
+        """
+
+        _fields: tuple[str, ...]
+
+        @classmethod
+        def _make(cls, values: Any) -> Self: ...
+        def _replace(self, **new: Any) -> Self: ...
+        def _asdict(self) -> dict[str, Any]: ...
+        def __iter__(self) -> Iterator[Any]: ...
+else:
+    Layout = NamedTuple
+
 _SCALARS = {"int": types.int64, "float": types.float64, "bool": types.boolean, "None": types.void}
+_NUMBERS = {"int": types.int64, "float": types.float64}
 _DTYPES = {"Floats": types.float64, "Complexes": types.complex128, "Ints": types.int64, "Codes": types.int8}
 
 
@@ -47,18 +77,23 @@ def array_type(name: str) -> Any:
 
 
 class RoomType(types.Type):
-    """Numba's type of a room: names with the types of their arrays (or of rooms in it), and where each begins."""
+    """Numba's type of a room: names with the types of arrays, numbers and rooms in it, and where each begins."""
 
     def __init__(self, title: str, fields: tuple[tuple[str, Any], ...]) -> None:
         self.at: dict[str, int] = {}
         self.of: dict[str, Any] = dict(fields)
-        #: What each field takes: dtype and number of axes of an array, None for a room.
+        #: What each field takes: dtype and number of axes of an array (0: a number), None for a room.
         self.takes: dict[str, tuple[Any, int] | None] = {}
         words = 0
         for name, kind in fields:
-            self.takes[name] = None if isinstance(kind, RoomType) else (np.dtype(str(kind.dtype)), kind.ndim)
+            axes = getattr(kind, "ndim", 0)
+            dtype = np.dtype(str(getattr(kind, "dtype", kind))) if not isinstance(kind, RoomType) else None
+            self.takes[name] = None if dtype is None else (dtype, axes)
             self.at[name] = words * _WORD
-            words += 1 if isinstance(kind, RoomType) else 1 + kind.ndim
+            words += 1 + axes
+        #: Numbers among the fields, and in which words they stand.
+        self.numbers = tuple(name for name, kind in fields if isinstance(kind, types.Number))
+        self.words = np.array([self.at[name] // _WORD for name in self.numbers], dtype=np.int64)
         inside = ", ".join(f"{name}: {kind}" for name, kind in fields)
         # its name is part of the name of every kernel that takes it, in every call: a digest is short
         super().__init__(name=f"room {title} {hashlib.sha256(inside.encode()).hexdigest()[:12]}")
@@ -68,7 +103,10 @@ class RoomType(types.Type):
 def room_type(kind: Any) -> RoomType:
     """The type of a room made from the named tuple ``kind``, read from its annotations (Floats2: two axes)."""
     around = vars(sys.modules[kind.__module__])
-    fields = [(name, array_type(note) or _inner(around[note])) for name, note in annotations_of(kind).items()]
+    fields = [
+        (name, _NUMBERS.get(note) or array_type(note) or _inner(around[note]))
+        for name, note in annotations_of(kind).items()
+    ]
     return RoomType(kind.__name__, tuple(fields))
 
 
@@ -103,41 +141,72 @@ def address_of(array: Any) -> int:
 
 
 class Room:
-    """Keeps a named tuple alive beside the descriptors of its arrays."""
+    """Keeps a named tuple alive beside the descriptors of its arrays, and holds its numbers."""
 
     def __init__(self, values: Any) -> None:
-        self._show(values)
-        self.address: int
+        # numbers are found in the room all the same: properties of a class come before what an object holds
+        self.__dict__.update(zip(values._fields, values, strict=True))
+        self._address: int
         self.room_type: RoomType = _inner(type(values))
         words: list[int] = []
-        self._rooms = []
+        self._own: list[Room] = []
         for (name, wanted), value in zip(self.room_type.takes.items(), values, strict=True):
             if wanted is None:
-                inner = value if isinstance(value, Room) else Room(value)
-                self._rooms.append(inner)
-                words.append(inner.address)
-                continue
-            if value.dtype != wanted[0] or value.ndim != wanted[1] or not value.flags.c_contiguous:
+                inner = value if isinstance(value, Room) else room(value)
+                if inner is not value:
+                    self._own.append(inner)
+                    self.__dict__[name] = inner
+                words.append(inner._address)
+            elif wanted[1] == 0:
+                words.append(0)
+            elif value.dtype != wanted[0] or value.ndim != wanted[1] or not value.flags.c_contiguous:
                 expected = self.room_type.of[name]
                 raise TypeError(f"{name} is {value.dtype} with {value.ndim} axes; expected {expected}")
-            words.append(address_of(value))
-            words.extend(value.shape)
-        self._memory = np.array(words, dtype=np.int64)
-        self.address = address_of(self._memory)
+            else:
+                words.append(address_of(value))
+                words.extend(value.shape)
+        self._keep(np.array(words, dtype=np.int64))
+        for name in self.room_type.numbers:
+            setattr(self, name, getattr(values, name))
 
-    def _show(self, values: Any) -> None:
-        """Let attributes be what the tuple holds; to be called first, since names of our own come before its names."""
-        self.__dict__.update(zip(values._fields, values, strict=True))
-        self._tuple = values
+    def _keep(self, memory: Any) -> None:
+        """Be what stands in a memory of words."""
+        self._memory = memory
+        self._views = {"int64": memory, "float64": memory.view(np.float64)}
+        self._address = address_of(memory)
+
+    def memories(self) -> list[Any]:
+        """Words of this room that hold numbers, and of rooms made with it; others in it belong to somebody else."""
+        inner = [memory for held in self._own for memory in held.memories()]
+        return [self._memory, *inner] if self.room_type.numbers else inner
 
     if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any: ...
 
 
+@lru_cache(maxsize=64)
+def _room_class(kind: Any) -> type[Room]:
+    """Rooms of a named tuple, whose numbers are attributes that stand in the memory of the room."""
+    made = room_type(kind)
+    return type(f"{kind.__name__}Room", (Room,), {name: _number(made, name) for name in made.numbers})
+
+
+def _number(kind: RoomType, name: str) -> property:
+    word, held = kind.at[name] // _WORD, str(kind.of[name])
+
+    def read(self: Room) -> Any:
+        return self._views[held][word].item()
+
+    def write(self: Room, value: float) -> None:
+        self._views[held][word] = value
+
+    return property(read, write)
+
+
 def room(values: _Tuple) -> _Tuple:
     """The named tuple as a room; to a kernel and to a reader of attributes it looks the same."""
-    return cast(_Tuple, Room(values))
+    return cast(_Tuple, _room_class(cast(Any, type(values)))(values))
 
 
 @typeof_impl.register(Room)
@@ -152,7 +221,7 @@ class _RoomModel(models.OpaqueModel):
 
 @unbox(RoomType)
 def _unbox_room(kind: RoomType, value: Any, c: Any) -> Any:
-    address = c.pyapi.object_getattr_string(value, "address")
+    address = c.pyapi.object_getattr_string(value, "_address")
     number = c.pyapi.long_as_longlong(address)
     c.pyapi.decref(address)
     failed = cgutils.is_not_null(c.builder, c.pyapi.err_occurred())
@@ -167,11 +236,14 @@ class _RoomAttributes(AttributeTemplate):
         return kind.of.get(name)
 
 
+def _place(builder: Any, room: Any, at: int, kind: Any) -> Any:
+    """Pointer to what begins at the byte ``at`` of a room."""
+    return builder.bitcast(builder.gep(room, [ir.IntType(64)(at)]), kind.as_pointer())
+
+
 def load_word(builder: Any, room: Any, at: int, i: int) -> Any:
-    """A word of a room, counted from the byte ``at``."""
-    word = ir.IntType(64)
-    start = builder.bitcast(builder.gep(room, [word(at + i * _WORD)]), word.as_pointer())
-    loaded = builder.load(start)
+    """A word of a descriptor in a room, counted from the byte ``at``."""
+    loaded = builder.load(_place(builder, room, at + i * _WORD, ir.IntType(64)))
     # descriptors never change while a kernel runs: loads may leave the loops
     loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
     return loaded
@@ -187,6 +259,8 @@ def _room_attribute(context: Any, builder: Any, kind: RoomType, value: Any, name
     field = kind.of[name]
     if isinstance(field, RoomType):
         return builder.inttoptr(load(0), cgutils.voidptr_t)
+    if isinstance(field, types.Number):
+        return builder.load(_place(builder, value, kind.at[name], context.get_value_type(field)))
     array = context.make_array(field)(context, builder)
     size = context.get_abi_sizeof(context.get_data_type(field.dtype))
     shape = [load(1 + i) for i in range(field.ndim)]
@@ -206,3 +280,13 @@ def _room_attribute(context: Any, builder: Any, kind: RoomType, value: Any, name
     array.shape = cgutils.pack_array(builder, shape, ty=word)
     array.strides = cgutils.pack_array(builder, strides, ty=word)
     return array._getvalue()
+
+
+@lower_setattr_generic(RoomType)
+def _set_room_number(context: Any, builder: Any, signature: Any, values: Any, name: str) -> None:
+    """Write to a number of a room; its arrays and rooms stay what they are."""
+    kind = signature.args[0]
+    field = kind.of[name]
+    if not isinstance(field, types.Number):
+        raise TypeError(f"{name} of a {kind} is no number: kernels write to its items, not to it")
+    builder.store(values[1], _place(builder, values[0], kind.at[name], context.get_value_type(field)))

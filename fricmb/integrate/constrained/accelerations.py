@@ -181,7 +181,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
     ``factored``: the matrix of practically this instant is there (it serves where there is no friction).
     """
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     last = np.inf
     # where everything comes to rest, round-off is that of what has been
     size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[1])

@@ -55,7 +55,7 @@ def arrive(
     stop: float,
 ) -> int:  # fmt: skip
     """At a breakpoint, or at the end of the span: modes are decided anew."""
-    y.t[0] = stop
+    y.t = stop
     if stop >= c.span[1]:
         return DONE
     code = change_modes(mech, k, w, y, before, c, out, rec, part, -1, mech.address)
@@ -68,7 +68,7 @@ def arrive(
 def reject(c: Control, h: float) -> int:
     """Leave the state where it is; the next step is h."""
     c.counts[1] += 1
-    c.h[0] = h
+    c.h = h
     return REJECTED
 
 
@@ -79,9 +79,9 @@ def radau_step(
 ) -> int:  # fmt: skip
     """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
     s = st.tab.c.shape[0]
-    t = y.t[0]
+    t = y.t
     left = stop - t
-    h = min(c.h[0], c.longest[0])
+    h = min(c.h, c.longest)
     if h >= left:
         h = left
     elif h > 0.5 * left:
@@ -89,7 +89,7 @@ def radau_step(
     if h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t):
         margins(mech, k, w, y, out, False, mech.address)
         return FAIL_STEP
-    c.made[0] = 0.0
+    c.made = 0.0
     made = try_step(mech, k, y, st, c, h, mech.address)
     if nears_singular(out, h) and (not made or dips(mech, k, w, y, end, st, out, h)):
         reached = step_to_singular(mech, k, w, y, end, st, c, out, h)
@@ -99,13 +99,13 @@ def radau_step(
             near_singular(mech, k, w, y, out, reached)
             return FAIL_SINGULAR
         out.sigma[3] = 0.0
-        c.made[0] = 0.0
+        c.made = 0.0
         made = try_step(mech, k, y, st, c, h, mech.address)
     if not made:
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
-        c.h[1] = 0.0
+        c.last_h = 0.0
         return reject(c, 0.4 * h)
-    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol[0])
+    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol)
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
         return reject(c, 0.4 * h)
@@ -125,22 +125,22 @@ def radau_step(
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
-            return reject(c, 0.3 * c.h[0])
+            return reject(c, 0.3 * c.h)
     record_step(mech, rec, y, end, st, c, h, mech.address)
     if h == left:
-        end.t[0] = stop
+        end.t = stop
     remember(c, y, st, h)
     c.counts[0] += 1
     copy_state(end, y, mech.address)
     grow(c, out, k, y)
     if worst < 0 and (h < left or factor < 1.0):
-        c.h[0] = h * min(3.0, max(0.3, factor))
+        c.h = h * min(3.0, max(0.3, factor))
     if near_singular(mech, k, w, y, out, h):
         return FAIL_SINGULAR
     if worst >= 2 * y.mode.shape[0] + mech.joint.port.shape[0]:
         # a load that has a kink: nothing changes but the polynomials
-        c.h[1] = 0.0
-        c.made[0] = 0.0
+        c.last_h = 0.0
+        c.made = 0.0
         return ACCEPTED
     if worst >= 0:
         rec.after[rec.used[0] - 1] = 1

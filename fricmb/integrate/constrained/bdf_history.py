@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.constrained.state import State, state_of
@@ -17,18 +15,18 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 
 
-class Formula(NamedTuple):
+class Formula(Layout):
     """What a BDF step of a mechanism needs beside the differences of y = [q, v, z, powers, lam, F, N, g].
 
-    ``base`` holds psi: the step is one stage of length h/gamma from there, ``one``; ``made`` (1,) step of the factors,
-    0: none that serve.  ``usual`` (1,) what the one-step method steps; ``origin``, ``reach`` (n,) where the run began
+    ``base`` holds psi: the step is one stage of length h/gamma from there, ``one``; ``made`` step of the factors,
+    0: none that serve.  ``usual`` what the one-step method steps; ``origin``, ``reach`` (n,) where the run began
     and the largest distance from there.
     """
 
     base: State
     one: Stages
-    made: Floats
-    usual: Floats
+    made: float
+    usual: float
     origin: Floats
     reach: Floats
 
@@ -38,12 +36,12 @@ def formula_of(problem: Problem, start: Start) -> Formula:
     base, one = room(state_of(problem)), room(stages_of(problem, one_stage()))
     set_out(base, start)
     q = np.array(start.q, float)
-    return room(Formula(base, one, np.zeros(1), np.zeros(1), q, np.zeros_like(q)))
+    return room(Formula(base, one, 0.0, 0.0, q, np.zeros_like(q)))
 
 
 def no_formula(base: State, one: Stages) -> Formula:
     """Of a run in which no step is one of BDF; ``base``, ``one``: any state and stages."""
-    return room(Formula(base, one, np.zeros(1), np.zeros(1), np.zeros(0), np.zeros(0)))
+    return room(Formula(base, one, 0.0, 0.0, np.zeros(0), np.zeros(0)))
 
 
 def signals(problem: Problem) -> int:
@@ -78,4 +76,4 @@ def start_past(y: State, past: Differences, formula: Formula, h: float) -> None:
     for i in range(y.z.shape[0]):
         past.D[1, 2 * n + i] = h * y.zd[i]
     begin_at(past, 1, h)
-    formula.made[0] = 0.0
+    formula.made = 0.0

@@ -28,11 +28,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import (
-    EQUAL,
     GROWTH,
-    ORDER,
-    REJECTIONS,
-    SINCE,
     Differences,
     best_order,
     bring_forward,
@@ -67,15 +63,15 @@ def take(values: Floats, y: State, rate: Floats) -> None:
 @kernel
 def share_of(c: Control, past: Differences) -> float:
     """What of the error this step may make: in proportion to its length, but for the few short steps of a start."""
-    return float(max(c.rtol[0] * min(1.0, max(past.h[0] * past.unit[0], 0.01)), 4e-15))
+    return float(max(c.rtol * min(1.0, max(past.h * past.unit, 0.01)), 4e-15))
 
 
 @kernel
 def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past: Differences, formula: Formula) -> bool:
     """Solve the step's equations from the prediction; ``end`` serves as the point of the Jacobian."""
     one, base = formula.one, formula.base
-    h = past.h[0]
-    beta_h = h / past.gamma[past.status[ORDER]]
+    h = past.h
+    beta_h = h / past.gamma[past.order]
     n = y.q.shape[0]
     copy_state(y, base, mech.address)
     for i in range(n):
@@ -84,31 +80,31 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         one.V[0, i] = past.guess[n + i]
     for i in range(y.z.shape[0]):
         base.z[i] = past.new[2 * n + i]
-    base.t[0] = y.t[0] + h - beta_h
+    base.t = y.t + h - beta_h
     measure(c, y, h, one.scale)
     accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
         copy_state(y, end, mech.address)
         take(past.guess, end, end.rate)
-        fresh = formula.made[0] != beta_h
+        fresh = formula.made != beta_h
         if fresh:
-            end.t[0] = y.t[0] + h
+            end.t = y.t + h
             k.form[:] = 0
             linearise(mech, k, end, one, mech.address)
             c.counts[3] += 1
             c.counts[4] += 1
             if not factor_stages(mech, one, beta_h, mech.address):
-                formula.made[0] = 0.0
+                formula.made = 0.0
                 return False
-            formula.made[0] = beta_h
+            formula.made = beta_h
         for part, target in ((end.v, one.V), (end.lam, one.lam), (end.F, one.F), (end.z, one.Z)):
             for i in range(part.shape[0]):
                 target[0, i] = part[i]
         keep_held(mech, y.mode, y.F, one.F[0])
         used = iterate_stages(mech, k, base, one, beta_h, accuracy, mech.address)
         c.counts[2] += max(used, 1)
-        if used == 0 or one.found[0] > SLOW:
-            formula.made[0] = 0.0
+        if used == 0 or one.found > SLOW:
+            formula.made = 0.0
         if used > 0:
             state_noise(mech, k, y, one, c, h, NEWTON)
             return True
@@ -127,7 +123,7 @@ def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Flo
     worst = 0.0
     share = share_of(c, past)
     for i in range(n):
-        size = max(formula.reach[i], abs(past.new[i] - formula.origin[i]), past.h[0] * formula.one.scale[i], 1e-290)
+        size = max(formula.reach[i], abs(past.new[i] - formula.origin[i]), past.h * formula.one.scale[i], 1e-290)
         worst = max(worst, abs(error[n + i]) / formula.one.scale[i], abs(error[i]) / size)
     for i in range(y.z.shape[0]):
         worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), c.noise_z[i], 1e-290))
@@ -147,8 +143,8 @@ def update(past: Differences, formula: Formula) -> None:
 @kernel
 def select_order(y: State, c: Control, past: Differences, formula: Formula, error: float) -> None:
     """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder."""
-    k = past.status[ORDER]
-    if past.status[EQUAL] <= k:
+    k = past.order
+    if past.equal <= k:
         return
     lower = higher = np.inf
     if k > 1:
@@ -156,7 +152,7 @@ def select_order(y: State, c: Control, past: Differences, formula: Formula, erro
     if k < MAX_ORDER:
         higher = scaled(y, c, past, formula, past.D[k + 2], 1.0 / (k + 2))
     best_k, best = best_order(k, lower, error, higher)
-    change_order(past, best_k, ladder(min(best, GROWTH, c.longest[0] / past.h[0]), BDF_RUNGS))
+    change_order(past, best_k, ladder(min(best, GROWTH, c.longest / past.h), BDF_RUNGS))
 
 
 @kernel
@@ -165,7 +161,7 @@ def inside(st: Stages, c: Control, past: Differences) -> None:
 
     With s = x - 1 in steps back from the end:  y(x) = sum_j D_j s (s+1) ... (s+j-1) / j!.
     """
-    k = past.status[ORDER]
+    k = past.order
     for l in range(st.tab.c.shape[0]):
         s = st.tab.c[l] - 1.0
         i = 0
@@ -189,19 +185,19 @@ def multistep(
 
     A step at whose end, or inside which, a mode changes or friction is no longer unique is left to the one-step method.
     """
-    h, order = past.h[0], past.status[ORDER]
-    if h > left or past.status[REJECTIONS] > (3 if past.status[SINCE] > 0 else 8) or nears_singular(out, h):
+    h, order = past.h, past.order
+    if h > left or past.rejections > (3 if past.since > 0 else 8) or nears_singular(out, h):
         return HANDOVER
     predict(past)
     if not solve_formula(mech, k, y, end, c, past, formula):
-        past.status[REJECTIONS] += 2
+        past.rejections += 2
         c.counts[1] += 1
         rescale(past, 0.5)
-        formula.made[0] = 0.0
+        formula.made = 0.0
         return REJECTED
     one = formula.one
     copy_state(y, end, mech.address)
-    end.t[0] = y.t[0] + h
+    end.t = y.t + h
     last_stage(mech, y, end, one)
     if not settle(mech, k, w, end):
         return HANDOVER
@@ -212,7 +208,7 @@ def multistep(
     error = max(error, too_long(growth(mech, k, y, one, h), order))
     if not error <= 1.0:
         # at the start nothing is known of the step but that of the other method
-        return reject(past, c.counts, error, 0.2 if past.status[SINCE] > 0 else 1e-4)
+        return reject(past, c.counts, error, 0.2 if past.since > 0 else 1e-4)
     update(past, formula)
     inside(st, c, past)
     find_kinks(mech, k, y, st, out)
@@ -225,7 +221,7 @@ def multistep(
     record_step(mech, rec, y, end, st, c, h, mech.address)
     copy_state(end, y, mech.address)
     c.counts[0] += 1
-    c.h[1] = 0.0
+    c.last_h = 0.0
     grow(c, out, k, y)
     if near_singular(mech, k, w, y, out, h):
         return FAIL_SINGULAR

@@ -25,7 +25,7 @@ ROUGH = 1e-6
 def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
     """Distances of open joints at a state."""
     joint = mech.joint
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     for j in range(joint.port.shape[0]):
         if is_open(mech, j):
             call_joint(mech, k, j, y.lam, mech.address)
@@ -99,11 +99,11 @@ def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages
     """
     s = st.tab.c.shape[0]
     worst, least = -1, 0.0
-    out.where[0] = 1.0
+    out.where = 1.0
     shared = share_stages(mech, k, y, end, st)
     triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
     out.inner[0] = out.trigger
-    if out.opened[0] > 0:
+    if out.opened > 0:
         gaps(mech, k, end, out)
     for i in range(s):
         triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
@@ -157,7 +157,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment
         first = out.inner[0, j] + hair if out.inner[0, j] > hair else 0.0
         _, below = first_below(st.tab, first, out.values, out.series)
-        if below < out.where[0]:
+        if below < out.where:
             found = j
-            out.where[0] = below
+            out.where = below
     return found

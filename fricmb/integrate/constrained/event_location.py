@@ -27,13 +27,13 @@ def locate_trigger(
     upper bound.  What the polynomial alone shows is tried by a step to there: trigger -1 where that finds nothing, and
     it is a step like any other.  Length 0 where a step could not be made.
     """
-    inside = out.where[0]
-    if out.opened[0] > 0:
+    inside = out.where
+    if out.opened > 0:
         gaps(mech, k, y, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
     low, f_low = 0.0, max(out.trigger[j], 0.0)
-    if out.opened[0] > 0:
+    if out.opened > 0:
         gaps(mech, k, end, out)
     triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     high, f_high = h, min(out.trigger[j], 0.0)
@@ -50,12 +50,12 @@ def locate_trigger(
         if not step_to(mech, k, w, y, end, st, c, step):
             return 0.0, j
         worst = violated(mech, k, out, y, end, st, mech.address)
-        if inside < 1.0 and (worst < 0 or (out.where[0] < 1.0 and i >= DOUBTS)):
+        if inside < 1.0 and (worst < 0 or (out.where < 1.0 and i >= DOUBTS)):
             return step, -1
-        inside = out.where[0]
+        inside = out.where
         if inside < 1.0:
             j, high, f_high = worst, step, 0.0
-            low = low if out.where[0] * high > low else 0.0
+            low = low if out.where * high > low else 0.0
             f_low = max(out.inner[0, j], 0.0) if low == 0.0 else 0.0
             continue
         value = out.trigger[j]
@@ -65,7 +65,7 @@ def locate_trigger(
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
             continue
         # where a step begins beyond by what `violated` takes for nothing, no shorter one comes nearer
-        if abs(value) <= (limit if f_low > 0.0 else 10.0 * limit) or high - low <= 8.0 * EPS * max(abs(y.t[0]), abs(h)):
+        if abs(value) <= (limit if f_low > 0.0 else 10.0 * limit) or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
         if value < 0.0 or worst >= 0:
             high, f_high = step, min(value, 0.0)
@@ -92,7 +92,7 @@ def last_unique(
             low = middle
         else:
             high = middle
-        if high - low <= 1e-13 * h + 4.0 * EPS * abs(y.t[0]):
+        if high - low <= 1e-13 * h + 4.0 * EPS * abs(y.t):
             break
     if low > 0.0 and step_to(mech, k, w, y, end, st, c, low):
         margins(mech, k, w, end, out, True, mech.address)

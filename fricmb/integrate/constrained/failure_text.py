@@ -31,7 +31,7 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     names, joints = problem.contact_names, mechanism_of(problem).joints
     port = int(np.argmin(out.margin)) if problem.n_c else -1
     least = float(out.margin.min(initial=1.0))
-    minor = float(out.together[0])
+    minor = float(out.together)
     # a margin is a minor over a smaller one: where that one goes through 0, it jumps
     if code == FAIL_MARGIN and (minor <= 0.0 < least or minor < NEAR <= least):
         together = ", ".join(repr(names[c]) for c in np.flatnonzero(np.asarray(y.mode) == SLIP))
@@ -60,7 +60,7 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
         name = joints.names[int(np.argmin(np.where(opened, out.gap, np.inf)))]
         return f"contact of {name!r} is made again, and impacts are not computed"
     if code == FAIL_SINGULAR:
-        names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t[0]), y.q, y.v))
+        names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t), y.q, y.v))
         risen = (float(out.sigma[1]) / max(float(out.sigma[0]), 1e-300)) ** 2
         return (
             f"singular position: the constraints of {names_now} depend on one another (the condition of G M^-1 G^T has"

@@ -29,7 +29,7 @@ def instants(
     m, rows, n_c = y.lam.shape[0], y.F.shape[0], y.mode.shape[0]
     failed = 0
     for i in range(times.shape[0]):
-        y.t[0] = times[i]
+        y.t = times[i]
         set_window_around(mech.breakpoints, k.s.window, times[i])
         for j in range(y.q.shape[0]):
             y.q[j] = q[i, j]
@@ -72,7 +72,7 @@ def follow(mech: Mech, k: Moving, y: State, small: float) -> None:
         some = some or (y.mode[c] == SLIP and plane(mech, c))
     if not some:
         return
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     for c in range(y.mode.shape[0]):
         if y.mode[c] == SLIP and plane(mech, c) and magnitude(mech.port.row, c, y.g) > small:

@@ -5,10 +5,9 @@ With unknowns [v, lam, F, z] and a shift gamma = 1/(h lambda) the matrix of a st
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, slope_at
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, Order, Place
@@ -17,7 +16,7 @@ from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Ints
 
 
-class Layers(NamedTuple):
+class Layers(Layout):
     """Banded matrices (size * ldab,) by columns."""
 
     A0: Floats

@@ -41,7 +41,7 @@ def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> b
     for p in range(y.mode.shape[0]):
         smooth = smooth or mech.port.law[p] == LAW_SMOOTH
     for i in range(st.tab.c.shape[0] if smooth else 0):
-        move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
         forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
     return smooth
 

@@ -7,12 +7,11 @@ a loop closes through dry joints, whose loads depend on how they share, one at i
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.moving import Moving
@@ -28,7 +27,7 @@ from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Codes, Floats, Flo
 DEPENDENT = 1e-9
 
 
-class Loops(NamedTuple):
+class Loops(Layout):
     """Rows of ports, and D = W^T M^-1 W of contacts in loops, by the diagonal of M and without joints."""
 
     row: Ints
@@ -133,12 +132,12 @@ def share_stages(mech: Mech, k: Moving, y: State, end: State, st: Stages) -> boo
     some = False
     for i in range(st.tab.c.shape[0]):
         if overloaded(mech, k, end.mode, st.N[i], st.F[i], 1.0):
-            time = y.t[0] + st.tab.c[i] * (end.t[0] - y.t[0])
+            time = y.t + st.tab.c[i] * (end.t - y.t)
             move(mech, k, time, st.Q[i], st.V[i], mech.address)
             share_load(mech, k, end.mode, st.N[i], st.F[i], 1.0, mech.address)
             some = True
     if some:
-        move(mech, k, end.t[0], end.q, end.v, mech.address)
+        move(mech, k, end.t, end.q, end.v, mech.address)
     return some
 
 
@@ -148,7 +147,7 @@ def give_way(mech: Mech, k: Moving, y: State, part: Codes, code: int) -> bool:
 
     They reach their cones as one: none can hold the load without the others.
     """
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     k.way[:] = 0.0
     if share_load(mech, k, y.mode, y.N, y.F, NEARLY, mech.address) <= 0.0:
         return False
@@ -176,7 +175,7 @@ def mark_loops(mech: Mech, k: Moving, y: State, part: Codes) -> None:
     held = at_rest_in_loops(mech, part)
     if not (held == STICK).any():
         return
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     D = mobility(mech, k, held)
     whole = rank(D)
     for c in range(part.shape[0]):
@@ -200,7 +199,7 @@ def join_rest(mech: Mech, k: Moving, y: State, part: Codes, small: float, code: 
         if not slips or y.N[c] <= 0.0 or magnitude(mech.port.row, c, y.g) > small:
             continue
         if whole < 0:
-            move(mech, k, y.t[0], y.q, y.v, mech.address)
+            move(mech, k, y.t, y.q, y.v, mech.address)
             whole = rank(mobility(mech, k, held))
         held[c] = STICK
         if rank(mobility(mech, k, held)) > whole:

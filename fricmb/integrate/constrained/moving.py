@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
 from fricmb.integrate.model.forces import Scratch, scratch_of
 from fricmb.integrate.problem import Codes, Floats, Problem
 
 
-class Moving(NamedTuple):
+class Moving(Layout):
     """What the present positions and velocities of places are, and space for calls.
 
     ``s`` the scratch with X; ``grad``, ``hess`` derivatives of the places, ``grad_rate`` the rates of ``grad``; ``ddy``
@@ -50,7 +49,7 @@ class Moving(NamedTuple):
     looped: Codes
 
 
-class Lengths(NamedTuple):
+class Lengths(Layout):
     """Of the space for places and their rates, and for what goes into joints and places and comes out of them."""
 
     grad: int

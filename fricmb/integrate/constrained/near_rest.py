@@ -18,11 +18,11 @@ from fricmb.integrate.problem import SLIP
 def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
     """Mark the contacts that may come to rest in a step h, or set out (``k.form``)."""
     row, turns = mech.port.row, st.turns
-    turns.near[0] = 0
+    turns.near = 0
     for c in range(y.mode.shape[0]):
         k.form[c] = 0
         first, d = row[c], row[c + 1] - row[c]
-        if not plane(mech, c) or y.mode[c] != SLIP or turns.near[0] + d - 1 > turns.contact.shape[0]:
+        if not plane(mech, c) or y.mode[c] != SLIP or turns.near + d - 1 > turns.contact.shape[0]:
             continue
         force, light = magnitude(row, c, y.F), 0.0
         for a in range(d):
@@ -36,24 +36,24 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
         for line in range(d):
             if line != m:
                 turn_row(turns, c, line, m, -y.F[first + line] / force, -y.F[first + m] / force)
-                turns.base[turns.near[0] - 1] = by_turn(mech, c, y.F, y.g)
+                turns.base[turns.near - 1] = by_turn(mech, c, y.F, y.g)
 
 
 @kernel
 def turn_row(turns: Turns, c: int, line: int, m: int, n_line: float, n_m: float) -> None:
     """Append the row of contact c in which direction ``line`` stands against direction m."""
-    i = turns.near[0]
+    i = turns.near
     turns.contact[i], turns.line[i] = c, line
     for a in range(3):
         turns.tangent[i, a] = n_line if a == m else (-n_m if a == line else 0.0)
-    turns.near[0] = i + 1
+    turns.near = i + 1
 
 
 @kernel
 def prepare_turns(mech: Mech, st: Stages) -> None:
     """Solve for what the marked contacts' directions answer; the factors are there."""
     turns, s = st.turns, st.tab.c.shape[0]
-    for p in range(turns.near[0] * s):
+    for p in range(turns.near * s):
         for i in range(s):
             for a in range(st.R.shape[1]):
                 st.R[i, a] = 0.0
@@ -62,5 +62,5 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
         for i in range(s):
             for a in range(st.R.shape[1]):
                 turns.answer[p, i, a] = st.R[i, a]
-        for q in range(turns.near[0] * s):
+        for q in range(turns.near * s):
             turns.gain[q, p] = across(mech, turns, q // s, st.R[q % s])

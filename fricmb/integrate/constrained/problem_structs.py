@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block_address
 from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_LOOPS, MECHANISM_STEPS, PLACES
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
@@ -20,7 +18,7 @@ from fricmb.integrate.model.problem_structs import Spread, Table, _table, spread
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 
 
-class Linear(NamedTuple):
+class Linear(Layout):
     """Entries of mass, stiffness, damping and input; constant force over [y, u]."""
 
     Mi: Ints
@@ -38,7 +36,7 @@ class Linear(NamedTuple):
     f: Floats
 
 
-class Place(NamedTuple):
+class Place(Layout):
     """Points fixed in bodies (see Places) and where their derivatives stand in ``Moving``.
 
     Extended coordinate e depends on the dofs ``dof[start[e]:start[e+1]]`` with the derivatives ``grad[at[...]]`` (-1:
@@ -58,7 +56,7 @@ class Place(NamedTuple):
     y_at: Ints
 
 
-class Joint(NamedTuple):
+class Joint(Layout):
     """Joints (see Joints); ``n_x`` (k,) local coordinates."""
 
     table: Table
@@ -70,7 +68,7 @@ class Joint(NamedTuple):
     dropped: Codes
 
 
-class Port(NamedTuple):
+class Port(Layout):
     """Friction: port c has the rows ``row[c]:row[c+1]``, one a direction of slip.
 
     ``joint`` (n_c,) the joint it belongs to or -1; ``slip`` of the others two forms a row, coordinate and velocity.
@@ -93,14 +91,14 @@ class Port(NamedTuple):
     normals: Table
 
 
-class Order(NamedTuple):
+class Order(Layout):
     """Place of every unknown [v, lam, F, z] in the banded matrices, and their sizes for LAPACK."""
 
     place: Ints
     sizes: Pivots
 
 
-class Mech(NamedTuple):
+class Mech(Layout):
     """All of a problem; ``mass`` (n,) the diagonal of the mass matrix."""
 
     linear: Linear

@@ -21,7 +21,7 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints
     n, m = y.q.shape[0], y.lam.shape[0]
     last = 1e300
     for i in range(CORRECTIONS):
-        move(mech, k, y.t[0], y.q, y.v, mech.address)
+        move(mech, k, y.t, y.q, y.v, mech.address)
         forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
         if i == 0 and not instant_matrix(mech, k, w, y, NONE, mech.address):
             return False
@@ -47,7 +47,7 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
     """Move v the least so that the constraints' rates, and the slip of ports that stick (``stuck``), are 0."""
     n, m, n_c = y.q.shape[0], y.lam.shape[0], y.mode.shape[0]
     row = mech.port.row
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     if not (factored and not stuck) and not instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address):
         return False
@@ -63,6 +63,6 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
         solve_instant(mech, w)
         for j in range(n):
             y.v[j] -= w.r[j]
-        move(mech, k, y.t[0], y.q, y.v, mech.address)
+        move(mech, k, y.t, y.q, y.v, mech.address)
         forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     return True

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.accelerations import powers, react
 from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.moving import Moving
@@ -23,29 +22,29 @@ from fricmb.integrate.step.stage_predictor import lagrange
 from fricmb.integrate.step.tableau import by_line
 
 
-class Control(NamedTuple):
+class Control(Layout):
     """Step control.
 
-    ``rtol`` (1,); running maxima ``q``, ``v``, ``z`` with floors ``floor_v``; ``h`` (3,) next step, the step before,
-    that step's end time; ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c
-    for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts`` work done; ``longest`` (1,) step of all;
-    ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M; ``made`` (2,): step of the factors and
-    time of the Jacobian; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z) space of
-    ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter.
+    ``rtol``; running maxima ``q``, ``v``, ``z`` with floors ``floor_v``; ``h`` next step, ``last_h`` the step before;
+    ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c for prediction, by ``weight`` (s, s+1) at
+    ``ahead`` (s,); ``counts`` work done; ``longest`` step of all; ``span`` (2,) and ``stops`` times to step to;
+    ``mass`` (n,) diagonal of M; ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia``
+    (n,), ``rates`` (s, n_z) space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter.
     """
 
-    rtol: Floats
+    rtol: float
     v: Floats
     z: Floats
     floor_v: Floats
-    h: Floats
+    h: float
+    last_h: float
     old: Floats2
     counts: Ints
     span: Floats
-    longest: Floats
+    longest: float
     stops: Floats
     mass: Floats
-    made: Floats
+    made: float
     power: Floats2
     nodes: Floats
     ahead: Floats
@@ -59,9 +58,9 @@ def control_of(problem: Problem, st: Stages) -> Control:
     """Arrays for step control."""
     s, size, n, stops = len(st.tab.c), len(st.x), problem.n, problem.signals.breakpoints.size
     return Control(
-        np.zeros(1), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), np.array([1.0, 0.0, 0.0]),
-        np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), np.zeros(1), np.zeros(stops), np.zeros(n),
-        np.zeros(2), np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
+        0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
+        np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, np.zeros(stops), np.zeros(n),
+        0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
         np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z),
     )  # fmt: skip
 
@@ -103,7 +102,7 @@ def state_noise(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: floa
 @kernel
 def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
     """Start values of the stages: the polynomial of the step before, or constant accelerations and forces."""
-    before = c.h[1]
+    before = c.last_h
     for i in range(c.ahead.shape[0]):
         c.ahead[i] = 1.0 + st.tab.c[i] * h / before
     if before > 0.0:
@@ -132,7 +131,7 @@ def remember(c: Control, y: State, st: Stages, h: float) -> None:
             for j in range(part.shape[0]):
                 c.old[j + 1, at + a] = part[j, a]
         at += start.shape[0]
-    c.h[1] = h
+    c.last_h = h
 
 
 #: Newton's iterations stop at this part of the tolerance.
@@ -142,22 +141,22 @@ KAPPA = 1e-3
 @block
 def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> bool:
     """Solve the stages of a step h from y."""
-    if c.made[0] == 0.0:
+    if c.made == 0.0:
         choose_forms(mech, k, y, st, h)
         linearise(mech, k, y, st, mech.address)
         c.counts[3] += 1
-    if c.made[0] != h:
+    if c.made != h:
         c.counts[4] += 1
         if not factor_stages(mech, st, h, mech.address):
-            c.made[0] = 0.0
+            c.made = 0.0
             return False
-        c.made[0] = h
+        c.made = h
         prepare_turns(mech, st)
     measure(c, y, h, st.scale)
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol[0], 1e-14), mech.address)
+    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol, 1e-14), mech.address)
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
@@ -175,7 +174,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
             high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
             last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
     ratio = min(1.0, last / before) if before > 0.0 else 1.0
-    return float(last * ratio / c.rtol[0])
+    return float(last * ratio / c.rtol)
 
 
 @kernel
@@ -216,7 +215,7 @@ def end_step(
     """The end of the step: values of the last stage on the constraints, and all that follows there."""
     s = st.tab.c.shape[0]
     n_c = y.mode.shape[0]
-    end.t[0] = y.t[0] + h
+    end.t = y.t + h
     last_stage(mech, y, end, st)
     if not settle(mech, k, w, end):
         return False
@@ -233,7 +232,7 @@ def end_step(
 @kernel
 def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int) -> None:
     """Powers at stage i into ``c.power[i]``."""
-    move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+    move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
     forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i], mech.address)
 

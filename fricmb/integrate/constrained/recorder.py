@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.problem_structs import Mech, mechanism_of
 from fricmb.integrate.constrained.radau_step import Control
@@ -17,7 +15,7 @@ from fricmb.integrate.constrained.state import State
 from fricmb.integrate.problem import Codes2, Floats2, Floats3, Ints, Problem
 
 
-class Record(NamedTuple):
+class Record(Layout):
     """Space for steps.
 
     ``span`` (k, 2): start and length; ``values`` (k, s+1, 2n + n_z + n_c + 2): [q, v, z, work] at 0, c; ``force``
@@ -53,7 +51,7 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
     i = out.used[0]
     n, nz, nw, m, rows = y.q.shape[0], y.z.shape[0], y.work.shape[0], y.lam.shape[0], y.F.shape[0]
     s = st.tab.c.shape[0]
-    out.span[i, 0] = y.t[0]
+    out.span[i, 0] = y.t
     out.span[i, 1] = h
     out.after[i] = 0
     for j in range(s + 1):
@@ -90,7 +88,7 @@ def crowded(out: Record, n_c: int) -> bool:
 @block
 def copy_state(a: State, b: State, address: Ints) -> None:
     """Put state a into b."""
-    b.t[0] = a.t[0]
+    b.t = a.t
     for source, target in ((a.q, b.q), (a.v, b.v), (a.a, b.a), (a.z, b.z), (a.lam, b.lam)):
         for i in range(source.shape[0]):
             target[i] = source[i]

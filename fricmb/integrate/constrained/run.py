@@ -90,13 +90,13 @@ def _set_up(
     m, y, c = mechanism_of(problem), workspace.y, workspace.control
     for state in (y, workspace.end, workspace.before):
         set_out(state, start)
-    c.rtol[0], c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
-    c.longest[0] = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
+    c.rtol, c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
+    c.longest = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
     c.v[:], c.z[:] = np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
     c.stops[:] = mech_of(problem).breakpoints
-    workspace.out.opened[0] = (m.joints.dropped == 2).sum()
+    workspace.out.opened = (m.joints.dropped == 2).sum()
     reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
     small = 1e-12 * max(top, reach)
     if top <= small:
@@ -113,7 +113,7 @@ def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: floa
         to_come = _speed_to_come(problem, start, t_end, load, c.mass)
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
         out.size[0] = max(float(out.size[0]), to_come)
-    c.h[0] = first_step(y.v, y.a, t_end - start.t, PART)
+    c.h = first_step(y.v, y.a, t_end - start.t, PART)
 
 
 def _dropped_notes(m: Mechanism) -> tuple[str, ...]:

@@ -82,7 +82,7 @@ def dips(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, ou
     """Whether the least singular value falls to less than half at a stage of the step just solved."""
     copy_state(y, end, mech.address)
     for i in range(st.tab.c.shape[0]):
-        move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
         if not instant_matrix(mech, k, w, end, NONE, mech.address):
             return True
         if least_singular(mech, w, out, 1) < 0.5 * out.sigma[0]:

@@ -10,13 +10,12 @@ VII.2).  A = T diag(lam) T^-1 splits the Newton system into one real and some co
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.forces import forces, move, pull_back
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
@@ -29,10 +28,10 @@ from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.tableau import Tableau
 
 
-class Stages(NamedTuple):
+class Stages(Layout):
     """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, size * ldab) and pivots.
 
-    ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` (1,) the rate of
+    ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions.
     """
 
@@ -55,7 +54,7 @@ class Stages(NamedTuple):
     zd: Floats
     acc: Floats
     scale: Floats
-    found: Floats
+    found: float
     turns: Turns
 
 
@@ -70,7 +69,7 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
         np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
         np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
-        np.zeros((count, size), complex), np.zeros(nz), np.zeros(size), np.ones(m.n), np.zeros(1),
+        np.zeros((count, size), complex), np.zeros(nz), np.zeros(size), np.ones(m.n), 0.0,
         turns_of(problem, s, size),
     )  # fmt: skip
 
@@ -82,7 +81,7 @@ def linearise(mech: Mech, k: Moving, y: State, st: Stages, address: Ints) -> Non
     L.A0[:] = 0.0
     L.A1[:] = 0.0
     L.A2[:] = 0.0
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
     add_mass(mech, L)
     add_structure(mech, k, L, mech.address)
@@ -131,7 +130,7 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
             st.acc[a] += st.Ainv[i, j] * (st.V[j, a] - y.v[a])
             st.Q[i, a] += h * st.tab.A[i, j] * st.V[j, a]
         st.acc[a] /= h
-    move(mech, k, y.t[0] + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
+    move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
     forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
     pull_back(mech, k, st.x)
     for a in range(n):
@@ -195,16 +194,16 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
     """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
     s = st.tab.c.shape[0]
     last = np.inf
-    st.found[0] = 1.0
+    st.found = 1.0
     for iteration in range(ITERATIONS):
         if stopped():
             return 0
         for i in range(s):
             stage_residual(mech, k, y, st, h, i, mech.address)
-        if st.turns.near[0] > 0:
+        if st.turns.near > 0:
             spread_of_stages(mech, st.turns, st.F, st.g)
         newton_change(mech, st, mech.address)
-        if st.turns.near[0] > 0:
+        if st.turns.near > 0:
             correct_turns(mech, st.turns, st.R)
         change, sound = 0.0, 0.0
         for i in range(s):
@@ -221,7 +220,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
             return 0
         rate = change / last if iteration > 0 else 1.0
         if iteration > 0:
-            st.found[0] = rate
+            st.found = rate
         if change <= 1e-15 or (iteration > 0 and rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
             for i in range(s):
                 stage_positions(y, st, h, i)

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.jacobian_layers import Layers
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
 from fricmb.integrate.problem import Codes, Floats, Pivots, Problem
 
 
-class State(NamedTuple):
-    """``t`` (1,), q, v, z; what follows: a (n,), lam (m,), F, g, n (m_p,) per row of ports; N, mode (n_c,); zd.
+class State(Layout):
+    """``t`` time, q, v, z; what follows: a (n,), lam (m,), F, g, n (m_p,) per row of ports; N, mode (n_c,); zd.
 
     ``ga`` (m_p,) derivatives of slip velocities; ``work``, ``rate`` (n_c+2,) energies and powers: friction of every
     port, damping, input.
     """
 
-    t: Floats
+    t: float
     q: Floats
     v: Floats
     z: Floats
@@ -39,13 +38,13 @@ def state_of(problem: Problem) -> State:
     """An empty state: at the origin, at rest, slipping."""
     m, nc, rows, nz = mechanism_of(problem), problem.n_c, problem.m, problem.n_z
     return State(
-        np.zeros(1), np.zeros(m.n), np.zeros(m.n), np.zeros(nz), np.zeros(m.n), np.zeros(m.n_rows), np.zeros(rows),
+        0.0, np.zeros(m.n), np.zeros(m.n), np.zeros(nz), np.zeros(m.n), np.zeros(m.n_rows), np.zeros(rows),
         np.zeros(nc), np.zeros(rows), np.zeros(rows), np.zeros(nz), np.ones(nc, np.int8), np.zeros(rows),
         np.zeros(nc + 2), np.zeros(nc + 2),
     )  # fmt: skip
 
 
-class Instant(NamedTuple):
+class Instant(Layout):
     """What is needed to solve at one instant: the matrix and its factors, right-hand side (size,), rates of X.
 
     ``other`` (n,): accelerations to compare with.

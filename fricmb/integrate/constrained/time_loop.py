@@ -24,7 +24,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import let_go
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.methods.backward_differences import ON, Differences, hand_over, is_slower, may_begin
+from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.problem import SLIP, Codes
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
 from fricmb.integrate.run.outcomes import (
@@ -46,7 +46,7 @@ def begin(
     mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, given: bool, small: float
 ) -> int:
     """Modes, forces and accelerations at the start."""
-    set_window(c, k.s.window, y.t[0] + 4e-16 * abs(y.t[0]) + 1e-300)
+    set_window(c, k.s.window, y.t + 4e-16 * abs(y.t) + 1e-300)
     if not project_velocities(mech, k, w, y, False, False, mech.address):
         return FAIL_SINGULAR
     if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
@@ -96,32 +96,32 @@ def drive(
 
     Steps are those of the one-step method, and where the history ``past`` lets BDF begin those of ``formula``.
     """
-    stop = set_window(c, k.s.window, y.t[0])
+    stop = set_window(c, k.s.window, y.t)
     while True:
         if stopped():
             return FULL
         # a stop is kept until it has been gone through: a step may end on it to the last digit
-        if reached(y.t[0], stop):
+        if reached(y.t, stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
-            past.status[ON] = 0
+            past.on = 0
             if code == DONE and stop >= c.span[1]:
                 return DONE
-            stop = next_stop(c, y.t[0])
+            stop = next_stop(c, y.t)
         elif crowded(rec, y.mode.shape[0]):
             return FULL
-        elif past.status[ON] == 1:
-            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t[0], mech.address)
-            if code == ACCEPTED and is_slower(past, formula.usual[0]):
-                c.h[0] = formula.usual[0]
+        elif past.on == 1:
+            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t, mech.address)
+            if code == ACCEPTED and is_slower(past, formula.usual):
+                c.h = formula.usual
             elif code == HANDOVER:
-                c.h[0] = max(c.h[0], past.h[0])
+                c.h = max(c.h, past.h)
                 hand_over(past)
         else:
-            t = y.t[0]
+            t = y.t
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop, mech.address)
-            h = y.t[0] - t
+            h = y.t - t
             if may_begin(past, code) and h > 0.0:
-                formula.usual[0] = h
-                start_past(y, past, formula, min(0.1 * h, past.good[0] if past.good[0] > 0.0 else h))
+                formula.usual = h
+                start_past(y, past, formula, min(0.1 * h, past.good if past.good > 0.0 else h))
         if code > FULL:
             return code

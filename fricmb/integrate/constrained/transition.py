@@ -38,13 +38,13 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
         return FAIL_HIT
     joint.dropped[row] = 2
     y.lam[row] = 0.0
-    out.opened[0] += 1
+    out.opened += 1
     c = joint.port[i]
     if c >= 0:
         y.mode[c] = OPEN
         for a in range(mech.port.row[c], mech.port.row[c + 1]):
             y.F[a] = 0.0
-    move(mech, k, y.t[0], y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v, mech.address)
     instant_matrix(mech, k, w, y, NONE, mech.address)
     out.sigma[0] = out.sigma[1] = least_singular(mech, w, out, TURNS)
     out.sigma[3] = 0.0
@@ -124,7 +124,7 @@ def change_modes(
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
         if code != DONE:
             return code
-    set_window(c, k.s.window, y.t[0])
+    set_window(c, k.s.window, y.t)
     if j < 0 and not meet_jump(mech, k, w, y, out.size[0]):
         return FAIL_PROJECT
     for i in range(n_c):
@@ -153,13 +153,13 @@ def change_modes(
     if code != FOUND:
         margins(mech, k, w, y, out, True, mech.address)
         return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
-    record_changes(mech.port, y.t[0], y, before, rec)
+    record_changes(mech.port, y.t, y, before, rec)
     if not bring_to_rest(mech, k, w, y, part):
         return FAIL_PROJECT
     if not react(mech, k, w, y, False, mech.address):
         return FAIL_MODES
-    c.h[1] = 0.0
-    c.made[0] = 0.0
+    c.last_h = 0.0
+    c.made = 0.0
     if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
         return FAIL_MARGIN
     return DONE

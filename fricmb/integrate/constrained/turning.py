@@ -8,12 +8,11 @@ derivatives differ by (Woodbury).
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
 
@@ -23,10 +22,10 @@ NEAR = 4.0
 TOGETHER = 24
 
 
-class Turns(NamedTuple):
+class Turns(Layout):
     """Rows of contacts near rest that find a direction: ``contact`` (k,) and ``line`` (k,) of its directions.
 
-    ``near`` (1,) how many rows, ``tangent`` (k, 3) across the slip.
+    ``near`` how many rows, ``tangent`` (k, 3) across the slip.
 
     ``answer`` (k s, s, size): changes by a unit residual in the row of a direction; ``gain`` (k s, k s) the turns
     among them; ``base`` (k,), ``spread`` (k s,): derivatives in the Jacobian, and what a stage's differ by.
@@ -34,7 +33,7 @@ class Turns(NamedTuple):
 
     contact: Ints
     line: Ints
-    near: Ints
+    near: int
     tangent: Floats2
     base: Floats
     answer: Floats3
@@ -57,7 +56,7 @@ def turns_of(problem: Problem, s: int, size: int) -> Turns:
     k = turning_rows(problem) if s > 1 else 0
     full = k * s
     return Turns(
-        np.zeros(k, np.int64), np.zeros(k, np.int64), np.zeros(1, np.int64), np.zeros((k, 3)), np.zeros(k),
+        np.zeros(k, np.int64), np.zeros(k, np.int64), 0, np.zeros((k, 3)), np.zeros(k),
         np.zeros((full, s, size)), np.zeros((full, full)), np.zeros(full * full), np.zeros(full), np.zeros(full),
         np.zeros(4, np.int32), np.zeros(full, np.int32),
     )  # fmt: skip
@@ -84,7 +83,7 @@ def by_turn(mech: Mech, c: int, F: Floats, g: Floats) -> float:
 def spread_of_stages(mech: Mech, turns: Turns, F: Floats2, g: Floats2) -> None:
     """What the derivatives at the stages differ by from those of the Jacobian, for forces and velocities (s, m_p)."""
     s = F.shape[0]
-    for k in range(turns.near[0]):
+    for k in range(turns.near):
         for i in range(s):
             turns.spread[k * s + i] = by_turn(mech, turns.contact[k], F[i], g[i]) - turns.base[k]
 
@@ -103,7 +102,7 @@ def across(mech: Mech, turns: Turns, k: int, x: Floats) -> float:
 def correct_turns(mech: Mech, turns: Turns, R: Floats2) -> None:
     """From the changes R (s, size) by the Jacobian to those by the derivatives of every stage."""
     s = R.shape[0]
-    full = turns.near[0] * s
+    full = turns.near * s
     work = turns.work[: full * full].reshape(full, full)
     for p in range(full):
         turns.turn[p] = across(mech, turns, p // s, R[p % s])

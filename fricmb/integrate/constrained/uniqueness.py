@@ -70,8 +70,8 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
             out.margin[c] = min(out.margin[c], 1.0 + factor * answer)
         least = min(least, out.margin[c])
     if whole:
-        out.together[0] = least_minor(mech, k, w, y, out)
-    return float(min(least, out.together[0]))
+        out.together = least_minor(mech, k, w, y, out)
+    return float(min(least, out.together))
 
 
 @kernel

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 
@@ -13,22 +12,22 @@ from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 MANY = 8
 
 
-class Watch(NamedTuple):
+class Watch(Layout):
     """What is watched along a run.
 
-    ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` (1,) the least
+    ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` the least
     principal minor of the same for several of them (``contacts``, ``A``, ``B``, ``sizes``, ``pivots`` space for it).
     ``sigma`` (4,): least singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak``
     (m,) its direction.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
-    stages of a step, ``rough`` by the forces of the last stage, ``where`` (1,) the part of the step at which only the
+    stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
-    of open joints, ``opened`` (1,) how many there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,):
+    of open joints, ``opened`` how many there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,):
     see ``load_kinks``; ``size`` (3,) running maxima of slip velocity, force and position.
     """
 
     margin: Floats
-    together: Floats
+    together: float
     contacts: Ints
     A: Floats
     B: Floats
@@ -39,11 +38,11 @@ class Watch(NamedTuple):
     trigger: Floats
     inner: Floats2
     rough: Floats
-    where: Floats
+    where: float
     values: Floats
     series: Floats
     gap: Floats
-    opened: Ints
+    opened: int
     bends: Ints
     kinked: Ints
     kink: Floats
@@ -57,12 +56,12 @@ def watch_of(problem: Problem, stages: int) -> Watch:
     m = mechanism_of(problem)
     count = 3 * problem.n_c + len(m.joints.port)
     return Watch(
-        np.ones(problem.n_c), np.ones(1), np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
+        np.ones(problem.n_c), 1.0, np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4, np.int32), np.zeros(MANY, np.int32),
         np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
-        np.ones((stages + 1, count)), np.ones(count), np.ones(1), np.zeros(stages),
+        np.ones((stages + 1, count)), np.ones(count), 1.0, np.zeros(stages),
         np.zeros(stages + 1), np.zeros(len(m.joints.port)),
-        np.zeros(1, np.int64), np.zeros(len(m.joints.port), np.int64),
+        0, np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), np.zeros(3),
         np.zeros(m.n_rows + 1),
     )  # fmt: skip

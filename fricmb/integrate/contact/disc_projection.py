@@ -32,7 +32,7 @@ def release(ports: Ports, y: State, part: Codes, mode: Codes, F: Floats) -> bool
     ``part`` (n_c,): 0 leaves a contact out, 2 is one that is released already.  ``F`` (m,) and ``y.n`` are filled.
     """
     nc = mode.shape[0]
-    shared = ports.soft[0] > 0.0
+    shared = ports.soft > 0.0
     free = np.zeros(nc, np.bool_)
     limit = np.zeros(nc)
     scale = np.zeros(F.shape[0])

@@ -49,7 +49,7 @@ def locate(
     Returns the contact, with its state in ``end``; -1 where the step has to be done again with ``retry[0]``
     (inaccurate so far: close to landing this refines geometrically); -2 where nothing converges.
     """
-    t_unit = EPS * max(abs(y.t[0]), h)
+    t_unit = EPS * max(abs(y.t), h)
     lo, hi = 0.0, h
     f_lo = np.nan
     f_hi = np.nan
@@ -156,6 +156,6 @@ def passes_by(packed: Packed, s: Scratch, y: State, end: State, acc: Accuracy, k
     if np.hypot(hold0, hold1) <= stick_limit(packed.ports, packed.laws, k, s, N) * abs(whole):
         return False
     beside = abs(n[row0] * b1 - n[row0 + 1] * b0) / max(np.hypot(b0, b1), 1e-290)
-    return bool(magnitude(packed.ports.row, k, y.g) * beside > 0.01 * acc.rtol[0] * acc.r[k])
+    return bool(magnitude(packed.ports.row, k, y.g) * beside > 0.01 * acc.rtol * acc.r[k])
 
 

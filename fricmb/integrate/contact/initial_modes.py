@@ -33,7 +33,7 @@ def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: boo
         keep_modes(y, old)
     code = settle(packed, s, y, r, address)
     if given and code == 0:
-        record_changes(packed.ports, y.t[0], y, old, out)
+        record_changes(packed.ports, y.t, y, old, out)
     record(out, y, AFTER)
     return code
 

@@ -11,12 +11,13 @@ rested, which lets go only where it has to.  A cone is never split into axes.  W
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.contact.disc_projection import release
 from fricmb.integrate.model.accelerations import accelerate, complete, kinematics, known_forces, solve_response
 from fricmb.integrate.model.forces import Scratch, normal_force
@@ -34,7 +35,7 @@ from fricmb.integrate.step.contact_unknowns import PortState, port_state
 MARGIN = 1e-11
 
 
-class Rest(NamedTuple):
+class Rest(Layout):
     """Space for the problem of accelerations: constant-law ports, their state, modes, and who takes part.
 
     ``part`` (n_c,): 1 a contact at rest, 2 one that is just released (its direction n is a hint, and F is on the cone).
@@ -61,25 +62,22 @@ def rest_of(problem: Problem) -> Rest:
         Wn=problem.contacts.Wn,
     )  # fmt: skip
     w = port_state(replace(problem, contacts=plain), 1)
-    ports = ports._replace(
-        mu_s=ports.mu_s.copy(),
-        mu_0=ports.mu_0.copy(),
-        law=np.zeros(nc, np.int8),
-        N=np.zeros(nc),
-        var=np.full(nc, -1, np.int64),
-        acts=np.zeros(nc, np.int8),
-        z_start=np.zeros(nc + 1, np.int64),
-    )
+    own: dict[str, Any] = {
+        "mu_s": ports.mu_s.copy(), "mu_0": ports.mu_0.copy(), "law": np.zeros(nc, np.int8), "N": np.zeros(nc),
+        "var": np.full(nc, -1, np.int64), "acts": np.zeros(nc, np.int8), "z_start": np.zeros(nc + 1, np.int64),
+    }  # fmt: skip
+    ports = Ports(**{name: own.get(name, getattr(ports, name)) for name in Ports._fields})
     mode, part, rested = (np.zeros(nc, np.int8) for _ in range(3))
     return Rest(ports, w, mode, part, rested, np.zeros(nc), np.zeros((1, 1)), np.zeros(nc))
 
 
 def fill_rest(r: Rest, packed: Packed) -> None:
     """Put the contacts of a scene into arrays made for another of the same sizes."""
-    for name in ("row", "W", "w", "Wu", "D", "mu_s", "mu_0", "Wn", "N0", "soft"):
+    for name in ("row", "W", "w", "Wu", "D", "mu_s", "mu_0", "Wn", "N0"):
         mine, given = getattr(r.ports, name), getattr(packed.ports, name)
         if mine is not given:
             mine[...] = given
+    r.ports.soft = packed.ports.soft
 
 
 @kernel
@@ -93,7 +91,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
     w = r.w
     held = np.zeros(nc)
     # of redundant contacts one that is released may be held by the others: it does not slip
-    least = 1e-9 if ports.soft[0] > 0.0 else -1e-9
+    least = 1e-9 if ports.soft > 0.0 else -1e-9
     big = 1e-300
     for a in range(y.a0.shape[0]):
         big = max(big, abs(y.a0[a]))
@@ -138,7 +136,7 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
     Either is -1 where there is none.  What comes to rest is released before what has rested.
     """
     ports, w = r.ports, r.w
-    if ports.soft[0] > 0.0:
+    if ports.soft > 0.0:
         for k in range(r.mode.shape[0]):
             held[k] = ports.mu_s[k] * y.N[k]
         share(ports, r.mode, held, w.F[0], y.way)
@@ -229,14 +227,14 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
     if some:
         project(packed, s, y, r, address)
         kinematics(packed, s, y)
-        if packed.ports.soft[0] > 0.0 and find_held(packed, y, r):
+        if packed.ports.soft > 0.0 and find_held(packed, y, r):
             project(packed, s, y, r, address)
             kinematics(packed, s, y)
         known_forces(packed, s, y)
         if solve_rest(packed, s, y, r, address) < 0:
             return 1
     if not complete(packed, s, y, sizes, pivots, address):
-        return 3 if y.fault[0] == INFINITE else 2
+        return 3 if y.fault == INFINITE else 2
     return 0
 
 

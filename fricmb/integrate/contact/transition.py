@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
 from fricmb.integrate.model.accelerations import share_load, slip_rate
 from fricmb.integrate.model.forces import Scratch
@@ -33,7 +32,7 @@ from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.room_protocols import Events, Laws, Modes
 
 
-class Before(NamedTuple):
+class Before(Layout):
     """Modes and directions before a transition."""
 
     mode: Codes
@@ -86,7 +85,7 @@ def lands_now(packed: Packed, y: State, k: int, part: int) -> bool:
     if part != 0 or y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
         return False
     speed = magnitude(packed.ports.row, k, y.g)
-    return bool(speed <= -16.0 * EPS * abs(y.t[0]) * slip_rate(packed, y, k))
+    return bool(speed <= -16.0 * EPS * abs(y.t) * slip_rate(packed, y, k))
 
 
 @kernel
@@ -148,7 +147,7 @@ def transition(
             # released at this very instant: tried stuck again it would be on its cone, and so without end
             r.part[c] = 2
     if contact >= 0 and not lifted and packed.ports.law[contact] != LAW_SMOOTH:
-        if old.mode[contact] == STICK and ports.soft[0] > 0.0 and give_way(packed, s, y, r, old):
+        if old.mode[contact] == STICK and ports.soft > 0.0 and give_way(packed, s, y, r, old):
             pass
         elif old.mode[contact] == STICK:
             r.part[contact] = 2
@@ -158,6 +157,6 @@ def transition(
     code = settle(packed, s, y, r, address)
     if code != 0:
         return code
-    record_changes(ports, y.t[0], y, old, out)
+    record_changes(ports, y.t, y, old, out)
     record(out, y, AFTER)
     return 0

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.contact.event_location import locate, passes_by
 from fricmb.integrate.contact.mode_decision import Rest
 from fricmb.integrate.contact.transition import Before, transition
@@ -42,20 +41,22 @@ NEARLY = 1e-12
 PATIENCE = 10
 
 
-class Clock(NamedTuple):
-    """Step control: ``h`` (1,) next step, ``usual`` (1,) step to start with after a transition, ``span`` (2,) bounds.
+class Clock(Layout):
+    """Step control: ``h`` next step, ``usual`` step to start with after a transition, ``span`` (2,) bounds.
 
-    ``longest`` (1,) step of all; ``stops`` breakpoints; ``same`` (2,) transitions in a row at one instant, and since
-    the time ``retry[1]``; ``found``, ``retry[0]`` space for locating.
+    ``longest`` step of all; ``stops`` breakpoints; transitions in a row at one instant, ``at_once``, and since the time
+    ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.
     """
 
-    h: Floats
-    usual: Floats
+    h: float
+    usual: float
     span: Floats
-    longest: Floats
+    longest: float
     stops: Floats
-    same: Ints
+    at_once: int
+    since_mark: int
     found: Floats
+    mark: float
     retry: Floats
 
 
@@ -70,14 +71,14 @@ def settled(code: int) -> int:
 @kernel
 def incomplete(y: State) -> int:
     """Why the forces of a state could not be found."""
-    return FAIL_INFINITE if y.fault[0] == INFINITE else FAIL_REDUNDANT
+    return FAIL_INFINITE if y.fault == INFINITE else FAIL_REDUNDANT
 
 
 @kernel
 def reject(clock: Clock, one: OneStep, h: float) -> int:
     """Leave y where it is; the next step is h."""
     one.counts[1] += 1
-    clock.h[0] = h
+    clock.h = h
     return REJECTED
 
 
@@ -92,8 +93,8 @@ def advance(
     the transition.
     """
     order = one.tab.c.shape[0]
-    t = y.t[0]
-    h = min(clock.h[0], clock.longest[0])
+    t = y.t
+    h = min(clock.h, clock.longest)
     if h >= left * (1.0 - 1e-9):
         h = left
     elif one.exact.ladder.shape[0] > 0:
@@ -102,7 +103,7 @@ def advance(
         # steps of a ladder come again, and their factors with them
         h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h, ONE_STEP_RUNGS)
     # the shortest rung of the ladder of exact structure is no end of steps: what is asked for is
-    if not min(h, clock.h[0]) > 8.0 * EPS * abs(t) + 1e-280:
+    if not min(h, clock.h) > 8.0 * EPS * abs(t) + 1e-280:
         return end_round_off(packed, s, y, r, old, out, clock, address)
     error = np.inf
     if attempt(packed, s, y, one, acc, h, address):
@@ -115,24 +116,24 @@ def advance(
     contact = find_changing_contact(packed, s, y, end, one, acc, clock.found, address)
     wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
     if one.exact.ladder.shape[0] > 0:
-        wanted = min(wanted, one.exact.cap[0])
+        wanted = min(wanted, one.exact.cap)
     if contact < 0 and error <= 1.0:
-        if end.fault[0] > 0.0:
+        if end.fault > 0.0:
             return FAIL_LAW
         record_inside(packed, s, y, end, one, acc, out, address)
         swap_state(y, end)
         record(out, y, STEP)
         one.counts[0] += 1
-        clock.same[0] = 0
+        clock.at_once = 0
         if h < left:
-            clock.usual[0] = max(h, 0.8 * clock.usual[0])
-        clock.h[0] = wanted
+            clock.usual = max(h, 0.8 * clock.usual)
+        clock.h = wanted
         return ACCEPTED
     if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):
         return reject(clock, one, wanted)
-    if clock.found[0] < 1e-9 and y.mode[contact] == SLIP and h > 1e-6 * clock.usual[0]:
+    if clock.found[0] < 1e-9 and y.mode[contact] == SLIP and h > 1e-6 * clock.usual:
         # slip that has only begun and seems to end at once: a wrong solution of too large a step, not to start from
-        one.last[1] = 0.0
+        one.last_h = 0.0
         return reject(clock, one, 0.2 * h)
     clock.retry[0] = wanted
     contact = locate(packed, s, y, end, one, acc, contact, h, clock.found[0], clock.found, clock.retry, address)
@@ -141,35 +142,35 @@ def advance(
     if contact == -1:
         return reject(clock, one, clock.retry[0])
     lifted = clock.found[1] == 1.0
-    if not lifted and end.t[0] - t > 1e-6 * clock.usual[0] and passes_by(packed, s, y, end, acc, contact):
-        one.last[1] = 0.0
-        return reject(clock, one, 0.5 * (end.t[0] - t))
-    if end.t[0] > t:
+    if not lifted and end.t - t > 1e-6 * clock.usual and passes_by(packed, s, y, end, acc, contact):
+        one.last_h = 0.0
+        return reject(clock, one, 0.5 * (end.t - t))
+    if end.t > t:
         record_inside(packed, s, y, end, one, acc, out, address)
         one.counts[0] += 1
-    clock.same[0] = 0 if end.t[0] - t > 16.0 * EPS * abs(t) else clock.same[0] + 1
-    if clock.same[0] == PATIENCE:
+    clock.at_once = 0 if end.t - t > 16.0 * EPS * abs(t) else clock.at_once + 1
+    if clock.at_once == PATIENCE:
         code = end_round_off(packed, s, y, r, old, out, clock, address)
         if code != FAIL_STEP:
             return code
-    if clock.same[0] > 20 + 4 * y.mode.shape[0] or pile_up(clock, end.t[0], y.mode.shape[0]):
+    if clock.at_once > 20 + 4 * y.mode.shape[0] or pile_up(clock, end.t, y.mode.shape[0]):
         return FAIL_CHATTER
     copy_state(end, y)
-    clock.h[0] = clock.usual[0]
-    one.last[1] = 0.0
+    clock.h = clock.usual
+    one.last_h = 0.0
     return settled(transition(packed, s, y, contact, lifted, r, old, out, address))
 
 
 @kernel
 def pile_up(clock: Clock, t: float, n_c: int) -> bool:
     """Count a transition at t; whether hundreds of them have brought the run on by nothing."""
-    if clock.same[1] == 0:
-        clock.retry[1] = t
-    clock.same[1] += 1
-    if clock.same[1] <= 200 + 20 * n_c:
+    if clock.since_mark == 0:
+        clock.mark = t
+    clock.since_mark += 1
+    if clock.since_mark <= 200 + 20 * n_c:
         return False
-    clock.same[1] = 0
-    return bool(t - clock.retry[1] < 1e-12 * (clock.span[1] - clock.span[0]))
+    clock.since_mark = 0
+    return bool(t - clock.mark < 1e-12 * (clock.span[1] - clock.span[0]))
 
 
 @kernel
@@ -188,14 +189,14 @@ def end_round_off(
         if y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH:
             row0 = packed.ports.row[k]
             speed = magnitude(packed.ports.row, k, y.g)
-            soon = -1e-9 * clock.usual[0] * slip_rate(packed, y, k)
+            soon = -1e-9 * clock.usual * slip_rate(packed, y, k)
             if speed <= max(soon, NEARLY * y.size[row0] + 1e3 * kept[k]):
                 found = True
                 r.small[k] = speed
-    clock.same[0] += 1
-    if not found or clock.same[0] > 20 + 4 * y.mode.shape[0]:
+    clock.at_once += 1
+    if not found or clock.at_once > 20 + 4 * y.mode.shape[0]:
         return FAIL_STEP
-    clock.h[0] = clock.usual[0]
+    clock.h = clock.usual
     code = settled(transition(packed, s, y, -1, False, r, old, out, address))
     r.small[:] = kept
     return code
@@ -210,7 +211,7 @@ def record_inside(
     update_scales(packed, y, one, acc)
     st, w, tab = one.st, one.w, one.tab
     n_s = tab.c.shape[0]
-    h = end.t[0] - y.t[0]
+    h = end.t - y.t
     add_work(packed, s, end, one, h)
     n, nc = y.q.shape[0], y.mode.shape[0]
     for j in range(n_s - 1):

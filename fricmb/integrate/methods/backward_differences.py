@@ -3,43 +3,46 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, HANDOVER, REJECTED
 from fricmb.integrate.step.step_control import BDF_RUNGS, BDF_SAFETY, ladder, step_factor
 
-#: What ``status`` counts: the order; steps since it or the step changed; 1 where BDF is on; rejections in a row; steps
-#: of the one-step method to wait for before BDF is tried again; the last such wait; steps since its start; the last
-#: wait because it was the slower of the two.
-ORDER, EQUAL, ON, REJECTIONS, WAIT, WAITED, SINCE, SLOWER = range(8)
 
+class Differences(Layout):
+    """Backward differences ``D`` (8, n_y) of the n_y signals that a step predicts, at step ``h``.
 
-class Differences(NamedTuple):
-    """Backward differences ``D`` (8, n_y) of the n_y signals that a step predicts, at step ``h`` (1,).
-
-    ``status`` (8,): see above.  ``good`` (1,) last accepted step.  ``new``, ``guess``, ``lag``, ``d`` (n_y,) values,
-    prediction, psi without it, and correction of a step.  ``gamma`` (7,) sums 1 + 1/2 + ...;  ``unit`` (1,) allowed
-    local error per unit of time, relative to rtol; ``cost`` (1,) of a one-step step in BDF steps.
-    ``U``, ``E``, ``column`` space for rescaling.
+    ``order``; steps since it or the step changed, ``equal``; whether BDF is ``on``; ``rejections`` in a row; steps of
+    the one-step method to ``wait`` for before BDF is tried again, the last such wait, ``waited``, and the last one
+    because BDF was the slower of the two, ``slower``; steps ``since`` its start. ``good`` last accepted step. ``new``,
+    ``guess``, ``lag``, ``d`` (n_y,) values, prediction, psi without it, and correction of a step. ``gamma`` (7,) sums
+    1 + 1/2 + ...;  ``unit`` allowed local error per unit of time, relative to rtol; ``cost`` of a one-step step in BDF
+    steps. ``U``, ``E``, ``column`` space for rescaling.
     """
 
     D: Floats2
-    h: Floats
-    status: Ints
-    good: Floats
+    h: float
+    order: int
+    equal: int
+    on: int
+    rejections: int
+    wait: int
+    waited: int
+    since: int
+    slower: int
+    good: float
     new: Floats
     guess: Floats
     lag: Floats
     d: Floats
     gamma: Floats
-    unit: Floats
-    cost: Floats
+    unit: float
+    cost: float
     U: Floats2
     E: Floats2
     column: Floats
@@ -47,22 +50,21 @@ class Differences(NamedTuple):
 
 def differences(n_y: int, span: float, cost: float) -> Differences:
     """Space for the history of a run over ``span``; ``cost`` of a one-step step, in steps of BDF."""
-    signal, one = np.zeros(n_y), np.zeros(1)
+    signal = np.zeros(n_y)
     square = np.zeros((MAX_ORDER + 1, MAX_ORDER + 1))
     return room(
         Differences(
             D=np.zeros((8, n_y)),
-            h=one,
-            status=np.zeros(8, np.int64),
-            good=one.copy(),
+            h=0.0, order=0, equal=0, on=0, rejections=0, wait=0, waited=0, since=0, slower=0,
+            good=0.0,
             new=signal,
             guess=signal.copy(),
             lag=signal.copy(),
             d=signal.copy(),
             gamma=np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))]),
             # a hundredth of the error is spent on a hundredth of the run, and the sum stays some 100 rtol
-            unit=np.array([100.0 / max(span, 1e-300)]),
-            cost=np.array([cost]),
+            unit=100.0 / max(span, 1e-300),
+            cost=cost,
             U=square,
             E=square.copy(),
             column=np.zeros(8),
@@ -74,7 +76,7 @@ def differences(n_y: int, span: float, cost: float) -> Differences:
 def no_differences() -> Differences:
     """A history that waits for ever: BDF never begins, and every step is one of the one-step method."""
     past = differences(0, 1.0, 1.0)
-    past.status[WAIT], past.status[SLOWER] = 2**62, 1
+    past.wait, past.slower = 2**62, 1
     return past
 
 
@@ -87,7 +89,7 @@ GROWTH = 3.0
 @kernel
 def predict(past: Differences) -> None:
     """Prediction, and psi (into ``new``; ``lag``: psi without the prediction)."""
-    k = past.status[ORDER]
+    k = past.order
     for i in range(past.guess.shape[0]):
         guess = past.D[0, i]
         psi = 0.0
@@ -102,7 +104,7 @@ def predict(past: Differences) -> None:
 @kernel
 def bring_forward(past: Differences, i: int, last: int) -> None:
     """Bring the differences of signal i, from the order down to ``last``, to the end of the step corrected by ``d``."""
-    k = past.status[ORDER]
+    k = past.order
     past.D[k + 2, i] = past.d[i] - past.D[k + 1, i]
     past.D[k + 1, i] = past.d[i]
     for j in range(k, last - 1, -1):
@@ -112,49 +114,49 @@ def bring_forward(past: Differences, i: int, last: int) -> None:
 @kernel
 def count_step(past: Differences) -> None:
     """Count an accepted step."""
-    past.status[EQUAL] += 1
-    past.status[REJECTIONS] = 0
-    past.status[SINCE] += 1
-    past.good[0] = past.h[0]
+    past.equal += 1
+    past.rejections = 0
+    past.since += 1
+    past.good = past.h
 
 
 @kernel
 def begin_at(past: Differences, order: int, h: float) -> None:
     """Begin with the differences of an order at step h."""
-    past.h[0] = h
-    past.status[ORDER] = order
-    past.status[ON] = 1
-    past.status[EQUAL] = past.status[REJECTIONS] = past.status[SINCE] = 0
+    past.h = h
+    past.order = order
+    past.on = 1
+    past.equal = past.rejections = past.since = 0
 
 
 @kernel
 def hand_over(past: Differences) -> None:
     """Leave the next steps to the one-step method; where BDF came to nothing it is not tried again at once."""
-    past.status[ON] = 0
-    past.status[WAITED] = min(50, 2 * past.status[WAITED] + 1) if past.status[SINCE] < 8 else 0
-    past.status[WAIT] = past.status[WAITED]
-    if past.status[SINCE] > 4 * PATIENCE:
-        past.status[SLOWER] = 0
+    past.on = 0
+    past.waited = min(50, 2 * past.waited + 1) if past.since < 8 else 0
+    past.wait = past.waited
+    if past.since > 4 * PATIENCE:
+        past.slower = 0
 
 
 @kernel
 def is_slower(past: Differences, usual: float) -> bool:
     """Whether the one-step method with steps ``usual`` gets on faster: the run is left to it, longer each time."""
-    if past.status[SINCE] <= PATIENCE or past.h[0] * past.cost[0] >= usual:
+    if past.since <= PATIENCE or past.h * past.cost >= usual:
         return False
-    past.status[ON] = 0
-    past.status[SLOWER] = min(2000, max(50, 4 * past.status[SLOWER]))
-    past.status[WAIT] = past.status[SLOWER]
+    past.on = 0
+    past.slower = min(2000, max(50, 4 * past.slower))
+    past.wait = past.slower
     return True
 
 
 @kernel
 def may_begin(past: Differences, code: int) -> bool:
     """Whether BDF may begin after a step of the one-step method that ended with ``code``, or has to wait."""
-    if code == CHANGED and past.status[SLOWER] == 0:
-        past.status[WAIT] = 0
-    elif code == ACCEPTED and past.status[WAIT] > 0:
-        past.status[WAIT] -= 1
+    if code == CHANGED and past.slower == 0:
+        past.wait = 0
+    elif code == ACCEPTED and past.wait > 0:
+        past.wait -= 1
     else:
         return bool(code == ACCEPTED)
     return False
@@ -167,7 +169,7 @@ PATIENCE = 16
 @kernel
 def rescale(past: Differences, factor: float) -> None:
     """Differences for the step ``factor`` h (Byrne and Hindmarsh 1975; as in scipy's BDF, with its R(factor) R(1))."""
-    k = past.status[ORDER]
+    k = past.order
     for pass_ in range(2):
         target = past.U if pass_ == 0 else past.E
         c = factor if pass_ == 0 else 1.0
@@ -189,18 +191,18 @@ def rescale(past: Differences, factor: float) -> None:
             for j in range(k + 1):
                 value += past.E[j, i] * past.column[j]
             past.D[i, y] = value
-    past.h[0] *= factor
-    past.status[EQUAL] = 0
+    past.h *= factor
+    past.equal = 0
 
 
 @kernel
 def reject(past: Differences, counts: Ints, error: float, least: float) -> int:
     """Shorten a step whose error is above 1, to its part ``least`` at least; HANDOVER where nothing is known of it."""
-    past.status[REJECTIONS] += 1
+    past.rejections += 1
     counts[1] += 1
     if not error < 1e300:
         return HANDOVER
-    rescale(past, ladder(max(least, step_factor(error, past.status[ORDER], BDF_SAFETY)), BDF_RUNGS))
+    rescale(past, ladder(max(least, step_factor(error, past.order, BDF_SAFETY)), BDF_RUNGS))
     return REJECTED
 
 
@@ -218,6 +220,6 @@ def best_order(k: int, lower: float, error: float, higher: float) -> tuple[int, 
 @kernel
 def change_order(past: Differences, order: int, step: float) -> None:
     """Go on with an order, and the step times ``step`` where that is worth it."""
-    if order != past.status[ORDER] or step > 1.3 or step < 1.0:
-        past.status[ORDER] = order
+    if order != past.order or step > 1.3 or step < 1.0:
+        past.order = order
         rescale(past, step)

@@ -11,11 +11,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
-from fricmb.integrate.methods.backward_differences import (
-    SLOWER,
-    WAIT,
-    differences,
-)
+from fricmb.integrate.methods.backward_differences import differences
 from fricmb.integrate.methods.bdf_stability import guard_of, spectrum
 from fricmb.integrate.methods.one_step import run_one_step
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
@@ -37,7 +33,7 @@ SETTLE = 8
 @entry
 def jacobian_at(packed: Packed, s: Scratch, y: State, one: OneStep) -> None:
     """The Jacobian of the structure at a state, for the spectrum."""
-    set_instant(packed.signals, s, y.t[0], y.q, y.v)
+    set_instant(packed.signals, s, y.t, y.q, y.v)
     jacobians(packed, s, one.fac)
 
 
@@ -107,7 +103,7 @@ def bdf_loop(run: Collector, one: OneStep, multi: OneStep) -> Callable[[], int]:
     spectral = spectrum(problem, run.packed.structure, multi.fac.K, multi.fac.C)
     signals = 2 * problem.n + problem.n_z + problem.n_c + 2
     past = differences(signals, run.t_end - run.start.t, cost(problem, len(one.tab.c)) / cost(problem, 1))
-    past.status[WAIT], past.status[SLOWER] = SETTLE, 1
+    past.wait, past.slower = SETTLE, 1
     return partial(
         drive, run.packed, run.scratch, run.y, run.end, one, multi, run.acc, past, guard_of(problem, spectral),
         run.rest, run.old, run.rows, run.clock, run.address,

@@ -63,6 +63,6 @@ class Bdf2Paper(Integrator):
             acc = set_accuracy(run, Tolerance(rtol=1e-8))
             code, y = run.begin(), run.y
             values = np.zeros(2 * problem.n + problem.n_z)
-            last = room(Last(values, np.zeros(1), y.mode.copy(), y.n.copy(), y.mode.copy()))
+            last = room(Last(values, 0.0, y.mode.copy(), y.n.copy(), y.mode.copy()))
             given = (run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end, run.address)
             return run_loop(run, code, partial(drive_paper, *given), None, progress)

@@ -5,10 +5,9 @@ Kinkaid, O'Reilly and Papadopoulos (2005), Eqs. (12) to (14); see :mod:`~fricmb.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.methods.attempt_step import incomplete
 from fricmb.integrate.methods.time_loop import crowded
@@ -27,11 +26,11 @@ from fricmb.integrate.step.stage_predictor import contacts_from_start
 from fricmb.integrate.step.stages import solve_stages
 
 
-class Last(NamedTuple):
-    """The step before: values ``y`` (n_y,), ``h`` (1,) its size (0: none), its modes and directions; trial modes."""
+class Last(Layout):
+    """The step before: values ``y`` (n_y,), ``h`` its size (0: none), its modes and directions; trial modes."""
 
     y: Floats
-    h: Floats
+    h: float
     mode: Codes
     n: Floats
     trial: Codes
@@ -41,7 +40,7 @@ class Last(NamedTuple):
 def formula(y: State, one: OneStep, last: Last, h: float, two: bool) -> float:
     """Put the history of the step into psi; returns b h, of BDF2 (``two``) or backward Euler."""
     n = y.q.shape[0]
-    h0 = last.h[0]
+    h0 = last.h
     a1, a2, b = 0.0, 1.0, 1.0
     if two:
         a1 = -h * h / (h0 * (h0 + 2.0 * h))
@@ -61,14 +60,14 @@ def solve_with(
 ) -> bool:
     """Solve the step for the given modes."""
     st, w = one.st, one.w
-    same = last.h[0] > 0.0
+    same = last.h > 0.0
     for k in range(mode.shape[0]):
         if mode[k] != last.mode[k]:
             same = False
     beta_h = formula(y, one, last, h, same)
     if not prepare_at(packed, s, y, one, beta_h, True, address):
         return False
-    st.t[0] = y.t[0] + h
+    st.t[0] = y.t + h
     st.hA[0, 0] = beta_h
     for i in range(y.q.shape[0]):
         st.V[0, i] = y.v[i]
@@ -110,8 +109,8 @@ def drive_paper(
     while True:
         if stopped() or crowded(out, 2, y.mode.shape[0]):
             return FULL
-        left = t_end - y.t[0]
-        if left <= 1e-12 * max(abs(t_end), abs(y.t[0])):
+        left = t_end - y.t
+        if left <= 1e-12 * max(abs(t_end), abs(y.t)):
             return DONE
         step = h if left > h * (1.0 + 1e-9) else left
         for k in range(y.mode.shape[0]):
@@ -126,7 +125,7 @@ def drive_paper(
         if not settled:
             return FAIL_STEP
         copy_state(y, end)
-        end.t[0] = y.t[0] + step if step < left else t_end
+        end.t = y.t + step if step < left else t_end
         for i in range(n):
             end.q[i] = one.st.Q[0, i]
             end.v[i] = one.st.V[0, i]
@@ -138,14 +137,14 @@ def drive_paper(
             end.n[a] = one.w.n[0, a]
         if not complete(packed, s, end, one.w.sizes, one.w.pivots, address):
             return incomplete(end)
-        if end.fault[0] > 0.0:
+        if end.fault > 0.0:
             return FAIL_LAW
         for i in range(y.rate.shape[0]):
             end.work[i] = y.work[i] + 0.5 * step * (y.rate[i] + end.rate[i])
         # the published scheme takes the force from the step's own equations
         for a in range(y.F.shape[0]):
             end.F[a] = one.w.F[0, a]
-        if record_changes(packed.ports, end.t[0], end, last, out):
+        if record_changes(packed.ports, end.t, end, last, out):
             for k in range(y.mode.shape[0]):
                 end.mode[k] = y.mode[k]
             record(out, end, BEFORE)
@@ -166,6 +165,6 @@ def drive_paper(
             acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, end.g))
         for a in range(y.n.shape[0]):
             last.n[a] = end.n[a]
-        last.h[0] = step
+        last.h = step
         one.counts[0] += 1
         copy_state(end, y)

@@ -15,10 +15,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.methods.backward_differences import (
     ADAMS,
-    EQUAL,
     GROWTH,
-    ORDER,
-    REJECTIONS,
     Differences,
     begin_at,
     best_order,
@@ -54,13 +51,13 @@ def solve_formula(
     """Solve the step's equations from the prediction."""
     n = y.q.shape[0]
     st, w = one.st, one.w
-    h = past.h[0]
-    beta_h = h / past.gamma[past.status[ORDER]]
+    h = past.h
+    beta_h = h / past.gamma[past.order]
     nonlinear = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
-    again = nonlinear and one.fac.made[one.fac.slot[0]] != beta_h
+    again = nonlinear and one.fac.made[one.fac.slot] != beta_h
     if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
         return False
-    st.t[0] = y.t[0] + h
+    st.t[0] = y.t + h
     st.hA[0, 0] = beta_h
     for i in range(n):
         st.psi_q[i] = past.new[i]
@@ -79,7 +76,7 @@ def solve_formula(
             for i in range(n):
                 w.g[0, a] += packed.ports.W[i, a] * (past.guess[n + i] - y.v[i])
             w.r[0, k] += w.n[0, a] * w.g[0, a]
-    part = min(1e-3, 0.02 * h * past.unit[0])
+    part = min(1e-3, 0.02 * h * past.unit)
     newton_tolerances(acc, h, y, one.tol, one.scale, part)
     one.counts[2] += 1
     return solve_stages(packed, one.tab, s, one.fac, st, w, y.mode, one.tol, one.scale, address) > 0
@@ -91,10 +88,10 @@ def scaled(
 ) -> float:
     """Largest of weight * error (n_y,) by signal, against rtol and the share of the error that this step may use."""
     n = y.q.shape[0]
-    h = past.h[0]
+    h = past.h
     top_q, top_v = widest(acc.q), widest(acc.v)
     worst = 0.0
-    share = max(acc.rtol[0] * min(1.0, h * past.unit[0]), 4e-15)
+    share = max(acc.rtol * min(1.0, h * past.unit), 4e-15)
     for i in range(n):
         size_v = max(acc.v[i], abs(past.new[n + i]), acc.floor_v[i], 1e-10 * top_v, 1e-290)
         size_v = max(size_v, grain(packed, y, one.w, acc, h, i) / share)
@@ -108,7 +105,7 @@ def scaled(
 @kernel
 def accept(y: State, end: State, past: Differences) -> None:
     """Bring the differences to the end of the step and the energies with them."""
-    k = past.status[ORDER]
+    k = past.order
     n_y = past.D.shape[1]
     n = y.q.shape[0]
     for i in range(n_y):
@@ -124,7 +121,7 @@ def accept(y: State, end: State, past: Differences) -> None:
         gained = 0.0
         for j in range(k + 1):
             gained += ADAMS[j] * past.D[j, rates + i]
-        end.work[i] = y.work[i] + past.h[0] * gained
+        end.work[i] = y.work[i] + past.h * gained
     count_step(past)
 
 
@@ -133,20 +130,20 @@ def select_order(
     packed: Packed, y: State, one: OneStep, acc: Accuracy, past: Differences, guard: Guard, error: float, left: float
 ) -> None:
     """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder."""
-    k = past.status[ORDER]
-    if past.status[EQUAL] <= k:
+    k = past.order
+    if past.equal <= k:
         return
     lower = higher = np.inf
     if k > 1:
         lower = scaled(packed, y, one, acc, past, past.D[k], 1.0 / k)
-    if k < MAX_ORDER and admissible(guard, k + 1, past.h[0], left):
+    if k < MAX_ORDER and admissible(guard, k + 1, past.h, left):
         higher = scaled(packed, y, one, acc, past, past.D[k + 2], 1.0 / (k + 2))
     best_k, best = best_order(k, lower, error, higher)
     # a hundred steps at least: where nothing moves, no error says how fast a load changes
-    step = ladder(min(best, GROWTH, 1.0 / (past.h[0] * past.unit[0])), BDF_RUNGS)
-    while step > 1.0 and not admissible(guard, best_k, past.h[0] * step, left):
+    step = ladder(min(best, GROWTH, 1.0 / (past.h * past.unit)), BDF_RUNGS)
+    while step > 1.0 and not admissible(guard, best_k, past.h * step, left):
         step = ladder(0.99 * step, BDF_RUNGS)
-    if not admissible(guard, best_k, past.h[0] * step, left):
+    if not admissible(guard, best_k, past.h * step, left):
         best_k = 2
     change_order(past, best_k, step)
 
@@ -158,14 +155,14 @@ def bdf_step(
 ) -> int:  # fmt: skip
     """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), or HANDOVER."""
     n, nz = y.q.shape[0], y.z.shape[0]
-    k = past.status[ORDER]
-    if past.h[0] > left or past.status[REJECTIONS] > 3:
+    k = past.order
+    if past.h > left or past.rejections > 3:
         return HANDOVER
     predict(past)
     copy_state(y, end)
     if not solve_formula(packed, s, y, one, acc, past, address):
         forget(one.fac)
-        past.status[REJECTIONS] += 2
+        past.rejections += 2
         one.counts[1] += 1
         rescale(past, 0.5)
         return REJECTED
@@ -179,18 +176,18 @@ def bdf_step(
         past.d[i] = past.lag[i] + one.st.hA[0, 0] * one.st.V[0, i]
     for i in range(n, 2 * n + nz):
         past.d[i] = past.new[i] - past.guess[i]
-    state_noise(packed, one, acc, past.h[0])
+    state_noise(packed, one, acc, past.h)
     error = scaled(packed, y, one, acc, past, past.d, 1.0 / (k + 1))
-    error = max(error, too_long(growth(packed, s, y, one, past.h[0]), k))
-    error = max(error, jump_error(packed, s, y, y.t[0] + past.h[0], end.q, end.v, acc, past.h[0]))
+    error = max(error, too_long(growth(packed, s, y, one, past.h), k))
+    error = max(error, jump_error(packed, s, y, y.t + past.h, end.q, end.v, acc, past.h))
     if not error <= 1.0:
         return reject(past, one.counts, error, 0.2)
-    end.t[0] = y.t[0] + past.h[0]
+    end.t = y.t + past.h
     for a in range(y.n.shape[0]):
         end.n[a] = one.w.n[0, a]
     if not complete(packed, s, end, one.w.sizes, one.w.pivots, address) or meets_transition(packed, s, y, end, guard):
         return HANDOVER
-    if end.fault[0] > 0.0:
+    if end.fault > 0.0:
         return FAIL_LAW
     for i in range(y.rate.shape[0]):
         past.d[2 * n + nz + i] = end.rate[i] - past.guess[2 * n + nz + i]
@@ -215,7 +212,7 @@ def start_history(
     tab, st, w = one.tab, one.st, one.w
     n_s = tab.c.shape[0]
     n, nz, nr = y.q.shape[0], y.z.shape[0], y.rate.shape[0]
-    H = y.t[0] - before.t[0]
+    H = y.t - before.t
     k = min(4, n_s)
     step = min(h, H / k)
     for j in range(k + 1):

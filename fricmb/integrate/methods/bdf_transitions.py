@@ -27,7 +27,7 @@ def excess(packed: Packed, s: Scratch, y: State, k: int) -> float:
 @kernel
 def note_loads(packed: Packed, s: Scratch, start: State, y: State, guard: Guard) -> None:
     """Keep how fast stuck forces near their limits in the one-step step from ``start`` to y, after which BDF begins."""
-    h = y.t[0] - start.t[0]
+    h = y.t - start.t
     for k in range(y.mode.shape[0]):
         guard.over[k] = 0.0
         if y.mode[k] == STICK and start.mode[k] == STICK and packed.ports.law[k] != LAW_SMOOTH:
@@ -38,7 +38,7 @@ def note_loads(packed: Packed, s: Scratch, start: State, y: State, guard: Guard)
 @kernel
 def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: Guard) -> bool:
     """Whether some contact changes its mode between y and ``end``, at its end or between (by cubic interpolation)."""
-    h = end.t[0] - y.t[0]
+    h = end.t - y.t
     meets = False
     for k in range(y.mode.shape[0]):
         if packed.ports.var[k] >= 0:

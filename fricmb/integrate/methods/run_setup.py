@@ -35,7 +35,7 @@ NOISE = 1e-11
 def set_accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
     """Running scales at the start; ``atol``, or a trifle of what the scene's forces bring, gives floors under them."""
     start, acc = run.start, run.acc
-    acc.rtol[0] = tolerance.rtol
+    acc.rtol = tolerance.rtol
     given = (tolerance.atol_q, tolerance.atol_v)
     for floor, atol, natural in zip((acc.floor_q, acc.floor_v), given, (run.natural_q, run.natural_v), strict=True):
         floor[:] = NOISE * natural if atol is None else np.asarray(atol) / tolerance.rtol
@@ -67,12 +67,12 @@ class Collector:
         set_out(self.end, start)
         self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
         self.rows = rows(problem, self.chunk, columns)
-        half = int(self.packed.structure.half[0])
+        half = int(self.packed.structure.half)
         self.address = places_of(half, "step_error", *further) if places is None else places
         self.natural_v, self.natural_q = natural_scales(
             problem, self.packed, self.scratch, start.t, t_end - start.t, start.q
         )
-        self.acc.noise[0] = NOISE * np.max(self.natural_v, initial=0.0)
+        self.acc.noise = NOISE * np.max(self.natural_v, initial=0.0)
         fill_rest(self.rest, self.packed)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
         self.chunks = Chunks(self.rows, "values", "kind", "mode")
@@ -110,7 +110,7 @@ def cost(problem: Problem, stages: int) -> float:
     """Cost of a step of so many stages, about in microseconds (measured; only ratios are used)."""
     u = stages * (problem.m + problem.n_z + problem.n_v)
     ports = 0.02 * u**2 + 0.0005 * u**3
-    if packed_of(problem).structure.half[0] >= 0:  # vectors count, not matrices
+    if packed_of(problem).structure.half >= 0:  # vectors count, not matrices
         return 1.5 + 0.1 * (stages + 1.5) * problem.n + ports
     return 1.5 + 0.5 * stages + 0.002 * stages * problem.n**2 + ports
 
@@ -161,7 +161,7 @@ def set_clock(run: Collector) -> None:
     """Step control at the start of a run."""
     clock = run.clock
     omega = float(np.max(run.problem.omega, initial=0.0))
-    clock.h[0] = clock.usual[0] = first_step(run.y.v, run.y.a, run.t_end - run.start.t, PART, omega)
+    clock.h = clock.usual = first_step(run.y.v, run.y.a, run.t_end - run.start.t, PART, omega)
     clock.span[:] = run.start.t, run.t_end
-    clock.longest[0] = longest_step(run)
+    clock.longest = longest_step(run)
     clock.stops[:] = run.packed.breakpoints

@@ -69,11 +69,13 @@ def implicit_step(problem: Problem, tableau: Tableau) -> OneStep:
 def made(problem: Problem) -> RunWorkspace:
     """Empty arrays for a run."""
     n, nc, nz = problem.n, problem.n_c, problem.n_z
-    floats = [np.zeros(size) for size in (1, n, n, nz, nc, n, n, n, 1)]
+    floats = [np.zeros(size) for size in (n, n, nz, nc, n, n, n)]
     stops = np.zeros(problem.signals.breakpoints.size)
-    h, usual, longest = (np.zeros(1) for _ in range(3))
-    clock = Clock(h, usual, np.zeros(2), longest, stops, np.zeros(2, np.int64), np.zeros(2), np.zeros(2))
+    clock = Clock(
+        h=0.0, usual=0.0, span=np.zeros(2), longest=0.0, stops=stops, at_once=0, since_mark=0, found=np.zeros(2),
+        mark=0.0, retry=np.zeros(1),
+    )  # fmt: skip
     return RunWorkspace(
         scratch_of(problem), state_of(problem), state_of(problem), rest_of(problem),
-        Before(np.zeros(nc, np.int8), np.zeros(problem.m)), Accuracy._make(floats), clock,
+        Before(np.zeros(nc, np.int8), np.zeros(problem.m)), Accuracy._make([0.0, *floats, 0.0]), clock,
     )  # fmt: skip

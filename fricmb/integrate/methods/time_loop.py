@@ -6,13 +6,7 @@ from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.contact.mode_decision import Rest
 from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.methods.attempt_step import Clock, advance, settled
-from fricmb.integrate.methods.backward_differences import (
-    ON,
-    Differences,
-    hand_over,
-    is_slower,
-    may_begin,
-)
+from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.methods.bdf_stability import Guard
 from fricmb.integrate.methods.bdf_step import bdf_step, start_history
 from fricmb.integrate.methods.bdf_transitions import calm, note_loads
@@ -33,7 +27,7 @@ def arrive(
     packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock, stop: float, address: Ints
 ) -> int:
     """Go through a stop that has been reached: DONE at the end of the run, else as a transition."""
-    y.t[0] = stop
+    y.t = stop
     if out.used[0] > 0:
         # the last row is this instant up to round-off
         out.values[out.used[0] - 1, 0] = stop
@@ -41,7 +35,7 @@ def arrive(
         return DONE
     stop = set_window(clock, s.window, stop)
     code = settled(transition(packed, s, y, -1, False, r, old, out, address))
-    clock.h[0] = min(clock.usual[0], 0.1 * (stop - y.t[0]))
+    clock.h = min(clock.usual, 0.1 * (stop - y.t))
     return code
 
 
@@ -60,28 +54,28 @@ def drive(
 
     Steps are those of the one-step method ``one``, and where the history ``past`` lets BDF begin those of ``multi``.
     """
-    stop = set_window(clock, s.window, y.t[0])
+    stop = set_window(clock, s.window, y.t)
     while True:
         if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
-        left = stop - y.t[0]
-        if reached(y.t[0], stop):
+        left = stop - y.t
+        if reached(y.t, stop):
             code = arrive(packed, s, y, r, old, out, clock, stop, address)
-            stop = set_window(clock, s.window, y.t[0])
-            one.last[1] = 0.0
-            past.status[ON] = 0
-        elif past.status[ON] == 1:
+            stop = set_window(clock, s.window, y.t)
+            one.last_h = 0.0
+            past.on = 0
+        elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left, address)
-            if code == ACCEPTED and is_slower(past, clock.usual[0]):
-                clock.h[0] = clock.usual[0]
+            if code == ACCEPTED and is_slower(past, clock.usual):
+                clock.h = clock.usual
             if code == HANDOVER:
-                clock.h[0] = max(clock.h[0], past.h[0])
+                clock.h = max(clock.h, past.h)
                 hand_over(past)
         else:
             code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
-            h = y.t[0] - end.t[0]
+            h = y.t - end.t
             if may_begin(past, code) and calm(packed, y, h):
-                usual = past.good[0] if past.good[0] > 0.0 else h
+                usual = past.good if past.good > 0.0 else h
                 start_history(packed, s, end, y, one, past, min(usual, 0.25 * h), address)
                 note_loads(packed, s, end, y, guard)
                 if packed.elements.address.shape[0] > 0:

@@ -26,7 +26,7 @@ def kinematics(packed: Packed, s: Scratch, y: State) -> None:
     n = y.q.shape[0]
     ports = packed.ports
     nu = s.ddu.shape[0]
-    set_instant(packed.signals, s, y.t[0], y.q, y.v)
+    set_instant(packed.signals, s, y.t, y.q, y.v)
     for a in range(y.g.shape[0]):
         value = -belt_velocity(ports, s, n, a)
         size = abs(value)
@@ -49,7 +49,7 @@ def known_forces(packed: Packed, s: Scratch, y: State) -> None:
     """Forces of slipping and smooth contacts (stuck ones 0), and relative accelerations a0 under them."""
     ports = packed.ports
     n = y.q.shape[0]
-    y.fault[0] = 0.0
+    y.fault = 0.0
     structure_force(packed.structure, packed.elements, packed.spread, s, y.f)
     for k in range(y.mode.shape[0]):
         row0 = ports.row[k]
@@ -68,7 +68,7 @@ def known_forces(packed: Packed, s: Scratch, y: State) -> None:
             if y.mode[k] == SLIP:
                 mu = coefficient(ports, packed.laws, k, s, r, y.N[k])[0]
                 if mu < 0.0:
-                    y.fault[0] = NEGATIVE
+                    y.fault = NEGATIVE
             for a in range(row0, row0 + d):
                 # not g/|g|: close to r = 0 the direction in g is lost in round-off, and the stages know it
                 y.F[a] = -mu * y.N[k] * y.n[a]
@@ -132,7 +132,7 @@ def solve_response(
     refinement.  What the softening leaves falls by its size in each round, and shares of the load are equal to
     round-off over softening.
     """
-    if ports.soft[0] == 0.0:
+    if ports.soft == 0.0:
         fill_response(ports, y, codes, zero, size, 0.0)
         return bool(solve_real(address[0], y.J, y.rhs, size, sizes, pivots) == 0)
     b, x = y.rhs[:size].copy(), np.zeros(size)
@@ -167,7 +167,7 @@ def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots, addres
         return True
     for i in range(size):
         if not abs(y.rhs[i]) < np.inf:
-            y.fault[0] = INFINITE
+            y.fault = INFINITE
             return False
     if not solve_response(ports, y, y.mode, True, size, sizes, pivots, address):
         return False
@@ -208,7 +208,7 @@ def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots
     known_forces(packed, s, y)
     if not stuck_forces(packed, y, sizes, pivots, address):
         return False
-    if packed.ports.soft[0] > 0.0:
+    if packed.ports.soft > 0.0:
         share_load(packed, s, y.mode, y.N, y.F, y.way, 1.0)
     powers(packed, s, y.F, y.N, y.g, y.rate)
     return True

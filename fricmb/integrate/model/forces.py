@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.problem_structs import Packed, Ports, Spread, Table
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import Floats, Problem
 
 
-class Scratch(NamedTuple):
+class Scratch(Layout):
     """X = [t, q, v, u, u'], the second derivatives of the signals, and space for one template's call.
 
     ``window`` (2,): the interval between two breakpoints on whose inner side functions of time are evaluated.

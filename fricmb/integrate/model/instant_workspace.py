@@ -37,4 +37,4 @@ def _find_sizes(problem: Problem) -> tuple[int, ...]:
     structure = packed_of(problem).structure
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0))
     own = problem.n, problem.n_u, problem.n_z, problem.m, problem.n_c, problem.n_v, problem.signals.breakpoints.size
-    return (*own, *longest_call(problem), states, int(structure.half[0]), len(structure.column))
+    return (*own, *longest_call(problem), states, int(structure.half), len(structure.column))

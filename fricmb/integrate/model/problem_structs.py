@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
@@ -24,7 +22,7 @@ from fricmb.integrate.problem import (
 from fricmb.integrate.run.array_cache import cached_by_content
 
 
-class Table(NamedTuple):
+class Table(Layout):
     """Compiled functions with their parameters and the linear forms of their arguments (see Templates)."""
 
     address: Ints
@@ -37,11 +35,11 @@ class Table(NamedTuple):
     form_constant: Floats
 
 
-class Ports(NamedTuple):
+class Ports(Layout):
     """Contacts.
 
     ``var`` (n_c,) numbers those with a varying normal force, -1 for the others; ``acts``: both bodies feel it;
-    D = W^T M^-1 W; ``soft`` (1,) relative softening of stuck contacts whose forces would not be determined.
+    D = W^T M^-1 W; ``soft`` relative softening of stuck contacts whose forces would not be determined.
     """
 
     row: Ints
@@ -58,10 +56,10 @@ class Ports(NamedTuple):
     N0: Floats
     var: Ints
     acts: Codes
-    soft: Floats
+    soft: float
 
 
-class Spread(NamedTuple):
+class Spread(Layout):
     """Where the local forces of nonlinear elements act."""
 
     f_start: Ints
@@ -70,7 +68,7 @@ class Spread(NamedTuple):
     coefficient: Floats
 
 
-class Packed(NamedTuple):
+class Packed(Layout):
     """All of a problem."""
 
     structure: Structure
@@ -157,7 +155,7 @@ def _pack(problem: Problem) -> Packed:
         mobility_at_contacts(problem),
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
-        (contacts.normal == NORMAL_LAW).astype(np.int8), np.array([softness(problem)]),
+        (contacts.normal == NORMAL_LAW).astype(np.int8), softness(problem),
     )  # fmt: skip
     return room(Packed(
         structure, ports, _table(problem.signals.table), _table(contacts.law_table), _table(contacts.normal_table),

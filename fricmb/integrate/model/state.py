@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.problem import SLIP, Codes, Floats, Problem, Start
 
 #: What can be wrong with a state: see State.fault.
 NEGATIVE, INFINITE = 1.0, 2.0
 
 
-class State(NamedTuple):
-    """The state of a run with all that follows from it; ``t`` (1,), ``n`` (m,) directions of slip.
+class State(Layout):
+    """The state of a run with all that follows from it; ``t`` time, ``n`` (m,) directions of slip.
 
     ``a`` (n,) accelerations, ``zd`` (n_z,) rates, ``work`` and ``rate`` (n_c+2,) energies and powers (see ``powers``).
     ``a0`` (m,) relative accelerations without the forces of stuck contacts, ``size`` (m,)
     sums of magnitudes behind g (its round-off), ``wd`` (m,) rates of the prescribed part.
-    ``fault`` (1,): NEGATIVE where a slip coefficient has turned so, INFINITE where an acceleration has.
+    ``fault``: NEGATIVE where a slip coefficient has turned so, INFINITE where an acceleration has.
     ``low`` (n,): what the last additions to q have lost to round-off.  ``way`` (m,): see ``share``.
     """
 
-    t: Floats
+    t: float
     q: Floats
     v: Floats
     z: Floats
@@ -42,7 +43,7 @@ class State(NamedTuple):
     wd: Floats
     J: Floats
     rhs: Floats
-    fault: Floats
+    fault: float
     low: Floats
     way: Floats
 
@@ -51,15 +52,15 @@ def state_of(problem: Problem) -> State:
     """An empty state: at the origin, at rest, slipping."""
     n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
     return State(
-        np.zeros(1), np.zeros(n), np.zeros(n), np.zeros(nz), np.zeros(nz), np.zeros(m), np.zeros(nc), np.zeros(m),
+        0.0, np.zeros(n), np.zeros(n), np.zeros(nz), np.zeros(nz), np.zeros(m), np.zeros(nc), np.zeros(m),
         np.zeros(m), np.zeros(n), np.zeros(n), np.full(nc, SLIP, np.int8), np.zeros(nc + 2), np.zeros(nc + 2),
-        np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(m * m), np.zeros(m), np.zeros(1), np.zeros(n), np.zeros(m),
+        np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(m * m), np.zeros(m), 0.0, np.zeros(n), np.zeros(m),
     )  # fmt: skip
 
 
 def set_out(y: Any, start: Start) -> None:
     """Bring an empty state, with joints or without, to a start; forces and modes are still to be found."""
-    y.t[0], y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
+    y.t, y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
     if start.mode is not None:
         y.mode[:] = start.mode
     if start.direction is not None:
@@ -69,7 +70,7 @@ def set_out(y: Any, start: Start) -> None:
 @kernel
 def copy_state(source: State, target: State) -> None:
     """Make ``target`` equal to ``source``."""
-    target.t[0] = source.t[0]
+    target.t = source.t
     for i in range(source.q.shape[0]):
         target.q[i] = source.q[i]
         target.v[i] = source.v[i]
@@ -97,8 +98,8 @@ def copy_state(source: State, target: State) -> None:
 @kernel
 def swap_state(one: State, other: State) -> None:
     """Exchange two states but for their forces f."""
+    one.t, other.t = other.t, one.t
     for a, b in (
-        (one.t, other.t),
         (one.q, other.q),
         (one.v, other.v),
         (one.a, other.a),

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import band_order
@@ -16,14 +17,14 @@ from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, SparseLinea
 from fricmb.integrate.run.array_cache import cached_by_content
 
 
-class Structure(NamedTuple):
+class Structure(Layout):
     """Linear part; ``Kd``, ``Cd``, ``fd`` are the rows of the drivers, ``Ka`` the antisymmetric part of K.
 
     M, K, C and Ka are kept on one pattern by rows: row i has its entries at ``first[i]:first[i+1]``, in the columns
     ``column[...]``; so is M^-1 on its own.  The pattern also holds what nonlinear elements couple.
     ``own`` (n,): places of the diagonal.  ``tie`` on the pattern, ``alone`` (n,): K q = sum_j K_ij (q_j - tie_ij q_i) +
     alone_i q_i, see :func:`ties`; empty for soft structures.  ``mobility`` (n,): the diagonal of M^-1.
-    ``place`` (n,), ``half`` (1,): order for banded factors and its half-bandwidth, -1: dense ones.
+    ``place`` (n,), ``half``: order for banded factors and its half-bandwidth, -1: dense ones.
     """
 
     first: Ints
@@ -40,7 +41,7 @@ class Structure(NamedTuple):
     Minv: Floats
     mobility: Floats
     place: Ints
-    half: Ints
+    half: int
     Ku: Floats2
     Cu: Floats2
     f: Floats
@@ -172,7 +173,7 @@ def pack_structure(problem: Problem) -> Structure:
         first=first, column=solid(column), M=m, K=k, C=c, Ka=0.5 * (k - turned),
         own=np.flatnonzero(rows == column), tie=tie, alone=alone,
         Minv_start=Minv.start, Minv_index=solid(Minv.index), Minv=solid(Minv.value),
-        mobility=Minv.diagonal(), place=place, half=np.array([half]), Ku=part("Kx", own, others),
+        mobility=Minv.diagonal(), place=place, half=int(half), Ku=part("Kx", own, others),
         Cu=part("Cx", own, others), f=solid(linear.fx[:n]), B=part("B", own, slice(0, problem.n_u)),
         Kd=part("Kx", others, both), Cd=part("Cx", others, both), fd=solid(linear.fx[n:]),
     )  # fmt: skip

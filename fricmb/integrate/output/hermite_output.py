@@ -101,7 +101,7 @@ def point_against_forces(packed: Packed, y: State) -> None:
 def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
     """Put a state into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
-    row[0] = y.t[0]
+    row[0] = y.t
     for i in range(n):
         row[1 + i] = y.q[i]
         row[1 + n + i] = y.v[i]
@@ -133,7 +133,7 @@ def complete_at(
     left, right = values[k], values[k + 1]
     h = right[0] - left[0]
     x = (t - left[0]) / h
-    y.t[0] = t
+    y.t = t
     hermite(left, right, h, x, n, y.q, y.v)
     cubic(left, right, at_z, at_z + nz, nz, h, x, y.z)
     for c in range(nc):
@@ -216,7 +216,7 @@ def state_of_row(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
     at_z = 1 + 3 * n
     at_F = at_z + 2 * nz
-    y.t[0] = t
+    y.t = t
     for i in range(n):
         y.q[i] = row[1 + i]
         y.v[i] = row[1 + n + i]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, Codes, Codes2, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.room_protocols import Events
@@ -16,7 +14,7 @@ from fricmb.integrate.run.room_protocols import Events
 INSIDE, STEP, BEFORE, AFTER = 0, 1, 2, 3
 
 
-class Rows(NamedTuple):
+class Rows(Layout):
     """Space for rows: [t, q, v, a, z, z', F, N, work, rate], kinds and modes; ``used`` (2,) rows and transitions.
 
     ``event`` (n_e, 3): time, contact, kind.
@@ -56,8 +54,8 @@ def record(out: Rows, y: State, kind: int) -> None:
     """Add the state as a row."""
     k = out.used[0]
     row = out.values[k]
-    at = put(row, 0, y.t)
-    at = put(row, at, y.q)
+    row[0] = y.t
+    at = put(row, 1, y.q)
     at = put(row, at, y.v)
     at = put(row, at, y.a)
     at = put(row, at, y.z)

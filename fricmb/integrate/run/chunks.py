@@ -71,4 +71,4 @@ def counters(counts: Ints, notes: tuple[str, ...] = ()) -> Counters:
 
 def end_of(y: Any) -> Start:
     """Where the run ends: from there it can go on."""
-    return Start(t=float(y.t[0]), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())
+    return Start(t=float(y.t), q=y.q.copy(), v=y.v.copy(), z=y.z.copy(), mode=y.mode.copy(), direction=y.n.copy())

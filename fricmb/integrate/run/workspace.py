@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 
-from fricmb.integrate.compile.room import Room, annotations_of, array_type, room
+from fricmb.integrate.compile.room import annotations_of, array_type, room
 
 _Rooms = TypeVar("_Rooms", bound=tuple[Any, ...])
 
@@ -45,17 +45,21 @@ class Workspace(Generic[_Rooms]):
             views.append(view)
         places = iter(views)
         self.rooms = cast(_Rooms, kind._make([room(_placed(held, places)) for held in values]))
-        self._blank = self._memory.copy()
+        written = [self._memory, *(memory for held in self.rooms for memory in held.memories())]
+        self._blank = [(memory, memory.copy()) for memory in written]
 
     def clear(self) -> None:
-        """Make all arrays what they were at first."""
-        self._memory[:] = self._blank
+        """Make all arrays and numbers what they were at first."""
+        for memory, blank in self._blank:
+            memory[:] = blank
 
 
 def empty_arrays(kind: Any) -> dict[str, Any]:
-    """Arrays of no length for the fields of a named tuple that are arrays, by their annotations."""
-    types = {name: array_type(note) for name, note in annotations_of(kind).items()}
-    return {name: np.zeros((0,) * held.ndim, str(held.dtype)) for name, held in types.items() if held is not None}
+    """Arrays of no length, and zeros, for the fields of a layout that are arrays and numbers, by their annotations."""
+    notes = annotations_of(kind)
+    types = {name: array_type(note) for name, note in notes.items()}
+    arrays = {name: np.zeros((0,) * held.ndim, str(held.dtype)) for name, held in types.items() if held is not None}
+    return arrays | {name: 0 for name, note in notes.items() if note in ("int", "float")}
 
 
 def _arrays_of(values: Any) -> list[Any]:
@@ -64,7 +68,7 @@ def _arrays_of(values: Any) -> list[Any]:
     for held in values:
         if isinstance(held, np.ndarray):
             found.append(held)
-        elif not isinstance(held, Room):
+        elif isinstance(held, tuple):
             found.extend(_arrays_of(held))
     return found
 
@@ -72,7 +76,7 @@ def _arrays_of(values: Any) -> list[Any]:
 def _placed(values: Any, places: Iterator[Any]) -> Any:
     """The named tuple with the next places for its arrays."""
     return type(values)._make([
-        next(places) if isinstance(held, np.ndarray) else held if isinstance(held, Room) else _placed(held, places)
+        next(places) if isinstance(held, np.ndarray) else _placed(held, places) if isinstance(held, tuple) else held
         for held in values
     ])  # fmt: skip
 

@@ -40,11 +40,11 @@ def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortS
         structure.first, structure.column, structure.place, structure.M, fac.K, fac.C,
     )  # fmt: skip
     n = place.shape[0]
-    half = structure.half[0]
+    half = structure.half
     levels = tab.lam.shape[0]
     for x in range(levels):
         sigma = h * tab.lam[x]
-        which = fac.slot[0] * levels + x
+        which = fac.slot * levels + x
         ab = fac.Sinv[which]
         ab[:, :] = 0.0
         for i in range(n):
@@ -89,7 +89,7 @@ def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address:
     levels = tab.lam.shape[0]
     dV[:, :] = 0.0
     for x in range(levels):
-        which = fac.slot[0] * levels + x
+        which = fac.slot * levels + x
         for a in range(n):
             value = 0.0 + 0.0j
             for j in range(s):

@@ -67,7 +67,7 @@ def force_change(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
     change = 0.0
     for i in range(w.F.shape[0]):
         for k in range(mode.shape[0]):
-            shared = ports.soft[0] > 0.0 and mode[k] == STICK
+            shared = ports.soft > 0.0 and mode[k] == STICK
             for a in range(ports.row[k], ports.row[k + 1]):
                 moved = abs((Fin[i, a] - last[i, a]) * G[i * mi + a, i * mi + a])
                 if shared and moved < np.inf:

@@ -85,14 +85,14 @@ def port_jacobian(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
                 if a == d or smooth:
                     J[at, at] += 1.0
                 elif mode[k] == STICK:
-                    J[at, at] -= ports.soft[0] * G[i * mi + out, i * mi + out]
+                    J[at, at] -= ports.soft * G[i * mi + out, i * mi + out]
                 elif mode[k] == SLIP:
                     J[at, i * u1 + row0 + d - 1] += n[i, out]
                     if d == 2:
                         tangent = -n[i, row0 + 1] if a == 0 else n[i, row0]
                         # softened likewise: of redundant contacts at r = 0 only the sum of the forces is determined
                         load = np.sqrt(L[i, k, 0, 0] ** 2 + L[i, k, 1, 0] ** 2)
-                        held = ports.soft[0] * G[i * mi + out, i * mi + out] * load
+                        held = ports.soft * G[i * mi + out, i * mi + out] * load
                         J[at, i * u1 + row0] += (w.r[i, k] + held) * tangent
             for a in range(nzk):
                 at = i * u1 + m + z0 + a
@@ -205,19 +205,19 @@ def solve_ports(
                 w.gbuf[i, c] = w.Fin[i, c]
         evaluate_ports(ports, laws, s, w, mode)
         change = max(change, force_change(ports, w, mode, tol))
-        if ports.soft[0] > 0.0:
+        if ports.soft > 0.0:
             port_residual(ports, w, hA, mode)
             change = max(change, creep(ports, w, mode, tol))
         if not change < np.inf:
             return -1
         # softening leaves a part of itself behind, which a second iteration takes away
-        if linear and (ports.soft[0] == 0.0 or iteration > 0):
+        if linear and (ports.soft == 0.0 or iteration > 0):
             return iteration + 1
         rate = max(change / last, turn / last_turn) if iteration > 0 else 1.0
         # what is left of the turns: the square of the last with new factors, a part of it with old ones
         left = turn * (turn if renew else rate)
         good = left < DIRECTION and (change < 1.0 or (rate < 0.1 and change * rate < 0.1))
-        if ports.soft[0] > 0.0:
+        if ports.soft > 0.0:
             # softened Jacobians are not exact, and converge as they do only where they are new
             good = change < 1.0 and turn < 0.5
         if good and smooth:
@@ -227,7 +227,7 @@ def solve_ports(
         if good and close:
             return iteration + 1
         close = close or good
-        renew = ports.soft[0] > 0.0 or turn > 0.02 or (iteration > 0 and rate > 0.02)
+        renew = ports.soft > 0.0 or turn > 0.02 or (iteration > 0 and rate > 0.02)
         last, last_turn = max(change, 1e-300), max(turn, 1e-300)
     return -1
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, smooth_force
 from fricmb.integrate.model.problem_structs import Ports, Table
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4, Pivots, Problem
 
 
-class PortState(NamedTuple):
+class PortState(Layout):
     """Port unknowns of s stages and space for their Newton iteration.
 
     ``n``, ``F``, ``g`` (s, m), ``r``, ``N`` (s, n_c), ``z``, ``zd`` (s, n_z); ``Fo`` (s, m+n_v) and ``Fin`` likewise:

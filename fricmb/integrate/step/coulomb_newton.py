@@ -135,14 +135,14 @@ def assemble_plain(ports: Ports, w: PortState, mode: Codes, size: int) -> None:
                         gains[x] = (t0 * first[x] + t1 * second[x]) * push[x]
                     put_line(ports, mode, gains, n_s, line)
                     # softened: of redundant contacts at r = 0 only the sum of the forces is determined
-                    load = ports.mu_0[k] * w.N[i, k] * ports.soft[0] * (abs(first[o]) + abs(second[o + 1]))
+                    load = ports.mu_0[k] * w.N[i, k] * ports.soft * (abs(first[o]) + abs(second[o + 1]))
                     line[at] -= w.r[i, k] + load
                     w.rhs[at] = -(t0 * w.g[i, row0] + t1 * w.g[i, row0 + 1])
                 else:
                     for x in range(gains.shape[0]):
                         gains[x] = first[x] * push[x]
                     put_line(ports, mode, gains, n_s, line)
-                    line[at] += ports.soft[0] * first[o]
+                    line[at] += ports.soft * first[o]
                     w.rhs[at] = -w.g[i, row0 + y]
                 at += 1
 
@@ -214,7 +214,7 @@ def plain_ports(
             return -1
         # corrections fall by their squares; what sticks must not creep by what is left: one iteration more
         good = turn < 0.03 and (change < 1.0 or change * turn < QUADRATIC)
-        if (linear and (ports.soft[0] == 0.0 or iteration > 0)) or (good and (close or not some_stick(mode))):
+        if (linear and (ports.soft == 0.0 or iteration > 0)) or (good and (close or not some_stick(mode))):
             plain_outputs(ports, w, mode)
             done = iteration + 1
             break

@@ -38,7 +38,7 @@ def find_changing_contact(
     n_s = tab.c.shape[0]
     contact = -1
     found[0] = 2.0
-    if packed.ports.soft[0] > 0.0:
+    if packed.ports.soft > 0.0:
         for j in range(n_s):
             share_load(packed, s, y.mode, w.N[j], w.F[j], y.way, 1.0)
     for k in range(y.mode.shape[0]):
@@ -64,13 +64,13 @@ def slip_crossing(packed: Packed, y: State, one: OneStep, acc: Accuracy, k: int)
     """
     row0 = packed.ports.row[k]
     first = magnitude(packed.ports.row, k, y.g)
-    grain = BEGINS * y.size[row0] + 1e-4 * acc.noise[0]
+    grain = BEGINS * y.size[row0] + 1e-4 * acc.noise
     begins = first <= grain
     for j in range(one.tab.c.shape[0]):
         one.margin[j] = one.w.r[j, k] + (grain if begins else 0.0)
     if begins:
         first = 0.0
-    if packed.ports.soft[0] > 0.0:
+    if packed.ports.soft > 0.0:
         return crossing_at_points(one.tab, first, one.margin)
     return first_crossing(one.tab, first, one.margin, one.series)
 
@@ -93,14 +93,14 @@ def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
     limit = stick_limit(packed.ports, packed.laws, k, s, end.N[k])
     last = squared_margin(packed.ports, k, end.F, limit)
     # and in a very short step they are the round-off of velocities over the step
-    unknown = force_noise(packed, y, k, end.t[0] - y.t[0]) > 1e-8 * limit
+    unknown = force_noise(packed, y, k, end.t - y.t) > 1e-8 * limit
     for j in range(n_s - 1):
         limit = stick_limit(packed.ports, packed.laws, k, s, one.w.N[j, k])
         one.margin[j] = squared_margin(packed.ports, k, one.w.F[j], limit) + hair
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair
-    if packed.ports.soft[0] > 0.0 or held < BEGINS * limit:  # a load that sets out from 0: see ``normal_crossing``
+    if packed.ports.soft > 0.0 or held < BEGINS * limit:  # a load that sets out from 0: see ``normal_crossing``
         x = crossing_at_stages(one.tab, first + hair, one.margin)
     else:
         x = first_crossing(one.tab, first + hair, one.margin, one.series)
@@ -119,7 +119,7 @@ def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) 
     below 0 before the first stage however short the step is.
     """
     sign = -1.0 if y.mode[k] == OPEN else 1.0
-    set_instant(packed.signals, s, y.t[0], y.q, y.v)
+    set_instant(packed.signals, s, y.t, y.q, y.v)
     largest = 0.0
     for j in range(one.tab.c.shape[0]):
         one.margin[j] = sign * one.N[j, k]
@@ -139,7 +139,7 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, speed: float, k: in
     """
     value = np.inf
     if packed.ports.var[k] >= 0:
-        set_instant(packed.signals, s, end.t[0], end.q, end.v)
+        set_instant(packed.signals, s, end.t, end.q, end.v)
         value = normal_force(packed.ports, packed.normals, k, s)
         found[1] = 1.0
         if y.mode[k] == OPEN:

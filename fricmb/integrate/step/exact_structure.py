@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints, Pivots
 from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.step.tableau import Tableau, one_stage
@@ -24,13 +23,13 @@ RUNGS, UNIT_RUNG = 2000, 1000
 Ints2 = Ints
 
 
-class Exact(NamedTuple):
+class Exact(Layout):
     """Blocks, inputs and outputs, tables by step size and the work of one step; empty for other methods.
 
     With b blocks, s nodes, s' for s and places that stay 0 (see ``compile.lanes``).  Blocks: v' = -w2 u - damp v with
     ``w2``, ``damp`` (1, b); ``c0``, ``c1`` (n_o, b) outputs by u and v; ``b0``, ``b1`` (n_in, b) inputs on them;
     ``linked`` (n_o, n_in); ``q_u`` to ``v_v`` (n, b) dofs by blocks; ``force_0``, ``force_1``, ``start_0``, ``start_1``
-    (b, n) u and v by forces and by velocities; ``MB`` (n_in, n) accelerations per input.  (1,) each: ``modal`` whether
+    (b, n) u and v by forces and by velocities; ``MB`` (n_in, n) accelerations per input.  Numbers: ``modal`` whether
     blocks are modes seen by velocities alone, ``ledger`` whether powers other than friction are kept, ``unknown``
     inputs, ``safety`` tolerance of a step per rtol, ``stiff_at`` largest w h with exact weights, ``cap`` longest next
     step, ``fastest`` block, ``length`` of the step that was solved last.
@@ -41,7 +40,7 @@ class Exact(NamedTuple):
     (n_in,) signals at the start; ``weight`` (n_in,); ``low`` (2, n+1) what rounding dropped from q and t, at the start
     and the end of the step; ``end`` (2, n) gain of q, and v at the end; ``node`` (2, s, n) q and v at the nodes.
     ``held`` (places, 3, s m, s m) what is left of the contacts' equations where some stick (collocation/held_rows),
-    ``held_for`` (places, 2) for which of them and which rung, ``held_next`` (1,), ``rows`` (s m,).
+    ``held_for`` (places, 2) for which of them and which rung, ``held_next``, ``rows`` (s m,).
     ``J`` (s, n_f, n_xe), ``JN`` (s, n_v, n_xn) slopes of elements and normal forces; ``fe`` (s, n_f) residuals of
     element forces; ``A``, ``R``, ``pivots`` space for their elimination.
     """
@@ -62,14 +61,14 @@ class Exact(NamedTuple):
     start_0: Floats2
     start_1: Floats2
     MB: Floats2
-    modal: Ints
-    ledger: Ints
-    unknown: Ints
-    safety: Floats
-    stiff_at: Floats
-    cap: Floats
-    fastest: Floats
-    length: Floats
+    modal: int
+    ledger: int
+    unknown: int
+    safety: float
+    stiff_at: float
+    cap: float
+    fastest: float
+    length: float
     tab: Tableau
     monomial: Floats2
     tails: Floats2
@@ -102,7 +101,7 @@ class Exact(NamedTuple):
     f: Floats
     held: Floats4
     held_for: Ints2
-    held_next: Ints
+    held_next: int
     rows: Ints
     J: Floats3
     JN: Floats3

@@ -75,7 +75,7 @@ def jump_error(
     if n_e == 0:
         return 0.0
     ends = np.zeros((2, elements.x_start[n_e]))
-    put_arguments(packed, s, y.t[0], y.q, y.v, ends[0])
+    put_arguments(packed, s, y.t, y.q, y.v, ends[0])
     put_arguments(packed, s, t, q, v, ends[1])
     for k in range(n_e):
         first_x = elements.x_start[k]
@@ -103,4 +103,4 @@ def jump_error(
                 i = spread.dof[j]
                 push = abs(spread.coefficient[j] * jump) * packed.structure.mobility[i]
                 worst = max(worst, h * push / max(acc.v[i], abs(y.v[i]), acc.floor_v[i], 1e-290))
-    return float(worst / acc.rtol[0])
+    return float(worst / acc.rtol)

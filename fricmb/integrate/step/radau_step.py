@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_instant
 from fricmb.integrate.model.law_values import magnitude
@@ -23,14 +22,14 @@ from fricmb.integrate.step.step_matrix import Factor, prepare
 from fricmb.integrate.step.tableau import Tableau
 
 
-class Accuracy(NamedTuple):
-    """Tolerance and running scales: ``rtol`` (1,), maxima of |q|, |v| (n,), |z| (n_z,), slip speed (n_c,), floors.
+class Accuracy(Layout):
+    """Tolerance and running scales: ``rtol``, maxima of |q|, |v| (n,), |z| (n_z,), slip speed (n_c,), floors.
 
-    ``grain`` (n,) round-off of velocities; ``noise`` (1,) relative velocity that is nothing beside what the scene's
+    ``grain`` (n,) round-off of velocities; ``noise`` relative velocity that is nothing beside what the scene's
     forces bring in this run.
     """
 
-    rtol: Floats
+    rtol: float
     q: Floats
     v: Floats
     z: Floats
@@ -38,13 +37,13 @@ class Accuracy(NamedTuple):
     floor_q: Floats
     floor_v: Floats
     grain: Floats
-    noise: Floats
+    noise: float
 
 
-class OneStep(NamedTuple):
+class OneStep(Layout):
     """All that a one-step method of one tableau needs.
 
-    ``last`` (2,) start and length of the step that the stages are of (0: of none), ``counts`` work done (see
+    ``last_t``, ``last_h`` start and length of the step that the stages are of (0: of none), ``counts`` work done (see
     Counters), ``power`` (s, n_c+2) powers at the stages, ``noise_z`` (n_z,) sizes of states that do not matter, ``N``
     (s, n_c) normal forces at the stages before max(0, .), ``margin`` (s,) and ``series`` (s+1,) what is searched for
     zeros, ``exact`` the structure where it is exact.
@@ -56,7 +55,8 @@ class OneStep(NamedTuple):
     w: PortState
     tol: Floats
     scale: Floats
-    last: Floats
+    last_t: float
+    last_h: float
     counts: Ints
     power: Floats2
     noise_z: Floats
@@ -70,7 +70,7 @@ def one_step_of(problem: Problem, tableau: Tableau, fac: Factor, st: Stages, exa
     """Arrays for steps of one tableau."""
     s, nc = len(tableau.c), problem.n_c
     return OneStep(
-        tableau, fac, st, port_state(problem, s), np.zeros(nc + problem.n_z), np.zeros(problem.n), np.zeros(2),
+        tableau, fac, st, port_state(problem, s), np.zeros(nc + problem.n_z), np.zeros(problem.n), 0.0, 0.0,
         np.zeros(8, np.int64), np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1),
         np.zeros((s, nc)), exact,
     )  # fmt: skip
@@ -89,7 +89,7 @@ def widest(x: Floats) -> float:
 def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
     """Accuracy to which a step is solved: of velocities (n,), of relative ones and states ``tol`` (n_c + n_z,)."""
     top = widest(acc.v)
-    relative = max(part * acc.rtol[0], 1e-14)
+    relative = max(part * acc.rtol, 1e-14)
     moving = 0.0
     for i in range(scale.shape[0]):
         # what only begins to move is measured by what it may reach within the step
@@ -98,7 +98,7 @@ def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Flo
         scale[i] = relative * here
     n_c = acc.r.shape[0]
     for k in range(n_c):
-        tol[k] = relative * max(acc.r[k], 1e-8 * moving, acc.noise[0], 1e-290)
+        tol[k] = relative * max(acc.r[k], 1e-8 * moving, acc.noise, 1e-290)
     for a in range(y.z.shape[0]):
         tol[n_c + a] = relative * max(acc.z[a], abs(y.z[a]) + h * abs(y.zd[a]))
 
@@ -108,7 +108,7 @@ def prepare_at(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, kee
     """Factors for a step h from y, with the Jacobian there where it changes; see ``prepare``."""
     again = packed.elements.address.shape[0] > 0 or one.w.Fin.shape[1] > y.F.shape[0]
     if again:
-        set_instant(packed.signals, s, y.t[0], y.q, y.v)
+        set_instant(packed.signals, s, y.t, y.q, y.v)
     return prepare(packed, one.tab, s, one.fac, one.w, one.counts, h, again, keep, address)
 
 
@@ -125,16 +125,16 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
     for a in range(y.z.shape[0]):
         w.psi_z[a] = y.z[a]
     for i in range(tab.c.shape[0]):
-        st.t[i] = y.t[0] + tab.c[i] * h
+        st.t[i] = y.t + tab.c[i] * h
         for j in range(tab.c.shape[0]):
             st.hA[i, j] = h * tab.A[i, j]
     newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
-    found = start_on_last(packed, y, tab, st, w, one.last, h) and solve(packed, s, y, one, address)
+    found = start_on_last(packed, y, tab, st, w, one.last_t, one.last_h, h) and solve(packed, s, y, one, address)
     if not found:
         start_at_rest(packed, y, tab, st, w, h)
         found = solve(packed, s, y, one, address)
-    one.last[0] = y.t[0]
-    one.last[1] = h if found else 0.0
+    one.last_t = y.t
+    one.last_h = h if found else 0.0
     if found and w.Fin.shape[1] > y.F.shape[0]:
         for j in range(tab.c.shape[0]):
             from_stage(packed, s, st, j)
@@ -165,7 +165,7 @@ def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
             for a in range(d):
                 slope = abs(w.L[w.F.shape[0] - 1, k, a, d + 1 + i])
                 moved = max(moved, h * ports.D[row0 + a, row0 + a] * slope)
-            one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, acc.noise[0]) / moved, 1e290)
+            one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, acc.noise) / moved, 1e290)
 
 
 @block
@@ -173,7 +173,7 @@ def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h:
     """Put the end of the step into y, with forces and accelerations."""
     st, w, tab = one.st, one.w, one.tab
     n_s = tab.c.shape[0]
-    y.t[0] = y.t[0] + h
+    y.t = y.t + h
     for i in range(y.q.shape[0]):
         way = y.low[i]
         for j in range(n_s):

@@ -42,13 +42,15 @@ def start_at_rest(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortSta
 
 
 @kernel
-def start_on_last(packed: Packed, y: State, tab: Tableau, st: Stages, w: PortState, last: Floats, h: float) -> bool:
-    """Stages from the polynomial through those solved last (``last``: their t, h); False where it says nothing here."""
-    if last[1] == 0.0 or packed.ports.soft[0] > 0.0:
+def start_on_last(
+    packed: Packed, y: State, tab: Tableau, st: Stages, w: PortState, t: float, last_h: float, h: float
+) -> bool:
+    """Stages from the polynomial through those of the step ``last_h`` from ``t``; False where it says nothing here."""
+    if last_h == 0.0 or packed.ports.soft > 0.0:
         # of redundant contacts the sum alone is determined: their shares would drift from step to step
         return False
-    shift = (y.t[0] - last[0]) / last[1]
-    ratio = h / last[1]
+    shift = (y.t - t) / last_h
+    ratio = h / last_h
     if not (shift >= -1e-9 and shift + ratio <= REACH):
         return False
     weight = st.weight

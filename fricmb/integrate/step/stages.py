@@ -9,12 +9,11 @@ round-off is relative to the correction.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_instant, structure_force
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Problem
@@ -25,7 +24,7 @@ from fricmb.integrate.step.step_matrix import Factor
 from fricmb.integrate.step.tableau import Tableau
 
 
-class Stages(NamedTuple):
+class Stages(Layout):
     """Stage values V, Q (s, n), forces f, residuals; ``psi_v``, ``psi_q`` (n,), times ``t`` (s,).
 
     ``weight`` (s, s), ``line`` (s,): space for starting values.
@@ -104,7 +103,7 @@ def structure_correction(packed: Packed, tab: Tableau, fac: Factor, st: Stages, 
     levels = tab.lam.shape[0]
     dV[:, :] = 0.0
     for x in range(levels):
-        inverse = fac.Sinv[fac.slot[0] * levels + x]
+        inverse = fac.Sinv[fac.slot * levels + x]
         for a in range(n):
             value = 0.0 + 0.0j
             for j in range(s):
@@ -171,10 +170,10 @@ def solve_stages(
     once = linear and stiff <= 1.0
     # what velocities leave unsolved is a force of stiff springs, by which contacts let go: it has to be as small
     done = 1e-3 / max(1.0, stiff)
-    shared = ports.soft[0] > 0.0
+    shared = ports.soft > 0.0
     last = np.inf
-    P, V, dV, Fo, gb = fac.P[fac.slot[0]], st.V, st.dV, w.Fo, w.gb
-    w.G[:] = fac.G[fac.slot[0]]
+    P, V, dV, Fo, gb = fac.P[fac.slot], st.V, st.dV, w.Fo, w.gb
+    w.G[:] = fac.G[fac.slot]
     for iteration in range(12):
         stage_residual(packed, s, st, w, mode)
         structure_correction(packed, tab, fac, st, address)

@@ -82,12 +82,12 @@ def step_error(
         e_v, e_q = by_line(tab.top[0], y.v[i], st.V, i), by_line(tab.top[0], y.q[i], st.Q, i)
         size_v = max(acc.v[i], largest_in_step(y.v[i], st.V, i))
         size_q = max(acc.q[i], largest_in_step(y.q[i], st.Q, i))
-        size_v = max(size_v, acc.floor_v[i], 1e-10 * top_v, grain(packed, y, one.w, acc, h, i) / acc.rtol[0], 1e-290)
+        size_v = max(size_v, acc.floor_v[i], 1e-10 * top_v, grain(packed, y, one.w, acc, h, i) / acc.rtol, 1e-290)
         # a position that has only begun to move is measured by what its velocity brings within the step
         size_q = max(size_q, acc.floor_q[i], 1e-10 * top_q, h * size_v)
         worst = max(worst, abs(e_v) / size_v, abs(e_q) / size_q)
     worst = max(worst, state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
-    worst = max(worst / acc.rtol[0], too_long(growth(packed, s, y, one, h), n_s))
+    worst = max(worst / acc.rtol, too_long(growth(packed, s, y, one, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     return float(max(worst, unseen_force(packed, y, one, acc, h)))
 

@@ -7,14 +7,13 @@ relative to the correction.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_complex
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.forces import Scratch, normal_gradient, structure_jacobian
 from fricmb.integrate.model.problem_structs import Packed, packed_of
 from fricmb.integrate.problem import Complexes, Complexes2, Complexes3, Floats, Floats2, Floats3, Ints, Pivots, Problem
@@ -22,13 +21,13 @@ from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.tableau import Tableau
 
 
-class Factor(NamedTuple):
+class Factor(Layout):
     """What depends on the step size alone, for several step sizes (slots, k).
 
     ``Sinv`` (k l, n, n) inverses, or (k l, n, 3 half + 1) factors in LAPACK's form of a band with their ``pivots``
     (k l n,) and ``sizes`` [n, half, half, 3 half + 1, 1, info, 'N'].  ``P`` (k, s n, s m_i) response of V to
     port inputs, ``G`` (k, s m_i, s m_i) of their outputs.  ``made`` (k,) step sizes of the slots (0: none); ``slot``
-    (2,) the present one and the one filled last.
+    the present one, ``filled`` the one filled last.
     ``Nq``, ``Nv`` (n_v, n) gradients of varying normal forces; ``K``, ``C`` the Jacobian they were made with, on the
     structure's pattern.
     """
@@ -37,7 +36,8 @@ class Factor(NamedTuple):
     P: Floats3
     G: Floats3
     made: Floats
-    slot: Ints
+    slot: int
+    filled: int
     K: Floats
     C: Floats
     Nq: Floats2
@@ -59,13 +59,13 @@ def factor(problem: Problem, tableau: Tableau) -> Factor:
     nv = problem.n_v
     mi = problem.m + nv
     structure = packed_of(problem).structure
-    half, entries = int(structure.half[0]), len(structure.column)
+    half, entries = int(structure.half), len(structure.column)
     width = n if half < 0 else 3 * half + 1
     each = 16.0 * levels * n * width + 8.0 * s * s * mi * (n + mi)
     k = 2 if changes(problem) else int(np.clip(SLOT_BYTES / max(each, 1.0), 2, SLOTS))
     return Factor(
         np.zeros((k * levels, n, width), complex), np.zeros((k, s * n, s * mi)), np.zeros((k, s * mi, s * mi)),
-        np.zeros(k), np.zeros(2, np.int64), np.zeros(entries), np.zeros(entries), np.zeros((nv, n)), np.zeros((nv, n)),
+        np.zeros(k), 0, 0, np.zeros(entries), np.zeros(entries), np.zeros((nv, n)), np.zeros((nv, n)),
         np.zeros((n, n) if half < 0 else (0, 0), complex), np.zeros((levels, mi, n), complex),
         np.zeros(0 if half < 0 else k * levels * n, np.int32),
         band_sizes(n, half), np.zeros(n, complex),
@@ -89,20 +89,20 @@ def prepare(
     """
     made = fac.made
     slots = made.shape[0]
-    if again or fac.slot[1] == 0:
+    if again or fac.filled == 0:
         jacobians(packed, s, fac)
         counts[3] += 1
         made[:] = 0.0
-        fac.slot[1] = slots - 1
+        fac.filled = slots - 1
     for k in range(slots):
         if made[k] == h:
-            fac.slot[0] = k
+            fac.slot = k
             return True
     k = 0
     if keep:
-        k = fac.slot[1] % (slots - 1) + 1
-        fac.slot[1] = k
-    fac.slot[0] = k
+        k = fac.filled % (slots - 1) + 1
+        fac.filled = k
+    fac.slot = k
     counts[4] += 1
     made[k] = h if factorise(packed, tab, h, fac, w, address) else 0.0
     return bool(made[k] == h)
@@ -122,7 +122,7 @@ def jacobians(packed: Packed, s: Scratch, fac: Factor) -> None:
 def forget(fac: Factor) -> None:
     """Let the Jacobian be made anew before the next step."""
     fac.made[:] = 0.0
-    fac.slot[1] = 0
+    fac.filled = 0
 
 
 @block
@@ -137,7 +137,7 @@ def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState,
     X[:, :, :] = 0.0
     for x in range(levels):
         sigma = h * tab.lam[x]
-        inverse = fac.Sinv[fac.slot[0] * levels + x]
+        inverse = fac.Sinv[fac.slot * levels + x]
         for i in range(n):
             for j in range(n):
                 S[i, j] = 0.0
@@ -177,7 +177,7 @@ def spread_column(line: Complexes, inverse: Complexes2, j: int, weight: complex)
 def port_inputs(tab: Tableau, fac: Factor) -> None:
     """P: velocities that follow from unit port inputs, over all stages."""
     X = fac.X
-    P = fac.P[fac.slot[0]]
+    P = fac.P[fac.slot]
     mi = X.shape[1]
     n = X.shape[2]
     P[:, :] = 0.0
@@ -193,7 +193,7 @@ def port_inputs(tab: Tableau, fac: Factor) -> None:
 @kernel
 def port_outputs(W: Floats2, A: Floats2, h: float, fac: Factor) -> None:
     """G: relative velocities and varying normal forces that follow from unit port inputs."""
-    P, G, Nq, Nv = fac.P[fac.slot[0]], fac.G[fac.slot[0]], fac.Nq, fac.Nv
+    P, G, Nq, Nv = fac.P[fac.slot], fac.G[fac.slot], fac.Nq, fac.Nv
     s = A.shape[0]
     n = W.shape[0]
     m = W.shape[1]

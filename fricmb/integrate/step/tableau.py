@@ -8,17 +8,16 @@ Hairer and Wanner, Solving ODEs II, IV.8).
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import Layout, room
 from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2
 
 
-class Tableau(NamedTuple):
+class Tableau(Layout):
     """c, b (s,), A (s, s); lam (l,), T (s, l), Tinv (l, s) over one of each conjugate pair (T doubled for a pair).
 
     ``top`` (2, s+1): the last and the last but one Legendre coefficient of the polynomial through the values at 0, c.

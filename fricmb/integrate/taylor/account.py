@@ -9,7 +9,6 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.groups import SECOND
-from fricmb.integrate.taylor.layout import INPUT, N_TOUCHED, STEP, TIME
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative
 from fricmb.integrate.taylor.rubbing import is_lost, rubbing_at
@@ -19,7 +18,7 @@ from fricmb.integrate.taylor.signals import belt_value
 @kernel
 def displacement(net: Net, c: int, q: float, s: float) -> float:
     """Relative displacement of plain contact c, up to a constant, where its dof is at q at s."""
-    return float(net.row_coef[net.row_start[c]] * q - net.belt[c] * (net.x[TIME] + s * net.x[STEP]))
+    return float(net.row_coef[net.row_start[c]] * q - net.belt[c] * (net.time + s * net.step))
 
 
 @kernel
@@ -42,7 +41,7 @@ def pay(net: Net, c: int, s: float) -> None:
     slips = net.mode[c] == SLIP
     if steady and not slips and net.belt[c] == 0.0:
         return
-    h = net.x[STEP]
+    h = net.step
     rule = net.groups.rule
     first = c - 1 if net.groups.planar[c] == SECOND else c
     lost = slips and is_lost(net, first)
@@ -50,7 +49,7 @@ def pay(net: Net, c: int, s: float) -> None:
         at = before + (s - before) * rule[0, g]
         time = (s - before) * h * rule[1, g]
         work = time * hold_force(net, c, at)
-        net.x[INPUT] += work * belt_value(net, c, at)
+        net.supply += work * belt_value(net, c, at)
         if not slips:
             continue
         speed = relative(net, c, at, h)
@@ -61,7 +60,7 @@ def pay(net: Net, c: int, s: float) -> None:
 @kernel
 def pay_touched(net: Net, s: float) -> None:
     """The same for all contacts of groups that a correction touches."""
-    for slot in range(net.i[N_TOUCHED]):
+    for slot in range(net.n_touched):
         pay(net, net.groups.here[slot], s)
 
 

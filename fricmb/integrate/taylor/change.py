@@ -14,19 +14,7 @@ from fricmb.integrate.taylor.event_heap import push_due
 from fricmb.integrate.taylor.event_search import taylor_search
 from fricmb.integrate.taylor.group_correction import relative_change
 from fricmb.integrate.taylor.landing import turn_planar
-from fricmb.integrate.taylor.layout import (
-    AT_END,
-    BEFORE,
-    EPS,
-    INPUT,
-    LONGEST,
-    N_TOUCHED,
-    NEXT,
-    STEP,
-    TIME,
-    UNTIL,
-    WATCH,
-)  # fmt: skip
+from fricmb.integrate.taylor.layout import AT_END, BEFORE, EPS, WATCH
 from fricmb.integrate.taylor.ledger import count_local, shorten_account
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import polynomial
@@ -48,7 +36,7 @@ def weigh_plain(net: Net, count: int, changed: int, tau: float, h: float) -> Non
     power = 1.0
     for k in range(P):
         powers[k] = power
-        power *= net.x[UNTIL] - tau
+        power *= net.until - tau
         weights[k] = power / (k + 1)
     for a in range(count):
         c = net.owner[net.local[a]]
@@ -61,7 +49,7 @@ def weigh_plain(net: Net, count: int, changed: int, tau: float, h: float) -> Non
                 force = plain_force_change(net, c, k, changed)
                 work += force * weights[k]
                 total += abs(force) * powers[k]
-            net.x[INPUT] += net.belt[c] * h * work
+            net.supply += net.belt[c] * h * work
         elif net.slack[c] >= 0.0:
             for k in range(P):
                 total += abs(net.dQ[k + 1, a]) * (k + 1) * powers[k]
@@ -72,8 +60,8 @@ def weigh_plain(net: Net, count: int, changed: int, tau: float, h: float) -> Non
 @kernel
 def weigh_groups(net: Net, tau: float, h: float) -> None:
     """What the correction takes from the slack of the contacts of groups it touches."""
-    rest = net.x[UNTIL] - tau
-    for slot in range(net.i[N_TOUCHED]):
+    rest = net.until - tau
+    for slot in range(net.n_touched):
         c = net.groups.here[slot]
         total = 0.0
         power = 1.0
@@ -94,7 +82,7 @@ def search_touched(net: Net, count: int, changed: int, tau: float, places: Ints)
         other = net.owner[net.local[a]]
         if other >= 0 and other != changed and net.slack[other] < 0.0:
             push_due(net, other, taylor_search(net, other, tau, places))
-    for slot in range(net.i[N_TOUCHED]):
+    for slot in range(net.n_touched):
         other = net.groups.here[slot]
         if other != changed and net.slack[other] < 0.0:
             push_due(net, other, taylor_search(net, other, tau, places))
@@ -104,7 +92,7 @@ def search_touched(net: Net, count: int, changed: int, tau: float, places: Ints)
 def correct_in_range(net: Net, c: int, tau: float, h: float) -> int:
     """The correction, with friction curves that hold over the slip speeds it brings."""
     count = correct(net, c, tau, h)
-    for _ in range(TRIES if net.i[N_TOUCHED] > 0 else 0):
+    for _ in range(TRIES if net.n_touched > 0 else 0):
         if count >= net.local.shape[0] or not widen(net, tau):
             break
         forget(net, count)
@@ -125,7 +113,7 @@ def apply_correction(net: Net, count: int, c: int, tau: float, h: float) -> None
 @kernel
 def end_step(net: Net, c: int, until: float, was: int, before: float) -> None:
     """Let the step end at ``until``, unless it ends before; what was counted behind was so under the mode before."""
-    if until < net.x[UNTIL]:
+    if until < net.until:
         now, direction = net.mode[c], net.sigma[c]
         net.mode[c], net.sigma[c] = was, before
         shorten_account(net, until)
@@ -154,7 +142,7 @@ def change_at_end(net: Net, c: int, tau: float) -> None:
 
     A correction of the direction of slip is as much work as a step.
     """
-    h, was, before = net.x[STEP], net.mode[c], net.sigma[c]
+    h, was, before = net.step, net.mode[c], net.sigma[c]
     if net.groups.planar[c] >= 0:
         pay(net, c, tau)
         pay(net, c + 1, tau)
@@ -165,12 +153,12 @@ def change_at_end(net: Net, c: int, tau: float) -> None:
         kind = turn(net, c, tau, h)
         await_end(net, c, kind)
     if kind >= 0:
-        keep_event(net, net.x[TIME] + tau * h, c, kind)
+        keep_event(net, net.time + tau * h, c, kind)
         # what made steps short ends here; a step that is too long costs little, a short one at the beginning of slip
         # leaves so small a speed that the direction can turn at once, and many steps to follow that
-        net.x[NEXT] = net.x[LONGEST]
+        net.next_step = net.longest
     # a step of no length is none: it begins anew under the new modes
-    at_once = tau * h <= 4.0 * EPS * abs(net.x[TIME])
+    at_once = tau * h <= 4.0 * EPS * abs(net.time)
     end_step(net, c, 0.0 if at_once else tau, was, before)
 
 
@@ -181,7 +169,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     if has_planes(net):
         change_at_end(net, c, tau)
         return 0
-    h = net.x[STEP]
+    h = net.step
     plain = net.plain[c] == 1
     was, before = net.mode[c], net.sigma[c]
     pay_slip(net, c, tau)
@@ -196,7 +184,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     if count >= net.local.shape[0]:
         forget(net, count)
         return 1
-    t = net.x[TIME] + tau * h
+    t = net.time + tau * h
     if plain:
         keep_event(net, t, c, kind)
     else:
@@ -205,7 +193,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     until = good_until(net, count, tau, h)
     # a correction that is good for next to nothing is the round-off of its coefficients: the step ends here
     brief = until - tau < BRIEF * (1.0 - tau) and tau > BRIEF
-    if net.i[N_TOUCHED] > 0 and correction_noise(net, count, tau, until, h) > 1.0:
+    if net.n_touched > 0 and correction_noise(net, count, tau, until, h) > 1.0:
         brief = True
     end_step(net, c, tau if brief else until, was, before)
     if brief:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, STICK, Floats2, Ints
 from fricmb.integrate.taylor.group_correction import group_changes
-from fricmb.integrate.taylor.layout import BEFORE, N_GROUPS, N_TOUCHED, SHIFTED
+from fricmb.integrate.taylor.layout import BEFORE, SHIFTED
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import held_row, relative_row, shift_one, shift_rows
 from fricmb.integrate.taylor.touched import CAUGHT, FREE, RELEASED, begin_touched, spread
@@ -71,7 +71,7 @@ def structure_change(net: Net, k: int, count: int, h: float) -> None:
             if b >= 0:
                 value -= stiff[e] * here[b]
         answer[a] = value
-    if net.damped[0] == 0:
+    if net.damped == 0:
         return
     ahead = net.dQ[k + 1]
     rate = (k + 1) / h
@@ -114,9 +114,9 @@ def correct(net: Net, changed: int, tau: float, h: float) -> int:
                 above[a] = factor * push * change[k]
             else:
                 above[a] = 0.0
-        if net.i[N_GROUPS] > 0:
+        if net.n_groups > 0:
             group_changes(net, k, joined, changed, factor, h)
-            joined = net.i[N_TOUCHED]
+            joined = net.n_touched
     return count
 
 
@@ -133,7 +133,7 @@ def add_rows(table: Floats2, rows: Floats2, last: int, place: Ints, count: int) 
 def add_correction(net: Net, count: int, tau: float) -> None:
     """Shift the correction to powers of s and add it."""
     P = net.Q.shape[0] - 1
-    touched = net.i[N_TOUCHED]
+    touched = net.n_touched
     shift_rows(net.dQ, P, count, -tau)
     shift_rows(net.dR, P - 2, count, -tau)
     shift_rows(net.groups.dF, P - 2, touched, -tau)

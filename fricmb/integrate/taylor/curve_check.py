@@ -6,7 +6,6 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.friction_curve import coefficient_at
-from fricmb.integrate.taylor.layout import FASTEST, STEP, TOL
 from fricmb.integrate.taylor.network import Net
 
 #: How often the law is asked on ever shorter parts.
@@ -66,8 +65,8 @@ def law_defect(net: Net, c: int, b: Floats2, last: int, s: float) -> float:
     argument = value_at(x[: last + 1], s)
     mu = groups.curve[at, 0] if groups.terms[at] == 1 else value_at(b[0, : last + 1], s)
     off = abs(mu - coefficient_at(net, c, groups.middle[at] + argument * groups.half[at]))
-    speed = net.compliance[c] * groups.N[c] * off * net.x[STEP] * s / (last + 2)
-    return float(speed / (net.x[TOL] * (net.top[net.first_dof[c]] + 0.01 * net.x[FASTEST])))
+    speed = net.compliance[c] * groups.N[c] * off * net.step * s / (last + 2)
+    return float(speed / (net.tol * (net.top[net.first_dof[c]] + 0.01 * net.fastest)))
 
 
 @kernel

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.taylor.layout import N_HEAP
 from fricmb.integrate.taylor.network import Net
 
 
@@ -29,7 +28,7 @@ def renew_heap(net: Net) -> None:
         if not net.due[c] > 1.0:
             sift_up(net, count, c, net.due[c])
             count += 1
-    net.i[N_HEAP] = count
+    net.n_heap = count
 
 
 @kernel
@@ -38,18 +37,18 @@ def push_due(net: Net, c: int, s: float) -> None:
     net.due[c] = s
     if s > 1.0:
         return
-    if net.i[N_HEAP] >= net.heap_t.shape[0]:
+    if net.n_heap >= net.heap_t.shape[0]:
         renew_heap(net)
         return
-    sift_up(net, net.i[N_HEAP], c, s)
-    net.i[N_HEAP] += 1
+    sift_up(net, net.n_heap, c, s)
+    net.n_heap += 1
 
 
 @kernel
 def pop_due(net: Net) -> None:
     """Remove the first of the heap."""
-    last = net.i[N_HEAP] - 1
-    net.i[N_HEAP] = last
+    last = net.n_heap - 1
+    net.n_heap = last
     s = net.heap_t[last]
     c = net.heap_c[last]
     at = 0

@@ -13,7 +13,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK, Floats, Ints
 from fricmb.integrate.step.crossing import evaluate, lowest_between, root_between
-from fricmb.integrate.taylor.layout import LASTS, N_SEARCHES, NOISE, SHIFTED, STEP, WATCH, WORK2, WORK3
+from fricmb.integrate.taylor.layout import LASTS, SHIFTED, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import lands
 from fricmb.integrate.taylor.polynomials import force_row, relative_row, shift_one
@@ -82,7 +82,7 @@ def bounds(net: Net) -> None:
 
     From the least value of the terms of degree 0 to 2 and the magnitudes of the others.
     """
-    h = net.x[STEP]
+    h = net.step
     last = net.Q.shape[0] - 2
     held, moved = net.flat[WORK2], net.flat[WORK3]
     sum_magnitudes(net, held, moved)
@@ -173,8 +173,8 @@ def end_of_hold(net: Net, c: int, low: float) -> float:
 @block
 def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
     """When, from ``low`` on, the present mode of contact c ends in this step (s), or inf."""
-    h = net.x[STEP]
-    net.i[N_SEARCHES] += 1
+    h = net.step
+    net.n_searches += 1
     y = net.old[WATCH]
     last = net.Q.shape[0] - 2
     planar = net.groups.planar[c]
@@ -200,7 +200,7 @@ def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
         size += abs(y[k])
     since = net.since[c]
     begins = planar >= 0 and net.groups.begins[planar] == 1
-    if since < 0.0 and (begins or (y[0] <= net.x[NOISE] and y[1] > 0.0)):
+    if since < 0.0 and (begins or (y[0] <= net.noise and y[1] > 0.0)):
         # it began to slip at the end of the step before
         net.since[c] = since = 0.0
     if since < 0.0:

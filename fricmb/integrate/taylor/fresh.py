@@ -6,7 +6,7 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
-from fricmb.integrate.taylor.layout import FASTEST, FRESH, MADE, STEP, TOL
+from fricmb.integrate.taylor.layout import FRESH
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import relative_row
 from fricmb.integrate.taylor.series import taylor_series
@@ -39,13 +39,13 @@ def slip_off(net: Net, c: int, part: float) -> float:
 
     By what the last pass has changed, and by what its direction is not the one that slip has had.
     """
-    at, h = net.groups.planar[c], net.x[MADE]
+    at, h = net.groups.planar[c], net.made
     turned, d, first = net.groups.turned[at], net.groups.unit[at], net.groups.first_speed[at]
     off, power = 0.0, part * h * net.compliance[c] * abs(net.groups.rubbing[at, 0])
     for k in range(net.groups.F.shape[0]):
         off += turned[k] * power
         power *= part
-    x, y = relative_row(net, c, 0, net.x[STEP]), relative_row(net, c + 1, 0, net.x[STEP])
+    x, y = relative_row(net, c, 0, net.step), relative_row(net, c + 1, 0, net.step)
     return float(off + math.hypot(x - first * d[0, 0], y - first * d[1, 0]))
 
 
@@ -62,14 +62,14 @@ def largest_off(net: Net) -> float:
 @kernel
 def all_series(net: Net, h: float) -> bool:
     """Polynomials for a step h, by as many passes as they take; whether anything accelerates."""
-    net.x[MADE] = h
+    net.made = h
     if not has_planes(net):
         return taylor_series(net, h, net.places)
     forget_directions(net)
     busy = taylor_series(net, h, net.places)
     for _ in range(PASSES - 1 if largest_off(net) >= 0.0 else 0):
         busy = taylor_series(net, h, net.places)
-        if largest_off(net) <= ENOUGH * net.x[TOL] * net.x[FASTEST]:
+        if largest_off(net) <= ENOUGH * net.tol * net.fastest:
             break
     return busy
 
@@ -78,9 +78,9 @@ def all_series(net: Net, h: float) -> bool:
 def lose_fresh(net: Net) -> bool:
     """Contacts whose slip the last pass of the step has changed too much slip as others do; whether there are any."""
     lost = False
-    part = net.x[STEP] / net.x[MADE]
+    part = net.step / net.made
     for c in range(net.mode.shape[0] if has_planes(net) else 0):
-        if is_fresh(net, c) and not slip_off(net, c, part) <= net.x[TOL] * net.x[FASTEST]:
+        if is_fresh(net, c) and not slip_off(net, c, part) <= net.tol * net.fastest:
             net.since[c + 1] = -1.0
             lost = True
     return lost

@@ -11,7 +11,6 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import SLIP, Floats, Floats2
-from fricmb.integrate.taylor.layout import FASTEST, TOL
 from fricmb.integrate.taylor.network import Net
 
 #: Parts of the tolerance that may be missing in a coefficient of friction.
@@ -67,7 +66,7 @@ def fit_curve(net: Net, c: int, low: float, high: float) -> None:
             value += fit[j, a] * values[a]
         row[j] = value
         size = max(size, abs(value))
-    allowed = max(SHARE * net.x[TOL], 2e-15) * size + 1e-300
+    allowed = max(SHARE * net.tol, 2e-15) * size + 1e-300
     net.groups.rough[at] = (abs(row[count - 1]) + abs(row[count - 2])) / allowed
     terms = count
     left = 0.0
@@ -106,7 +105,7 @@ def fit_around(net: Net, c: int, r: float, below: float, above: float) -> None:
         if x > -1.0:
             least = coefficient_at(net, c, groups.middle[at] - groups.half[at])
             missed = max(missed, abs(least - curve_value(row, groups.terms[at], -1.0)))
-        allowed = max(net.x[TOL], SEEN) * abs(mu) + 1e-300
+        allowed = max(net.tol, SEEN) * abs(mu) + 1e-300
         groups.rough[at] = max(groups.rough[at], missed / allowed)
         if groups.rough[at] <= 1.0:
             break
@@ -147,7 +146,7 @@ def friction_row(net: Net, c: int, k: int, speed: float, h: float) -> float:
     if k == 0:
         return float(net.groups.N[c] * coefficient_at(net, c, x[0]))
     if k == 1:
-        pad = 0.3 * abs(x[1]) + 0.05 * abs(x[0]) + 0.01 * net.x[FASTEST]
+        pad = 0.3 * abs(x[1]) + 0.05 * abs(x[0]) + 0.01 * net.fastest
         reach = net.compliance[c] * net.groups.N[c] * coefficient_at(net, c, x[0]) * h
         if pad < UNMOVED * reach:
             # slip that begins does not tell yet where it goes: as far as friction may bring it

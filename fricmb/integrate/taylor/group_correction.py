@@ -10,7 +10,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import STICK
 from fricmb.integrate.taylor.friction_curve import compose, slip_law
 from fricmb.integrate.taylor.group_forces import is_held, solve_group, stuck_contact
-from fricmb.integrate.taylor.layout import BEFORE, N_GROUPS, N_TOUCHED
+from fricmb.integrate.taylor.layout import BEFORE
 from fricmb.integrate.taylor.network import Net
 
 
@@ -58,7 +58,7 @@ def slip_change(net: Net, slot: int, changed: int, k: int, h: float) -> float:
 def catch_up(net: Net, first: int, k: int) -> None:
     """Sums of the orders before k for contacts that joined at it."""
     groups = net.groups
-    for slot in range(first, net.i[N_TOUCHED]):
+    for slot in range(first, net.n_touched):
         c = groups.here[slot]
         at = slip_law(net, c)
         if at < 0:
@@ -76,7 +76,7 @@ def hold_changes(net: Net, k: int, changed: int, factor: float) -> None:
     """
     groups = net.groups
     above = net.dQ[k + 2]
-    for g in range(net.i[N_GROUPS]):
+    for g in range(net.n_groups):
         gi = groups.reached[g]
         first = groups.group_start[gi]
         held = is_held(net, gi) and gi != groups.group[changed]
@@ -104,7 +104,7 @@ def group_changes(net: Net, k: int, joined: int, changed: int, factor: float, h:
     groups = net.groups
     catch_up(net, joined, k)
     above = net.dQ[k + 2]
-    for slot in range(net.i[N_TOUCHED]):
+    for slot in range(net.n_touched):
         c = groups.here[slot]
         if net.mode[c] == STICK:
             continue

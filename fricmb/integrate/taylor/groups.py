@@ -10,8 +10,7 @@ with A the accelerations under all other forces.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 
@@ -19,7 +18,7 @@ from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 SECOND = -2
 
 
-class Groups(NamedTuple):
+class Groups(Layout):
     """All contacts that are not plain, those on common dofs together; most of it is empty where all are plain.
 
     Groups: ``group`` (m,) or -1; ``group_start``, ``group_contact``; ``dof_start``, ``group_dof``:

@@ -6,7 +6,6 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
-from fricmb.integrate.taylor.layout import STEP
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force
 
@@ -33,7 +32,7 @@ def planar_hold(net: Net, c: int) -> float:
 @kernel
 def idle_step(net: Net, left: float) -> float:
     """Where nothing accelerates: how long until the first contact breaks away, at most ``left``."""
-    h = net.x[STEP]
+    h = net.step
     found = left
     for c in range(net.mode.shape[0]):
         if net.groups.planar[c] != -1:

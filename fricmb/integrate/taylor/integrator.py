@@ -15,25 +15,8 @@ from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.suits_taylor import fastest
-from fricmb.integrate.taylor.layout import (
-    END,
-    FASTEST,
-    GOES_ON,
-    LIMIT,
-    LONGEST,
-    N_EVENTS,
-    N_SAMPLES,
-    N_SEARCHES,
-    N_SHORTER,
-    N_STEPS,
-    NEXT,
-    NOISE,
-    PHASE,
-    STEP,
-    TIME,
-    TOL,
-)  # fmt: skip
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.layout import GOES_ON
+from fricmb.integrate.taylor.network import OF_RUN, Net
 from fricmb.integrate.taylor.prepare import net_of, no_samples, refusal
 from fricmb.integrate.taylor.prepare_groups import has_planar
 from fricmb.integrate.taylor.starting_modes import settle_start
@@ -150,15 +133,15 @@ def set_start(
     unseen = math.exp((math.log(tolerance.rtol) + math.lgamma(degree + 1.0)) / degree)
     longest = min(span, min(reach, unseen) / w) if w > 0.0 else span
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
-    net.x[:] = 0.0
-    net.x[TIME], net.x[END], net.x[LONGEST], net.x[NEXT] = start.t, t_end, longest, longest
+    for name in OF_RUN:
+        setattr(net, name, 0)
+    net.time, net.end, net.longest, net.next_step = start.t, t_end, longest, longest
     # the direction of slip turns faster than all else where slip is slow: stick and slip lose their phase by that
-    net.x[TOL] = (0.01 if has_planar(problem) else 0.1) * tolerance.rtol
-    net.x[STEP] = longest
-    net.x[NOISE] = 1e-13 * speed
-    net.i[:] = 0
-    net.i[LIMIT] = crowd * problem.n_c + 1000
-    net.i[PHASE] = SETTLE
+    net.tol = (0.01 if has_planar(problem) else 0.1) * tolerance.rtol
+    net.step = longest
+    net.noise = 1e-13 * speed
+    net.limit = crowd * problem.n_c + 1000
+    net.phase = SETTLE
     net.loss[:], net.large[:] = 0.0, 0.0
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
@@ -174,17 +157,17 @@ def set_start(
 def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], None] | None) -> tuple[int, Net]:
     """Drive to the end; checkpoints are taken where the steps of a stride are done."""
     marks.add(net)
-    report = float(net.x[TIME]) + every
+    report = float(net.time) + every
     while True:
         code = watched(drive_taylor, net, math.inf, marks.stride)
         if code == PAUSE and ended() is None:
             marks.add(net)
-            if progress is not None and net.x[TIME] > report:
+            if progress is not None and net.time > report:
                 report += every
-                progress(float(net.x[TIME]))
+                progress(float(net.time))
         elif code == FULL and ended() is None:
-            events = _longer(net.events, int(net.i[N_EVENTS]) + len(net.mode))
-            net = with_arrays(net, events=events, steps=_longer(net.steps, int(net.i[N_STEPS])))
+            events = _longer(net.events, int(net.n_events) + len(net.mode))
+            net = with_arrays(net, events=events, steps=_longer(net.steps, int(net.n_steps)))
         else:
             return code, net
 
@@ -192,12 +175,12 @@ def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], 
 def failure_text(problem: Problem, net: Net, code: int) -> str:
     """Why a run stopped; steps that shrink, and stick and slip without end, may be a law's."""
     narrow = np.where(net.groups.half > 0.0, net.groups.half, math.inf)
-    if code in (CROWDED, TOO_SHORT) and narrow.min(initial=math.inf) < NARROW * net.x[FASTEST]:
+    if code in (CROWDED, TOO_SHORT) and narrow.min(initial=math.inf) < NARROW * net.fastest:
         at = int(narrow.argmin())
         row = np.flatnonzero(net.groups.lawful == at)[0]
         contact = problem.contact_names[problem.contacts.of_row[row]]
         return FAILURES[TOO_STEEP].format(contact=contact, range=2.0 * narrow[at])
-    return FAILURES[code].format(limit=int(net.i[LIMIT]))
+    return FAILURES[code].format(limit=int(net.limit))
 
 
 def _longer(table: Floats, wanted: int) -> Floats:
@@ -211,18 +194,18 @@ def _longer(table: Floats, wanted: int) -> Floats:
 def _trajectory(
     problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
 ) -> TaylorRun:
-    events = net.events[: net.i[N_EVENTS]].copy()
+    events = net.events[: net.n_events].copy()
     events[:, 1] = problem.contacts.of_row[events[:, 1].astype(int)]
-    steps = int(net.i[N_STEPS])
+    steps = int(net.n_steps)
     counters = Counters(
-        n_steps=steps, n_rejected=int(net.i[N_SHORTER]), n_rhs=steps * degree, n_jac=int(net.i[N_SEARCHES])
+        n_steps=steps, n_rejected=int(net.n_shorter), n_rhs=steps * degree, n_jac=int(net.n_searches)
     )
     end = Start(
-        t=float(net.x[TIME]), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0),
+        t=float(net.time), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0),
         mode=net.mode[problem.contacts.row[:-1]],
         direction=net.sigma.copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or failure_text(problem, net, code)
-    taken = int(net.i[N_SAMPLES])
+    taken = int(net.n_samples)
     held = None if t_eval is None else net
     return TaylorRun(problem, degree, net.steps[:steps].copy(), events, counters, end, failure, marks, held, taken)

@@ -25,19 +25,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.friction_curve import friction_at
 from fricmb.integrate.taylor.landing_path import ways_to_rest
-from fricmb.integrate.taylor.layout import (
-    AT_END,
-    BEGUN,
-    BENDS,
-    EPS,
-    LASTS,
-    LONGEST,
-    PULL,
-    REACHED,
-    SLOWS,
-    TIME,
-    TOL,
-)  # fmt: skip
+from fricmb.integrate.taylor.layout import AT_END, BEGUN, BENDS, EPS, LASTS, PULL, SLOWS
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import is_still, lands
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row
@@ -88,7 +76,7 @@ def plan_landing(net: Net, c: int, x: float, y: float, ax: float, ay: float) -> 
         return math.inf
     along = (x * ax + y * ay) / pull if pull > 0.0 else 0.0
     time = (slows * speed + pull * along) / (slows * slows - pull * pull)
-    if time > SHORT * math.sqrt(net.x[TOL]) * net.x[LONGEST]:
+    if time > SHORT * math.sqrt(net.tol) * net.longest:
         return math.inf
     far = ways_to_rest(speed, along / speed, pull, slows, True)
     across = ways_to_rest(speed, along / speed, pull, slows, False)
@@ -118,7 +106,7 @@ def is_even(net: Net, c: int, h: float) -> bool:
     changes = part * math.hypot(pushed_slope(net, c, 1, h), pushed_slope(net, c + 1, 1, h))
     changes += part * part * math.hypot(pushed_slope(net, c, 2, h), pushed_slope(net, c + 1, 2, h))
     longer = time * changes * slows * slows / (slows * slows - plan[PULL] ** 2 - plan[PULL + 1] ** 2)
-    return bool(longer <= UNEVEN * net.x[TOL] * net.x[REACHED])
+    return bool(longer <= UNEVEN * net.tol * net.reached)
 
 
 @kernel
@@ -129,7 +117,7 @@ def land(net: Net, c: int, h: float) -> float:
         return math.inf
     x, y = relative_row(net, c, 0, h), relative_row(net, c + 1, 0, h)
     speed = math.hypot(x, y)
-    if speed > SLOW * math.sqrt(net.x[TOL]) * net.x[REACHED]:
+    if speed > SLOW * math.sqrt(net.tol) * net.reached:
         return math.inf
     ax, ay = pushed_slope(net, c, 0, h), pushed_slope(net, c + 1, 0, h)
     holds = net.stick[c] * net.compliance[c]
@@ -140,10 +128,10 @@ def land(net: Net, c: int, h: float) -> float:
     if 0.0 < time < math.inf and not is_even(net, c, h):
         net.groups.landing[net.groups.planar[c], LASTS] = 0.0
         return math.inf
-    if time > 4.0 * EPS * abs(net.x[TIME]):
+    if time > 4.0 * EPS * abs(net.time):
         return time
     set_planar(net, c, STICK)
-    keep_event(net, net.x[TIME], c, EVENT_STICK)
+    keep_event(net, net.time, c, EVENT_STICK)
     return 0.0
 
 

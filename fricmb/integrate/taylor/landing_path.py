@@ -13,7 +13,7 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats
-from fricmb.integrate.taylor.layout import AT, BEGUN, BENDS, LASTS, PULL, SLOWS, STEP, UNIT, WAY
+from fricmb.integrate.taylor.layout import AT, BEGUN, BENDS, LASTS, PULL, SLOWS, UNIT, WAY
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands
 from fricmb.integrate.taylor.polynomials import relative, shift_slip
@@ -79,7 +79,7 @@ def follow_landing(plan: Floats, t: float) -> None:
 @kernel
 def leave_landings(net: Net) -> None:
     """The state where a step ends before contacts have come to rest, to which their polynomials lead as a whole."""
-    h = net.x[STEP]
+    h = net.step
     for c in range(net.mode.shape[0] if has_planes(net) else 0):
         if net.mode[c] != SLIP or not lands(net, c):
             continue

@@ -1,16 +1,5 @@
-"""Names of places in the arrays of a run (see _net)."""
+"""Names of places in the arrays of a run (see network)."""
 
-# x: time; size of the present step; longest step; tolerance; totals of input and damping; end of the run; speeds
-# below NOISE are round-off; next step; the part of the step (s) that
-# counts, and that in which friction curves hold; largest speed, or that to which the step begins to lead; the same by
-# accelerations alone; when steps that are next to nothing began; step
-# that polynomials were made for
-TIME, STEP, LONGEST, TOL, INPUT, DAMPING, END, NOISE, NEXT, UNTIL, ALLOWED, FASTEST, REACHED, CREPT, MADE = range(15)
-# i: steps, shortened ones, events, samples taken, size of the heap, searches, events in this step and their limit,
-# phase of the step, next stop; contacts and groups that a correction touches; steps in a row that did not move the
-# time; transitions in a row with which steps began; steps in a row that are next to nothing
-N_STEPS, N_SHORTER, N_EVENTS, N_SAMPLES, N_HEAP, N_SEARCHES, N_HERE, LIMIT, PHASE, N_STOP = range(10)
-N_TOUCHED, N_GROUPS, STALLED, N_ONCE, N_CREEP = range(10, 15)
 # flat[.]: rows of work
 WORK, WORK2, WORK3 = range(3)
 # old[.]: polynomials of one contact: watched; shifted to where y = 0, or change of force; force or acceleration before

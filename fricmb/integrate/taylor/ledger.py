@@ -8,7 +8,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.step.crossing import value_at
-from fricmb.integrate.taylor.layout import DAMPING, INPUT, STEP, UNTIL, WORK, WORK2
+from fricmb.integrate.taylor.layout import WORK, WORK2
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import horner, horner_rate, polynomial
 
@@ -25,7 +25,7 @@ def speed(net: Net, j: int, s: float) -> float:
     value = 0.0
     for k in range(net.Q.shape[0] - 1, 0, -1):
         value = value * s + k * net.Q[k, j]
-    return float(value / net.x[STEP])
+    return float(value / net.step)
 
 
 @kernel
@@ -36,8 +36,8 @@ def driven_power(net: Net, j: int, q: float, v: float, s: float, weight: float) 
         rate = signal_at(net, u, s, True)
         viscous = -net.mass[j] * net.in_du[e]
         stiff = net.in_b[e] - net.mass[j] * net.in_u[e]
-        net.x[INPUT] += weight * (v * net.in_b[e] * signal_at(net, u, s, False) + rate * (stiff * q + viscous * v))
-        net.x[DAMPING] += weight * 2.0 * viscous * v * rate
+        net.supply += weight * (v * net.in_b[e] * signal_at(net, u, s, False) + rate * (stiff * q + viscous * v))
+        net.damping += weight * 2.0 * viscous * v * rate
 
 
 @kernel
@@ -45,36 +45,36 @@ def signal_power(net: Net, s: float, weight: float) -> None:
     """Power between signals alone."""
     for a in range(net.series.shape[0]):
         rate = signal_at(net, a, s, True)
-        net.x[INPUT] -= weight * rate * net.drivers[2, a, 0]
+        net.supply -= weight * rate * net.drivers[2, a, 0]
         for b in range(net.series.shape[0]):
             other = signal_at(net, b, s, True)
             dashpot = net.drivers[1, a, b] * other
-            net.x[INPUT] += weight * rate * (net.drivers[0, a, b] * signal_at(net, b, s, False) + dashpot)
-            net.x[DAMPING] += weight * rate * dashpot
+            net.supply += weight * rate * (net.drivers[0, a, b] * signal_at(net, b, s, False) + dashpot)
+            net.damping += weight * rate * dashpot
 
 
 @kernel
 def count_rest(net: Net, s0: float, sign: float) -> None:
     """Add ``sign`` times what dampers and prescribed motions do from s0 to where the step ends, contacts apart."""
-    if net.damped[0] == 0 and net.series.shape[0] == 0:
+    if net.damped == 0 and net.series.shape[0] == 0:
         return
     n = net.q.shape[0]
-    h = net.x[STEP]
+    h = net.step
     q, v = net.flat[WORK], net.flat[WORK2]
     last = net.Q.shape[0] - 1
-    length = net.x[UNTIL] - s0
+    length = net.until - s0
     for g in range(net.gauss.shape[1]):
         s = s0 + length * net.gauss[0, g]
         weight = sign * h * length * net.gauss[1, g]
         horner_rate(net.Q, last, s, h, v)
-        if net.damped[0] == 1:
+        if net.damped == 1:
             lost = 0.0
             for j in range(n):
                 force = 0.0
                 for e in range(net.start[j], net.start[j + 1]):
                     force += net.c[e] * v[net.neighbour[e]]
                 lost += net.mass[j] * v[j] * force
-            net.x[DAMPING] += weight * lost
+            net.damping += weight * lost
         if net.series.shape[0] > 0:
             horner(net.Q, last, s, q)
             for j in range(n):
@@ -85,23 +85,23 @@ def count_rest(net: Net, s0: float, sign: float) -> None:
 @kernel
 def count_local(net: Net, count: int, s0: float, sign: float) -> None:
     """The part of :func:`count_rest` that the motion of the local dofs decides."""
-    if net.damped[0] == 0 and net.series.shape[0] == 0:
+    if net.damped == 0 and net.series.shape[0] == 0:
         return
-    h = net.x[STEP]
-    length = net.x[UNTIL] - s0
+    h = net.step
+    length = net.until - s0
     for g in range(net.gauss.shape[1]):
         s = s0 + length * net.gauss[0, g]
         weight = sign * h * length * net.gauss[1, g]
         for a in range(count):
             j = net.local[a]
             v = speed(net, j, s)
-            if net.damped[0] == 1:
+            if net.damped == 1:
                 force = 0.0
                 for e in range(net.start[j], net.start[j + 1]):
                     i = net.neighbour[e]
                     # a damper to a dof outside is counted from both sides
                     force += net.c[e] * speed(net, i, s) * (1.0 if net.place[i] >= 0 else 2.0)
-                net.x[DAMPING] += weight * net.mass[j] * v * force
+                net.damping += weight * net.mass[j] * v * force
             if net.in_start[j] < net.in_start[j + 1]:
                 driven_power(net, j, polynomial(net.Q, j, s), v, s, weight)
 
@@ -109,7 +109,7 @@ def count_local(net: Net, count: int, s0: float, sign: float) -> None:
 @kernel
 def belt_work(net: Net, s: float) -> float:
     """Work that belts bring in through plain contacts from s to where the step ends, as the polynomials now are."""
-    until = net.x[UNTIL]
+    until = net.until
     held = net.flat[WORK]
     for j in range(net.q.shape[0]):
         held[j] = 0.0
@@ -129,12 +129,12 @@ def belt_work(net: Net, s: float) -> float:
             total -= net.belt[c] * net.row_coef[net.row_start[c]] / net.compliance[c] * held[net.first_dof[c]]
         elif net.mode[c] == SLIP:
             total -= net.belt[c] * net.slip[c] * net.sigma[c] * (until - s)
-    return float(total * net.x[STEP])
+    return float(total * net.step)
 
 
 @kernel
 def shorten_account(net: Net, until: float) -> None:
     """Let the step end at ``until``; behind it corrections that come are no good, so nothing is counted there."""
-    net.x[INPUT] -= belt_work(net, until)
+    net.supply -= belt_work(net, until)
     count_rest(net, until, -1.0)
-    net.x[UNTIL] = until
+    net.until = until

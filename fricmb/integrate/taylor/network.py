@@ -15,39 +15,47 @@ of one in two directions have its mode, and in ``sigma`` the direction of its sl
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.room import Layout, room_type
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints
 from fricmb.integrate.taylor.groups import Groups
 
 
-class Net(NamedTuple):
+class Net(Layout):
     """A network of dofs and contacts, and a run of it.
 
     Structure: ``offset`` (d,), ``stiff``, ``visc`` (d, n): diagonals of M^-1 K and M^-1 C (none where there are many;
-    ``tridiagonal`` (1,)); ``start``, ``neighbour``, ``k``, ``c``: both by rows; ``load`` (n,) M^-1 f; ``in_start``,
+    ``tridiagonal``); ``start``, ``neighbour``, ``k``, ``c``: both by rows; ``load`` (n,) M^-1 f; ``in_start``,
     ``in_signal``, ``in_u``, ``in_du``: M^-1 times the forces by signals and their rates, by rows; ``in_b``: forces by
     signals that are no motions; ``mass`` (n,); ``drivers`` (3, n_u, n_u): K, C and, in the first column, f of the
-    signals; ``gauss`` (2, 8) nodes and weights; ``damped`` (1,).
-    Contacts: ``row_start``, ``row_dof``, ``row_coef``, ``push`` (M^-1 W); ``compliance``, ``belt``, ``stick``, ``slip``
-    (m,): D, w, mu_s N, mu_k N; ``wu_start``, ``wu_signal``, ``wu_coef``: Wu; ``owner`` (n,): plain contact of a dof or
-    -1; ``plain`` (m,): whether a contact is, ``grouped`` those that are not, ``first_dof`` (m,); ``free`` (n,): 0 for a
-    dof that a plain contact holds, else 1.
+    signals; ``gauss`` (2, 8) nodes and weights; ``damped``.
+    Contacts: ``row_start``, ``row_dof``, ``row_coef``, ``push`` (M^-1 W); ``compliance``, ``belt``, ``stick``,
+    ``slip`` (m,): D, w, mu_s N, mu_k N; ``wu_start``, ``wu_signal``, ``wu_coef``: Wu; ``owner`` (n,): plain contact of
+    a dof or -1; ``plain`` (m,): whether a contact is, ``grouped`` those that are not, ``first_dof`` (m,); ``free``
+    (n,): 0 for a dof that a plain contact holds, else 1.
     Signals: ``signals``, ``series``, ``rates`` (n_u, P+3) powers of s of u and u', ``large`` (2, n_u) their running
     maxima, ``window``, ``fit``.
     State: ``q``, ``v``, ``top`` (n,) running maxima of |v|; ``mode``, ``sigma``, ``loss``, ``mark`` (m,) with the
-    relative displacement at which a slip of a plain contact began; ``x``, ``i``: see _layout.
+    relative displacement at which a slip of a plain contact began; ``time``; sizes of the present ``step``, the
+    ``longest`` and the ``next_step``; tolerance ``tol``; totals of ``supply`` and ``damping``; ``end`` of the run;
+    speeds below ``noise`` are round-off; the part of the step (s) that counts, ``until``, and that in which friction
+    curves hold, ``allowed``; ``fastest`` speed, or that to which the step begins to lead, ``reached`` the same by
+    accelerations alone; ``crept`` when steps that are next to nothing began; ``made`` step that polynomials were made
+    for.
+    Counted: ``n_steps``, ``n_shorter`` shortened ones, ``n_events``, ``n_samples`` taken, ``n_heap`` size of the heap,
+    ``n_searches``; ``n_here`` events in this step and their ``limit``; ``phase`` of the step; ``n_stop`` next stop;
+    ``n_touched``, ``n_groups`` contacts and groups that a correction touches; in a row: ``stalled`` steps that did not
+    move the time, ``n_once`` transitions with which steps began, ``n_creep`` steps that are next to nothing.
     Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (3, n).
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
-    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.  ``places``: table of blocks.
+    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end. ``places``: table of blocks.
     ``groups``: what contacts need that are not plain.
     """
 
     offset: Ints
-    tridiagonal: Ints
+    tridiagonal: int
     stiff: Floats2
     visc: Floats2
     start: Ints
@@ -74,7 +82,7 @@ class Net(NamedTuple):
     wu_start: Ints
     wu_signal: Ints
     wu_coef: Floats
-    damped: Ints
+    damped: int
     owner: Ints
     plain: Codes
     grouped: Ints
@@ -93,8 +101,36 @@ class Net(NamedTuple):
     sigma: Floats
     loss: Floats
     mark: Floats
-    x: Floats
-    i: Ints
+    time: float
+    step: float
+    longest: float
+    tol: float
+    supply: float
+    damping: float
+    end: float
+    noise: float
+    next_step: float
+    until: float
+    allowed: float
+    fastest: float
+    reached: float
+    crept: float
+    made: float
+    n_steps: int
+    n_shorter: int
+    n_events: int
+    n_samples: int
+    n_heap: int
+    n_searches: int
+    n_here: int
+    limit: int
+    phase: int
+    n_stop: int
+    n_touched: int
+    n_groups: int
+    stalled: int
+    n_once: int
+    n_creep: int
     Q: Floats2
     R: Floats2
     slack: Floats
@@ -124,6 +160,11 @@ class Net(NamedTuple):
     stops: Floats
     places: Ints
     groups: Groups
+
+
+#: Numbers of the structure; all others are those of a run.
+OF_STRUCTURE = ("tridiagonal", "damped")
+OF_RUN = tuple(name for name in room_type(Net).numbers if name not in OF_STRUCTURE)
 
 
 @kernel

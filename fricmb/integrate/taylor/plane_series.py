@@ -19,7 +19,7 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Floats2
 from fricmb.integrate.taylor.friction_curve import friction_row
-from fricmb.integrate.taylor.layout import AT_END, BEGUN, BENDS, FRESH, LASTS, NOISE, REACHED
+from fricmb.integrate.taylor.layout import AT_END, BEGUN, BENDS, FRESH, LASTS
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import push_row, relative_row, shift_slip, slip_speed
 from fricmb.integrate.taylor.signals import belt_rate
@@ -33,7 +33,7 @@ FEW = 0.1
 @kernel
 def is_still(net: Net, speed: float) -> bool:
     """Whether a slip speed is round-off."""
-    return bool(speed <= 10.0 * net.x[NOISE] + STILL * net.x[REACHED])
+    return bool(speed <= 10.0 * net.noise + STILL * net.reached)
 
 
 @kernel

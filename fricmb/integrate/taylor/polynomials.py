@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP, Floats, Floats2
-from fricmb.integrate.taylor.layout import STEP
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.signals import belt_at, belt_value
 
@@ -30,7 +29,7 @@ def rescale(net: Net, f: float) -> None:
             net.series[u, k] *= factor
             net.rates[u, k] *= factor
         factor *= f
-    net.x[STEP] *= f
+    net.step *= f
 
 
 @kernel

@@ -15,7 +15,7 @@ from fricmb.integrate.model.problem_structs import _table
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
-from fricmb.integrate.taylor.network import Net
+from fricmb.integrate.taylor.network import OF_RUN, Net
 from fricmb.integrate.taylor.prepare_groups import (
     against_groups,
     group_arrays,
@@ -89,11 +89,11 @@ def _structure(linear: Linear, n: int) -> dict[str, Any]:
     outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
     outside[2, :, :1] = linear.fx[n:, None]
     return {
-        "offset": offset, "tridiagonal": np.array([int(n > 2 and np.array_equal(offset, [-1, 0, 1]))]),
+        "offset": offset, "tridiagonal": int(n > 2 and np.array_equal(offset, [-1, 0, 1])),
         "stiff": stiff, "visc": visc, "start": start, "neighbour": index, "k": k, "c": c,
         "load": inverse * linear.fx[:n], "in_start": in_start, "in_signal": in_signal, "in_u": in_u, "in_du": in_du,
         "in_b": in_b, "mass": mass, "drivers": outside,
-        "gauss": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "damped": np.array([int(damped)]),
+        "gauss": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "damped": int(damped),
     }  # fmt: skip
 
 
@@ -140,7 +140,7 @@ def _net(problem: Problem, P: int) -> Net:
         **statics, **no_samples(n, m),
         "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit(),
         "q": z(n), "v": z(n), "top": z(n), "mode": z(m, np.int8), "sigma": np.ones(m), "loss": z(m), "mark": z(m),
-        "free": np.ones(n), "x": z(16), "i": z(16, i), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
+        "free": np.ones(n), **dict.fromkeys(OF_RUN, 0), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
         "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
         "flat": z((3, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
         "place": np.full(n, -1, dtype=i), "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)),
@@ -153,7 +153,7 @@ def _net(problem: Problem, P: int) -> Net:
 def _widest(statics: dict[str, Any], n: int, degree: int) -> int:
     """How many dofs the correction of a transition may touch: twice as many as around some of them."""
     start, index = statics["start"], statics["neighbour"]
-    rings = degree if statics["damped"][0] else degree // 2
+    rings = degree if statics["damped"] else degree // 2
     largest = 1
     for first in {0, n // 2, n - 1, int(np.argmax(np.diff(start)))}:
         inside = np.zeros(n, dtype=bool)

@@ -7,7 +7,6 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.friction_curve import friction_at
-from fricmb.integrate.taylor.layout import REACHED, TOL
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import lands
 
@@ -30,11 +29,11 @@ def is_lost(net: Net, c: int) -> bool:
     size = 0.0
     for k in range(F.shape[0] - 2, F.shape[0]):
         size += math.hypot(F[k, c], F[k, c + 1])
-    return bool(size > HOLDS * net.x[TOL] * abs(net.groups.rubbing[at, 0]))
+    return bool(size > HOLDS * net.tol * abs(net.groups.rubbing[at, 0]))
 
 
 @kernel
 def rubbing_at(net: Net, c: int, x: float, y: float) -> float:
     """Friction of contact c at slip velocity (x, y), by that velocity; -1 where it has no direction."""
     speed = math.hypot(x, y)
-    return friction_at(net, c, speed) / speed if speed > SLOW * net.x[REACHED] else -1.0
+    return friction_at(net, c, speed) / speed if speed > SLOW * net.reached else -1.0

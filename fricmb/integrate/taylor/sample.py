@@ -9,7 +9,7 @@ from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.account import displacement, pay_groups
 from fricmb.integrate.taylor.friction_curve import friction_at
 from fricmb.integrate.taylor.landing_path import follow_landing
-from fricmb.integrate.taylor.layout import AT, DAMPING, INPUT, N_SAMPLES, STEP, UNIT, WORK
+from fricmb.integrate.taylor.layout import AT, UNIT, WORK
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands
@@ -20,11 +20,11 @@ from fricmb.integrate.taylor.rubbing import is_lost, rubbing_at
 @kernel
 def sample(net: Net, s: float) -> None:
     """State, forces and energies at s."""
-    at = net.i[N_SAMPLES]
+    at = net.n_samples
     last = net.Q.shape[0] - 1
     q, v, response = net.out_q[at], net.out_v[at], net.flat[WORK]
     horner(net.Q, last, s, q)
-    horner_rate(net.Q, last, s, net.x[STEP], v)
+    horner_rate(net.Q, last, s, net.step, v)
     horner(net.R, last - 2, s, response)
     pay_groups(net, s)
     for c in range(net.mode.shape[0]):
@@ -45,19 +45,19 @@ def sample(net: Net, s: float) -> None:
             sample_landing(net, c, s, at)
         elif is_lost(net, c):
             sample_lost(net, c, at)
-    brought, lost = net.x[INPUT], net.x[DAMPING]
+    brought, lost = net.supply, net.damping
     count_rest(net, s, -1.0)
-    net.out_x[at, 0] = net.x[INPUT] - belt_work(net, s)
-    net.out_x[at, 1] = net.x[DAMPING]
-    net.x[INPUT], net.x[DAMPING] = brought, lost
-    net.i[N_SAMPLES] = at + 1
+    net.out_x[at, 0] = net.supply - belt_work(net, s)
+    net.out_x[at, 1] = net.damping
+    net.supply, net.damping = brought, lost
+    net.n_samples = at + 1
 
 
 @kernel
 def sample_landing(net: Net, c: int, s: float, at: int) -> None:
     """Velocity and friction of contact c, which comes to rest: its polynomials lead there, but by another way."""
     plan = net.groups.landing[net.groups.planar[c]]
-    follow_landing(plan, s * net.x[STEP])
+    follow_landing(plan, s * net.step)
     rubs = friction_at(net, c, math.hypot(plan[AT], plan[AT + 1]))
     for i in range(2):
         shift_slip(net, c + i, plan[AT + i] - net.out_g[at, c + i], net.out_v[at])

@@ -10,7 +10,6 @@ from fricmb.integrate.taylor.curve_check import curve_part
 from fricmb.integrate.taylor.friction_curve import friction_row, slip_law
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
 from fricmb.integrate.taylor.groups import SECOND
-from fricmb.integrate.taylor.layout import ALLOWED, FASTEST, REACHED
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.plane_series import lands, push_planar, start_from_belts
 from fricmb.integrate.taylor.polynomials import push_row, relative_row, slip_speed
@@ -42,7 +41,7 @@ def structure_row(net: Net, k: int, h: float, out: Floats) -> None:
         for j in range(n):
             out[j] = 0.0
     damped = net.visc.shape[0] > 0
-    if net.tridiagonal[0] == 1:
+    if net.tridiagonal == 1:
         three_diagonals(net.stiff, q, 1.0, out)
         if damped:
             three_diagonals(net.visc, p, rate, out)
@@ -167,7 +166,7 @@ def fastest_speed(net: Net, h: float) -> float:
 @kernel
 def speed_from_rest(net: Net, h: float) -> float:
     """The same, or the speed to which rates of accelerations lead: all there is where slip begins from rest."""
-    fastest = net.x[FASTEST]
+    fastest = net.fastest
     for j in range(net.top.shape[0]):
         fastest = max(fastest, 3.0 * abs(net.Q[3, j]) / h)
     return float(fastest)
@@ -206,13 +205,13 @@ def taylor_series(net: Net, h: float, places: Ints) -> bool:
         push_slipping(net, k, h, factor)
         hold_groups(net, k, h, factor)
         if k == 0:
-            net.x[FASTEST] = net.x[REACHED] = fastest_speed(net, h)
+            net.fastest = net.reached = fastest_speed(net, h)
         if k == 1:
-            net.x[FASTEST] = speed_from_rest(net, h)
+            net.fastest = speed_from_rest(net, h)
         if not busy:
             for j in range(n):
                 if target[j] != 0.0:
                     busy = True
                     break
-    net.x[ALLOWED] = curves_hold(net)
+    net.allowed = curves_hold(net)
     return busy

@@ -8,7 +8,6 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.step.crossing import value_at
-from fricmb.integrate.taylor.layout import TOL
 from fricmb.integrate.taylor.network import Net
 
 #: What round-off leaves between a prescribed function and its powers of s.
@@ -85,7 +84,7 @@ def belt_grain(net: Net, c: int, h: float) -> float:
     for e in range(net.wu_start[c], net.wu_start[c + 1]):
         j = net.wu_signal[e]
         value += abs(net.wu_coef[e]) * (net.large[1, j] + 0.01 * net.large[0, j] / h)
-    return float(2.0 * max(0.1 * net.x[TOL], ROUNDING) * value)
+    return float(2.0 * max(0.1 * net.tol, ROUNDING) * value)
 
 
 @kernel

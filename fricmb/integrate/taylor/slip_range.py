@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.taylor.curve_check import curve_part, within
 from fricmb.integrate.taylor.friction_curve import coefficient_at, fit_around, slip_law
-from fricmb.integrate.taylor.layout import EPS, FASTEST, N_TOUCHED, TOL, UNTIL, WORK
+from fricmb.integrate.taylor.layout import EPS, WORK
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import relative_row
 
@@ -21,7 +21,7 @@ def first_curve(net: Net, c: int, held: float, tau: float, h: float) -> None:
     for k in range(net.groups.F.shape[0] - 1, 0, -1):
         slope = slope * tau + k * net.groups.F[k, c]
     reach = net.compliance[c] * rest * (jump + abs(slope) * (1.0 - tau)) + abs(relative_row(net, c, 1, h)) * (1.0 - tau)
-    fit_around(net, c, 0.0, 0.0, 1.5 * reach + 0.01 * net.x[FASTEST])
+    fit_around(net, c, 0.0, 0.0, 1.5 * reach + 0.01 * net.fastest)
 
 
 @kernel
@@ -30,7 +30,7 @@ def widen(net: Net, tau: float) -> bool:
     groups = net.groups
     again = False
     last = groups.F.shape[0] - 1
-    for slot in range(net.i[N_TOUCHED]):
+    for slot in range(net.n_touched):
         c = groups.here[slot]
         at = slip_law(net, c)
         if at < 0:
@@ -57,16 +57,16 @@ def good_until(net: Net, count: int, tau: float, h: float) -> float:
     error = 0.0
     for a in range(count):
         tail = last * abs(net.dQ[last, a]) + (last - 1) * abs(net.dQ[last - 1, a])
-        error = max(error, tail * reach / (h * (net.top[net.local[a]] + 0.01 * net.x[FASTEST])))
-    error /= net.x[TOL]
+        error = max(error, tail * reach / (h * (net.top[net.local[a]] + 0.01 * net.fastest)))
+    error /= net.tol
     part = 1.0 if error <= 1.0 else 0.9 * error ** (-1.0 / (last - 1.0))
-    for slot in range(net.i[N_TOUCHED]):
+    for slot in range(net.n_touched):
         c = groups.here[slot]
         at = slip_law(net, c)
         if at < 0:
             continue
         part = min(part, curve_part(net, c, groups.local_b[slot], 1.0 - tau))
-    return float(min(net.x[UNTIL], tau + (1.0 - tau) * part))
+    return float(min(net.until, tau + (1.0 - tau) * part))
 
 
 @kernel
@@ -85,5 +85,5 @@ def correction_noise(net: Net, count: int, tau: float, until: float, h: float) -
             total[a] = total[a] * (until + tau) + k * abs(row[a])
     worst = 0.0
     for a in range(count):
-        worst = max(worst, total[a] / (net.top[net.local[a]] + 0.01 * net.x[FASTEST]))
-    return float(EPS * worst / (h * net.x[TOL]))
+        worst = max(worst, total[a] / (net.top[net.local[a]] + 0.01 * net.fastest))
+    return float(EPS * worst / (h * net.tol))

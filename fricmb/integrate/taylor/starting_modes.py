@@ -9,7 +9,7 @@ from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SL
 from fricmb.integrate.taylor.account import displacement, lose_sliding
 from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.landing import let_go, set_planar
-from fricmb.integrate.taylor.layout import EPS, GOES_ON, LONGEST, N_STOP, NOISE, STEP, TIME
+from fricmb.integrate.taylor.layout import EPS, GOES_ON
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, relative_row, slip_speed
 from fricmb.integrate.taylor.series import taylor_series
@@ -20,9 +20,9 @@ from fricmb.integrate.taylor.turning import MARGIN, keep_event, set_mode
 @kernel
 def set_window(net: Net) -> None:
     """Functions of time are evaluated between the stops around the present time."""
-    t = net.x[TIME]
-    low = net.stops[net.i[N_STOP] - 1] if net.i[N_STOP] > 0 else t
-    high = net.stops[net.i[N_STOP]]
+    t = net.time
+    low = net.stops[net.n_stop - 1] if net.n_stop > 0 else t
+    high = net.stops[net.n_stop]
     net.window[0] = low + 2.0 * EPS * abs(low) + 1e-300
     net.window[1] = high - 2.0 * EPS * abs(high) - 1e-300
 
@@ -31,7 +31,7 @@ def set_window(net: Net) -> None:
 def speed_noise(net: Net, row: int, given: bool, before_it: float) -> float:
     """Relative velocities of a row that are none; ``before_it``: length of the step before."""
     # a belt that starts from rest does so at a time that is round-off away
-    noise = net.x[NOISE] + 1e-12 * (abs(belt_value(net, row, 0.5)) + abs(belt_value(net, row, 1.0)))
+    noise = net.noise + 1e-12 * (abs(belt_value(net, row, 0.5)) + abs(belt_value(net, row, 1.0)))
     if given and net.mode[row] == STICK:
         # it has moved with the belt as powers of s have
         noise += belt_grain(net, row, before_it)
@@ -109,7 +109,7 @@ def release_worst(net: Net, gi: int, again: bool) -> bool:
             changed = release_planar(net, c) or changed
             continue
         if net.mode[c] == SLIP and again:
-            if net.sigma[c] * relative_row(net, c, 1, net.x[STEP]) < 0.0:
+            if net.sigma[c] * relative_row(net, c, 1, net.step) < 0.0:
                 net.mode[c] = STICK
                 changed = True
         elif net.mode[c] == STICK and abs(groups.F[0, c]) > excess * net.stick[c]:
@@ -129,7 +129,7 @@ def release_groups(net: Net) -> None:
     for gi in range(count):
         largest = max(largest, net.groups.group_start[gi + 1] - net.groups.group_start[gi])
     for turn in range(4 * largest + 8 if count > 0 else 0):
-        taylor_series(net, net.x[STEP], net.places)
+        taylor_series(net, net.step, net.places)
         changed = False
         for gi in range(count):
             if release_worst(net, gi, turn < 2 * largest + 4):
@@ -144,15 +144,15 @@ def settle(net: Net, given: bool) -> None:
 
     Changes behind a breakpoint are transitions.
     """
-    before_it = net.x[STEP]
-    h = min(net.x[LONGEST], net.stops[net.i[N_STOP]] - net.x[TIME])
-    net.x[STEP] = h
+    before_it = net.step
+    h = min(net.longest, net.stops[net.n_stop] - net.time)
+    net.step = h
     for c in range(net.mode.shape[0]):
         if net.plain[c] == 1 and given:
             lose_sliding(net, c, net.q[net.first_dof[c]], 0.0)
         elif net.plain[c] == 1:
             net.mark[c] = displacement(net, c, net.q[net.first_dof[c]], 0.0)
-    signal_series(net, net.x[TIME], h)
+    signal_series(net, net.time, h)
     look_at_speeds(net, given, before_it)
     taylor_series(net, h, net.places)
     release_plain(net)
@@ -163,7 +163,7 @@ def settle(net: Net, given: bool) -> None:
         now, before = direction_of(net, c), net.groups.before[c]
         if given and now != before:
             kind = EVENT_STICK if now == STICK else (EVENT_SLIP if before == STICK else EVENT_REVERSAL)
-            keep_event(net, net.x[TIME], c, kind)
+            keep_event(net, net.time, c, kind)
 
 
 @entry

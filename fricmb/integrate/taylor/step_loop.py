@@ -14,29 +14,7 @@ from fricmb.integrate.taylor.event_heap import pop_due, push_due
 from fricmb.integrate.taylor.event_search import bounds, taylor_search
 from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.landing_path import leave_landings
-from fricmb.integrate.taylor.layout import (
-    AT_END,
-    CREPT,
-    END,
-    EPS,
-    INPUT,
-    LIMIT,
-    LONGEST,
-    N_CREEP,
-    N_EVENTS,
-    N_HEAP,
-    N_HERE,
-    N_ONCE,
-    N_SAMPLES,
-    N_SHORTER,
-    N_STEPS,
-    N_STOP,
-    PHASE,
-    STALLED,
-    STEP,
-    TIME,
-    UNTIL,
-)  # fmt: skip
+from fricmb.integrate.taylor.layout import AT_END, EPS
 from fricmb.integrate.taylor.ledger import belt_work, count_rest
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import horner, horner_rate, rescale
@@ -59,8 +37,8 @@ BEGIN, INSIDE, FINISH, SETTLE = range(4)
 def find_ends(net: Net) -> None:
     """Contacts whose mode may end in the step, into the heap."""
     bounds(net)
-    net.i[N_HEAP] = 0
-    net.i[N_HERE] = 0
+    net.n_heap = 0
+    net.n_here = 0
     for c in range(net.mode.shape[0]):
         net.due[c] = math.inf
         if net.groups.planar[c] == SECOND:
@@ -73,7 +51,7 @@ def find_ends(net: Net) -> None:
 @kernel
 def next_end(net: Net) -> float:
     """When the next transition comes (s)."""
-    while net.i[N_HEAP] > 0:
+    while net.n_heap > 0:
         if net.heap_t[0] == net.due[net.heap_c[0]]:
             return float(net.heap_t[0])
         pop_due(net)
@@ -83,24 +61,24 @@ def next_end(net: Net) -> float:
 @kernel
 def next_sample(net: Net) -> float:
     """When the next sample is to be taken (s)."""
-    if net.i[N_SAMPLES] >= net.times.shape[0]:
+    if net.n_samples >= net.times.shape[0]:
         return math.inf
-    return float((net.times[net.i[N_SAMPLES]] - net.x[TIME]) / net.x[STEP])
+    return float((net.times[net.n_samples] - net.time) / net.step)
 
 
 @kernel
 def go_through(net: Net) -> int:
     """Transitions and samples of the step in order of time."""
-    grain = 4.0 * EPS * max(abs(net.x[TIME]), net.x[STEP]) / net.x[STEP]
+    grain = 4.0 * EPS * max(abs(net.time), net.step) / net.step
     while True:
         if stopped():
             return STOPPED
         end = next_end(net)
         at = next_sample(net)
-        until = net.x[UNTIL]
-        final = net.x[TIME] + until * net.x[STEP] >= net.x[END] - 8.0 * EPS * abs(net.x[END])
+        until = net.until
+        final = net.time + until * net.step >= net.end - 8.0 * EPS * abs(net.end)
         if at <= until + grain:
-            left = net.left[net.i[N_SAMPLES]] == 1
+            left = net.left[net.n_samples] == 1
             edge = end + grain if left else end - grain
             # the right-hand value at the end of a step belongs to the next one
             if at < edge and (left or final or at < until - grain):
@@ -108,11 +86,11 @@ def go_through(net: Net) -> int:
                 continue
         if end > until:
             return DONE
-        if net.i[N_EVENTS] >= net.events.shape[0]:
+        if net.n_events >= net.events.shape[0]:
             return FULL
-        if net.i[N_HERE] >= net.i[LIMIT]:
+        if net.n_here >= net.limit:
             return CROWDED
-        net.i[N_HERE] += 1
+        net.n_here += 1
         c = net.heap_c[0]
         pop_due(net)
         if taylor_change(net, c, end, net.places) == 1:
@@ -122,25 +100,25 @@ def go_through(net: Net) -> int:
 @kernel
 def end_account(net: Net) -> None:
     """Close the account of groups; what lies behind the point where the step is to end is given up."""
-    until = net.x[UNTIL]
+    until = net.until
     pay_groups(net, until)
     if until < 1.0:
-        net.i[N_SHORTER] += 1
+        net.n_shorter += 1
         rescale(net, until)
-        net.x[UNTIL] = 1.0
+        net.until = 1.0
 
 
 @kernel
 def finish_step(net: Net) -> int:
     """The state at the end of the step."""
-    if net.x[UNTIL] == 0.0:
-        net.x[UNTIL] = 1.0
-        net.i[PHASE] = BEGIN
-        net.i[N_ONCE] += 1
-        return DONE if net.i[N_ONCE] <= PATIENCE + net.mode.shape[0] else TOO_SHORT
+    if net.until == 0.0:
+        net.until = 1.0
+        net.phase = BEGIN
+        net.n_once += 1
+        return DONE if net.n_once <= PATIENCE + net.mode.shape[0] else TOO_SHORT
     n = net.q.shape[0]
     end_account(net)
-    h = net.x[STEP]
+    h = net.step
     last = net.Q.shape[0] - 1
     horner(net.Q, last, 1.0, net.q)
     horner_rate(net.Q, last, 1.0, h, net.v)
@@ -153,20 +131,20 @@ def finish_step(net: Net) -> int:
         if net.mode[c] == STICK and net.plain[c] == 1:
             e = net.row_start[c]
             net.v[net.row_dof[e]] = belt_value(net, c, 1.0) / net.row_coef[e]
-    net.i[N_ONCE] = 0
-    at = net.i[N_STEPS]
-    net.steps[at, 0] = net.x[TIME]
+    net.n_once = 0
+    at = net.n_steps
+    net.steps[at, 0] = net.time
     net.steps[at, 1] = h
-    net.i[N_STEPS] = at + 1
-    stop = net.stops[net.i[N_STOP]]
-    t = net.x[TIME] + h
+    net.n_steps = at + 1
+    stop = net.stops[net.n_stop]
+    t = net.time + h
     if t >= stop - 8.0 * EPS * abs(stop):
         t = stop
-        net.i[N_STOP] += 1
-        net.i[PHASE] = SETTLE
+        net.n_stop += 1
+        net.phase = SETTLE
     else:
-        net.i[PHASE] = BEGIN
-    net.x[TIME] = t
+        net.phase = BEGIN
+    net.time = t
     if sound != 0.0:
         return NOT_FINITE
     return CREEPS if creeps(net) else DONE
@@ -175,58 +153,58 @@ def finish_step(net: Net) -> int:
 @kernel
 def creeps(net: Net) -> bool:
     """Whether steps have been next to nothing for long, beside what structure and prescribed functions allow."""
-    t, h = net.x[TIME], net.x[STEP]
-    if h >= SLIGHT * net.x[LONGEST] or not has_planes(net):
-        net.i[N_CREEP] = 0
+    t, h = net.time, net.step
+    if h >= SLIGHT * net.longest or not has_planes(net):
+        net.n_creep = 0
     else:
-        if net.i[N_CREEP] == 0:
-            net.x[CREPT] = t - h
-        net.i[N_CREEP] += 1
-    if net.i[N_CREEP] <= MANY:
+        if net.n_creep == 0:
+            net.crept = t - h
+        net.n_creep += 1
+    if net.n_creep <= MANY:
         return False
-    net.i[N_CREEP] = 0
-    return bool(t - net.x[CREPT] < MANY * SLIGHT * follow_signals(net, t, net.x[LONGEST]))
+    net.n_creep = 0
+    return bool(t - net.crept < MANY * SLIGHT * follow_signals(net, t, net.longest))
 
 
 @kernel
 def list_may_be_full(net: Net) -> bool:
     """Whether the list of transitions might not hold those with which a step begins."""
-    return bool(has_planes(net) and net.i[N_EVENTS] + net.mode.shape[0] > net.events.shape[0])
+    return bool(has_planes(net) and net.n_events + net.mode.shape[0] > net.events.shape[0])
 
 
 @entry
 @long_loops
 def drive_taylor(net: Net, t_pause: float, most: int) -> int:
     """Step until the end, until an array is full, until t_pause, or until ``most`` steps are done."""
-    until = net.i[N_STEPS] + most
+    until = net.n_steps + most
     while True:
-        if net.i[PHASE] == SETTLE:
-            if net.i[N_STOP] >= net.stops.shape[0]:
+        if net.phase == SETTLE:
+            if net.n_stop >= net.stops.shape[0]:
                 return DONE
             set_window(net)
-            if net.i[N_STOP] > 0 and net.series.shape[0] > 0:
-                if net.i[N_EVENTS] + net.mode.shape[0] > net.events.shape[0]:
+            if net.n_stop > 0 and net.series.shape[0] > 0:
+                if net.n_events + net.mode.shape[0] > net.events.shape[0]:
                     return FULL
                 settle(net, True)
-            net.i[PHASE] = BEGIN
-        if net.i[PHASE] == BEGIN:
-            if net.i[N_STEPS] >= net.steps.shape[0] or list_may_be_full(net):
+            net.phase = BEGIN
+        if net.phase == BEGIN:
+            if net.n_steps >= net.steps.shape[0] or list_may_be_full(net):
                 return FULL
-            if net.i[N_STEPS] >= until or net.x[TIME] > t_pause:
+            if net.n_steps >= until or net.time > t_pause:
                 return PAUSE
             busy = begin_step(net)
             # a start from rest may take some steps that are nothing; more of them are no way to get on
-            still = net.x[TIME] + net.x[STEP] <= net.x[TIME]
-            net.i[STALLED] = net.i[STALLED] + 1 if still else 0
-            if net.i[STALLED] > PATIENCE or not net.x[STEP] > 0.0:
+            still = net.time + net.step <= net.time
+            net.stalled = net.stalled + 1 if still else 0
+            if net.stalled > PATIENCE or not net.step > 0.0:
                 return TOO_SHORT
             if busy:
                 find_ends(net)
             else:
-                net.i[N_HEAP] = 0
-            net.x[INPUT] += belt_work(net, 0.0)
+                net.n_heap = 0
+            net.supply += belt_work(net, 0.0)
             count_rest(net, 0.0, 1.0)
-            net.i[PHASE] = INSIDE
+            net.phase = INSIDE
         code = go_through(net)
         if code != DONE:
             return code

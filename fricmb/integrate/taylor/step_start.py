@@ -8,20 +8,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.taylor.fresh import all_series, lose_fresh
 from fricmb.integrate.taylor.idle import idle_step
 from fricmb.integrate.taylor.landing import land_all, take_off
-from fricmb.integrate.taylor.layout import (
-    ALLOWED,
-    EPS,
-    FASTEST,
-    LONGEST,
-    N_SHORTER,
-    N_STOP,
-    NEXT,
-    STEP,
-    TIME,
-    TOL,
-    UNTIL,
-    WORK,
-)  # fmt: skip
+from fricmb.integrate.taylor.layout import EPS, WORK
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import rescale
 from fricmb.integrate.taylor.signals import ROUNDING, signal_series
@@ -40,7 +27,7 @@ def tail_error(net: Net, h: float) -> float:
     last = net.Q[P]
     before = net.Q[P - 1]
     work = net.flat[WORK]
-    floor = 0.01 * net.x[FASTEST]
+    floor = 0.01 * net.fastest
     for j in range(n):
         work[j] = (P * abs(last[j]) + (P - 1) * abs(before[j])) / (net.top[j] + floor)
     worst, sound = 0.0, 0.0
@@ -48,13 +35,13 @@ def tail_error(net: Net, h: float) -> float:
         worst = max(worst, work[j])
         sound += 0.0 * work[j]
     # comparisons pass over what is no number
-    return float(worst / (h * net.x[TOL])) if sound == 0.0 else math.inf
+    return float(worst / (h * net.tol)) if sound == 0.0 else math.inf
 
 
 @kernel
 def follow_signals(net: Net, t: float, h: float) -> float:
     """A step of at most h over which prescribed functions are polynomials; 0 where they have no value."""
-    fine = max(0.1 * net.x[TOL], ROUNDING)
+    fine = max(0.1 * net.tol, ROUNDING)
     last = math.inf
     for _ in range(60):
         error = signal_series(net, t, h)
@@ -64,7 +51,7 @@ def follow_signals(net: Net, t: float, h: float) -> float:
         last = error
         # where a function has no value its error is no number
         h *= max(0.3, 0.9 * (fine / error) ** 0.125) if error < math.inf else 0.3
-        if not error < math.inf and h <= EPS * max(abs(t), net.x[LONGEST]):
+        if not error < math.inf and h <= EPS * max(abs(t), net.longest):
             return 0.0
     return h
 
@@ -72,10 +59,10 @@ def follow_signals(net: Net, t: float, h: float) -> float:
 @kernel
 def begin_step(net: Net) -> bool:
     """Choose the step and make its polynomials; False for an idle one, which has no transitions inside."""
-    wanted = net.x[NEXT]
+    wanted = net.next_step
     busy = choose_step(net)
     while lose_fresh(net):
-        net.x[NEXT] = wanted
+        net.next_step = wanted
         busy = choose_step(net)
     return busy
 
@@ -83,46 +70,46 @@ def begin_step(net: Net) -> bool:
 @kernel
 def choose_step(net: Net) -> bool:
     """The same, with slip that began a short time ago taken for what it is told to be."""
-    t = net.x[TIME]
-    stop = net.stops[net.i[N_STOP]]
+    t = net.time
+    stop = net.stops[net.n_stop]
     left = stop - t
     take_off(net)
-    h = min(net.x[NEXT], net.x[LONGEST])
+    h = min(net.next_step, net.longest)
     if h > left * (1.0 - 1e-9):
         h = left
     elif h > 0.5 * left:
         h = 0.5 * left
     for _ in range(60):
         h = follow_signals(net, t, h)
-        net.x[STEP] = h
-        net.x[UNTIL] = net.x[ALLOWED] = 1.0
+        net.step = h
+        net.until = net.allowed = 1.0
         if h == 0.0:
             return False
         busy = all_series(net, h)
         rest = land_all(net, h) if has_planes(net) else math.inf
         if rest < math.inf:
             h = follow_signals(net, t, min(h, rest))
-            net.x[STEP] = h
+            net.step = h
             busy = all_series(net, h)
         if not busy and net.series.shape[0] == 0:
             idle = idle_step(net, left)
             if idle > h:
                 rescale(net, idle / h)
-                net.x[STEP] = idle
+                net.step = idle
                 return False
         error = tail_error(net, h)
-        if error < BEYOND and net.x[ALLOWED] > BRIEF:
+        if error < BEYOND and net.allowed > BRIEF:
             break
         # a part of such a step is no good either: its polynomials are made again for a shorter one
-        net.i[N_SHORTER] += 1
+        net.n_shorter += 1
         h *= 0.1
     order = net.Q.shape[0] - 2.0
     factor = min(1.5, 0.95 * (error + 1e-30) ** (-1.0 / order))
-    if error > 1.0 or net.x[ALLOWED] < 1.0:
-        net.i[N_SHORTER] += 1
-        rescale(net, min(factor, net.x[ALLOWED]))
+    if error > 1.0 or net.allowed < 1.0:
+        net.n_shorter += 1
+        rescale(net, min(factor, net.allowed))
         factor = 1.0
-    net.x[NEXT] = net.x[STEP] * factor
+    net.next_step = net.step * factor
     if rest < math.inf:
-        net.x[NEXT] = net.x[LONGEST]
+        net.next_step = net.longest
     return True

@@ -5,7 +5,6 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import SLIP
 from fricmb.integrate.taylor.friction_curve import slip_law
-from fricmb.integrate.taylor.layout import N_GROUPS, N_TOUCHED
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import relative_row, shift_one
 
@@ -45,10 +44,10 @@ def add_dof(net: Net, j: int, count: int, changed: int) -> int:
 def add_contact(net: Net, c: int, tau: float, h: float) -> bool:
     """Give a contact of a group a place: its force before, and its slip speed, in powers of s - tau."""
     groups = net.groups
-    slot = net.i[N_TOUCHED]
+    slot = net.n_touched
     if slot >= groups.here.shape[0]:
         return False
-    net.i[N_TOUCHED] = slot + 1
+    net.n_touched = slot + 1
     groups.slot[c] = slot
     groups.here[slot] = c
     groups.first[slot] = -1
@@ -79,9 +78,9 @@ def add_group(net: Net, gi: int, count: int, changed: int, tau: float, h: float)
     if groups.touched[gi]:
         return count
     groups.touched[gi] = 1
-    at = net.i[N_GROUPS]
+    at = net.n_groups
     groups.reached[at] = gi
-    net.i[N_GROUPS] = at + 1
+    net.n_groups = at + 1
     for a in range(groups.dof_start[gi], groups.dof_start[gi + 1]):
         count = add_dof(net, groups.group_dof[a], count, changed)
     for a in range(groups.group_start[gi], groups.group_start[gi + 1]):
@@ -93,8 +92,8 @@ def add_group(net: Net, gi: int, count: int, changed: int, tau: float, h: float)
 @kernel
 def begin_touched(net: Net, changed: int, tau: float, h: float) -> int:
     """The dofs of the changed contact, and of its group."""
-    net.i[N_TOUCHED] = 0
-    net.i[N_GROUPS] = 0
+    net.n_touched = 0
+    net.n_groups = 0
     if net.plain[changed] == 1:
         return add_dof(net, net.first_dof[changed], 0, changed)
     return add_group(net, net.groups.group[changed], 0, changed, tau, h)
@@ -103,7 +102,7 @@ def begin_touched(net: Net, changed: int, tau: float, h: float) -> int:
 @kernel
 def spread(net: Net, k: int, count: int, changed: int, tau: float, h: float) -> int:
     """Neighbours of what has begun to move at order k join, with their groups."""
-    damped = net.damped[0] == 1
+    damped = net.damped == 1
     here, ahead = net.dQ[k], net.dQ[k + 1]
     for a in range(count):
         if net.grown[a]:
@@ -129,7 +128,7 @@ def forget(net: Net, count: int) -> None:
     groups = net.groups
     for a in range(min(count, net.local.shape[0])):
         net.place[net.local[a]] = -1
-    for slot in range(net.i[N_TOUCHED]):
+    for slot in range(net.n_touched):
         groups.slot[groups.here[slot]] = -1
-    for g in range(net.i[N_GROUPS]):
+    for g in range(net.n_groups):
         groups.touched[groups.reached[g]] = 0

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.integrate.compile.exchange import with_arrays
+from fricmb.integrate.compile.exchange import numbers_of, put_numbers, with_arrays
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
 from fricmb.integrate.run.stop import watched
-from fricmb.integrate.taylor.layout import END, N_SAMPLES
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare import net_of, no_samples
 from fricmb.integrate.taylor.prepare_groups import has_planar
@@ -25,7 +24,7 @@ GRAIN = 1e-14
 #: Steps at a time on the way to samples.
 STRIDE = 16
 #: Arrays of the state.
-STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "x", "i", "stops", "window")
+STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "stops", "window")
 
 
 class Checkpoints:
@@ -33,12 +32,13 @@ class Checkpoints:
 
     def __init__(self, n: int) -> None:
         self._most = int(np.clip(NUMBERS / (7 * max(n, 1)), 4, 64))
-        self.stride = 4
+        self.stride = STRIDE
         self.held: list[dict[str, Any]] = []
 
     def add(self, net: Net) -> None:
         """Keep the present state."""
-        self.held.append({name: getattr(net, name).copy() for name in STATE})
+        state = {name: getattr(net, name).copy() for name in STATE}
+        self.held.append({**state, "t": net.time, "numbers": numbers_of(net)})
         if len(self.held) > self._most:
             del self.held[1::2]
             self.stride *= 2
@@ -128,23 +128,24 @@ class TaylorRun(Trajectory):
             for name in STATE:
                 if name != "stops":
                     getattr(net, name)[:] = state[name]
+            put_numbers(net, state["numbers"])
             last = len(self.transitions.t)
             net = with_arrays(
                 net, stops=state["stops"], events=np.zeros((last + problem.m + 1, 3)),
                 steps=np.zeros((2 * len(self._steps) + STRIDE, 2)),  # pauses at marks may end steps, too
                 **{**no_samples(problem.n, problem.m, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip
-            net.i[N_SAMPLES] = 0
+            net.n_samples = 0
             if self.failure is not None:
-                net.x[END] = self.end.t  # nothing comes behind it
-            while net.i[N_SAMPLES] < len(t) and watched(drive_taylor, net, np.inf, STRIDE) == PAUSE:
+                net.end = self.end.t  # nothing comes behind it
+            while net.n_samples < len(t) and watched(drive_taylor, net, np.inf, STRIDE) == PAUSE:
                 pass
-            for at in range(int(net.i[N_SAMPLES]), len(t)):  # of a run that could not begin
+            for at in range(int(net.n_samples), len(t)):  # of a run that could not begin
                 net.out_q[at], net.out_v[at], net.out_mode[at] = net.q, net.v, net.mode
             return _samples(problem, net, slice(0, len(t)))
 
     def _state_before(self, t: float) -> dict[str, Any]:
-        times = [float(state["x"][0]) for state in self._marks]
+        times = [state["t"] for state in self._marks]
         # a left-hand value at the start of a step belongs to the step before
         return self._marks[max(0, int(np.searchsorted(times, t, side="left")) - 1)]
 

@@ -12,7 +12,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.event_heap import push_due
 from fricmb.integrate.taylor.group_forces import factor_group, solve_group, stuck_contact
-from fricmb.integrate.taylor.layout import N_EVENTS, WORK
+from fricmb.integrate.taylor.layout import WORK
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import hold_force, polynomial
 from fricmb.integrate.taylor.signals import belt_rate
@@ -93,8 +93,8 @@ def turn(net: Net, c: int, tau: float, h: float) -> int:
 @kernel
 def keep_event(net: Net, t: float, c: int, kind: int) -> None:
     """Add a transition to the list."""
-    at = net.i[N_EVENTS]
-    net.i[N_EVENTS] = at + 1
+    at = net.n_events
+    net.n_events = at + 1
     net.events[at, 0] = t
     net.events[at, 1] = c
     net.events[at, 2] = kind
@@ -104,14 +104,14 @@ def keep_event(net: Net, t: float, c: int, kind: int) -> None:
 def keep_group_event(net: Net, t: float, c: int, kind: int) -> None:
     """Add a transition of a contact of a group; of several at one instant, that end in stick, what they come to."""
     if kind == EVENT_STICK:
-        at = net.i[N_EVENTS] - 1
+        at = net.n_events - 1
         while at >= 0 and net.events[at, 0] == t:
             if net.events[at, 1] == c and net.events[at, 2] == EVENT_REVERSAL:
                 net.events[at, 2] = EVENT_STICK
                 return
             if net.events[at, 1] == c and net.events[at, 2] == EVENT_SLIP:
-                net.i[N_EVENTS] -= 1
-                for later in range(at, net.i[N_EVENTS]):
+                net.n_events -= 1
+                for later in range(at, net.n_events):
                     for part in range(3):
                         net.events[later, part] = net.events[later + 1, part]
                 return
@@ -122,7 +122,7 @@ def keep_group_event(net: Net, t: float, c: int, kind: int) -> None:
 @kernel
 def ask_again(net: Net, c: int, tau: float, t: float) -> None:
     """Of those that have just turned round: now that contact c has let go they may be able to stick."""
-    at = net.i[N_EVENTS] - 1
+    at = net.n_events - 1
     while at >= 0 and net.events[at, 0] == t:
         other = int(net.events[at, 1])
         turned = net.events[at, 2] == EVENT_REVERSAL and net.mode[other] == SLIP

@@ -7,7 +7,7 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.law_values import coefficient
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, DRIVES, FAULT, HELD, NO_NUMBER, RESIDUAL, SOUND
+from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, DRIVES, HELD, NO_NUMBER, SOUND
 from fricmb.integrate.timestepping._run import Run
 
 #: R of the proximal steps times the local compliance.
@@ -143,7 +143,7 @@ def mark_stuck(run: Run, F: Floats, g: Floats) -> None:
                 size = math.hypot(size, g[a])
             # all are solved to a part of the largest force: so are the loads that a loop shares out
             radius = largest if run.loop[c] >= 0 else run.rho[c]
-            held = held or size <= 2.0 * run.x[RESIDUAL] * radius * run.soft[c]
+            held = held or size <= 2.0 * run.residual * radius * run.soft[c]
         if held and run.rho[c] > 0.0:
             for a in range(row0, row0 + d):
                 g[a] = 0.0
@@ -154,7 +154,7 @@ def slide_radius(run: Run, c: int, speed: float, N: float) -> float:
     """mu(r, N) N; 0 where that is negative, through which iterates may pass."""
     mu = coefficient(run, run.laws, c, run.s, speed, N)[0]
     if not abs(mu) < math.inf:
-        run.x[FAULT] = NO_NUMBER
-    elif mu < 0.0 and run.x[FAULT] == SOUND:
-        run.x[FAULT] = DRIVES
+        run.fault = NO_NUMBER
+    elif mu < 0.0 and run.fault == SOUND:
+        run.fault = DRIVES
     return float(max(0.0, mu) * N)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.timestepping._layout import BAND, N_FACTOR
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -25,7 +24,7 @@ def assemble(run: Run, h: float, lu: Floats) -> None:
 @kernel
 def add_contacts(run: Run, h: float, weight: Floats, lu: Floats) -> None:
     """Add h W diag(weight) W^T, weight (3 n_c,): 2 x 2 symmetric blocks [11, 12, 22]."""
-    b = run.i[BAND]
+    b = run.band
     width = 2 * b + 1
     for c in range(run.mode.shape[1]):
         row0 = run.row[c]
@@ -44,10 +43,10 @@ def add_contacts(run: Run, h: float, weight: Floats, lu: Floats) -> None:
 @kernel
 def factorise(run: Run, lu: Floats) -> None:
     """L U in place, L with a unit diagonal."""
-    b = run.i[BAND]
+    b = run.band
     n = run.load.shape[0]
     width = 2 * b + 1
-    run.i[N_FACTOR] += 1
+    run.n_factor += 1
     for k in range(n):
         pivot = 1.0 / lu[k * width + b]
         last = min(n - 1, k + b) - k
@@ -66,7 +65,7 @@ def factorise(run: Run, lu: Floats) -> None:
 @kernel
 def solve(run: Run, lu: Floats, x: Floats, work: Floats) -> None:
     """Solve in place for x (n,) in the order of the dofs."""
-    b = run.i[BAND]
+    b = run.band
     n = x.shape[0]
     width = 2 * b + 1
     for j in range(n):

@@ -8,7 +8,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size, stick_limit_slope
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.timestepping._balls import slide_radius
-from fricmb.integrate.timestepping._layout import BROKEN, RESIDUAL
+from fricmb.integrate.timestepping._layout import BROKEN
 from fricmb.integrate.timestepping._loops import shares
 from fricmb.integrate.timestepping._run import Run
 
@@ -25,7 +25,7 @@ def will_break(run: Run, one: int, two: int, c: int, t: float, h: float) -> bool
         run.gf[a] = run.F[two, a] + 0.5 * h / gap * (run.F[two, a] - run.hold[one, a])
     limit = run.brake[c] + 0.5 * h / gap * (run.brake[c] - run.grip[one, c])
     # what is held at its limit stays there: what the contacts are solved to is no reason to slip
-    return bool(friction_size(run.row, c, run.gf) > limit + 2.0 * run.x[RESIDUAL] * run.brake[c])
+    return bool(friction_size(run.row, c, run.gf) > limit + 2.0 * run.residual * run.brake[c])
 
 
 @kernel

@@ -9,30 +9,7 @@ from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._error import doubtful, step_error
 from fricmb.integrate.timestepping._free import set_window
-from fricmb.integrate.timestepping._layout import (
-    DRIVES,
-    END,
-    ERROR,
-    FAULT,
-    FIXED,
-    HERE,
-    LONGEST,
-    MIDDLE,
-    N_EVENTS,
-    N_REJECTED,
-    N_ROWS,
-    N_STEPS,
-    N_STOP,
-    N_UNSETTLED,
-    NO_NUMBER,
-    SAME,
-    SHORTEST,
-    SOUND,
-    STEP,
-    THERE,
-    TIME,
-    WHOLE,
-)  # fmt: skip
+from fricmb.integrate.timestepping._layout import DRIVES, HERE, MIDDLE, NO_NUMBER, SOUND, THERE, WHOLE
 from fricmb.integrate.timestepping._recorder import copy_state, keep_event, keep_row
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._start import jump
@@ -56,11 +33,11 @@ def is_finite(run: Run) -> bool:
 @kernel
 def accept(run: Run, slot: int, t: float) -> None:
     """Energies, transitions and the row of a step that ended in ``slot`` at t."""
-    if run.i[N_STEPS] == 0 and run.i[N_ROWS] == 0:
-        if run.x[SAME] == 0.0:
+    if run.n_steps == 0 and run.n_rows == 0:
+        if run.goes_on == 0.0:
             forces_at_start(run, slot)
-        keep_row(run, HERE, slot, run.x[TIME])
-    run.i[N_STEPS] += 1
+        keep_row(run, HERE, slot, run.time)
+    run.n_steps += 1
     for c in range(run.total.shape[0]):
         run.total[c] += run.loss[slot, c]
         if run.what[slot, c] >= 0:
@@ -79,9 +56,9 @@ def on_ladder(h: float) -> float:
 @kernel
 def next_length(run: Run) -> float:
     """Length of the next step: to the next stop at most."""
-    left = run.stops[run.i[N_STOP]] - run.x[TIME]
-    fixed = run.x[FIXED]
-    h = fixed if fixed > 0.0 else on_ladder(min(run.x[STEP], run.x[LONGEST]))
+    left = run.stops[run.n_stop] - run.time
+    fixed = run.fixed_step
+    h = fixed if fixed > 0.0 else on_ladder(min(run.step, run.longest))
     if h >= left * (1.0 - 1e-9):
         return float(left)
     if fixed == 0.0 and h > 0.5 * left:
@@ -93,17 +70,17 @@ def next_length(run: Run) -> float:
 def adapt(run: Run, h: float, error: float, settled: bool) -> bool:
     """Set the length of the next step; whether this one is accepted."""
     if not settled:
-        run.x[STEP] = 0.25 * h
-        fine = h <= run.x[SHORTEST]
+        run.step = 0.25 * h
+        fine = h <= run.shortest
     else:
         factor = 0.9 * (error + 1e-12) ** (-1.0 / 3.0)
         if error > 1.0:
             factor = min(0.9 * error ** (-0.5), 0.5)
-        run.x[STEP] = h * min(2.0, max(0.1, factor))
-        fine = error <= 1.0 or h <= run.x[SHORTEST]
-    run.x[STEP] = max(run.x[STEP], run.x[SHORTEST])
+        run.step = h * min(2.0, max(0.1, factor))
+        fine = error <= 1.0 or h <= run.shortest
+    run.step = max(run.step, run.shortest)
     if fine and (not settled or error > 1.0):
-        run.i[N_UNSETTLED] += 1
+        run.n_unsettled += 1
     return bool(fine)
 
 
@@ -111,15 +88,15 @@ def adapt(run: Run, h: float, error: float, settled: bool) -> bool:
 def arrive(run: Run, t: float) -> None:
     """Go on from the end of a step; behind a stop functions of time are those of the next interval."""
     copy_state(run, THERE, HERE)
-    stop = run.stops[run.i[N_STOP]]
+    stop = run.stops[run.n_stop]
     if t >= stop - 1e-14 * abs(stop) - 1e-300:
         t = stop
-        run.i[N_STOP] += 1
-        if run.i[N_STOP] < run.stops.shape[0]:
-            run.x[TIME] = t
-            set_window(run, run.i[N_STOP])
+        run.n_stop += 1
+        if run.n_stop < run.stops.shape[0]:
+            run.time = t
+            set_window(run, run.n_stop)
             jump(run, t)
-    run.x[TIME] = t
+    run.time = t
 
 
 @entry
@@ -127,20 +104,20 @@ def arrive(run: Run, t: float) -> None:
 def drive(run: Run) -> int:
     """Step until the end, or until there is no space for rows or transitions."""
     while True:
-        if run.x[TIME] >= run.x[END] or run.i[N_STOP] >= run.stops.shape[0]:
+        if run.time >= run.end or run.n_stop >= run.stops.shape[0]:
             return DONE
-        space = run.i[N_ROWS] + 3 <= run.row_t.shape[0]
-        if stopped() or not space or run.i[N_EVENTS] + 3 * run.mode.shape[1] > run.event.shape[0]:
+        space = run.n_rows + 3 <= run.row_t.shape[0]
+        if stopped() or not space or run.n_events + 3 * run.mode.shape[1] > run.event.shape[0]:
             return FULL
-        t = run.x[TIME]
+        t = run.time
         h = next_length(run)
-        run.x[FAULT] = SOUND
-        if run.x[FIXED] > 0.0:
+        run.fault = SOUND
+        if run.fixed_step > 0.0:
             if not take_step(run, HERE, THERE, t, h, run.places):
-                run.i[N_UNSETTLED] += 1
-            if not is_finite(run) or run.x[FAULT] == NO_NUMBER:
+                run.n_unsettled += 1
+            if not is_finite(run) or run.fault == NO_NUMBER:
                 return NOT_FINITE
-            if run.x[FAULT] == DRIVES:
+            if run.fault == DRIVES:
                 return NEGATIVE
             accept(run, THERE, t + h)
             arrive(run, t + h)
@@ -148,20 +125,20 @@ def drive(run: Run) -> int:
         settled = take_step(run, HERE, WHOLE, t, h, run.places)
         settled = take_step(run, HERE, MIDDLE, t, 0.5 * h, run.places) and settled
         settled = take_step(run, MIDDLE, THERE, t + 0.5 * h, 0.5 * h, run.places) and settled
-        if not is_finite(run) or run.x[FAULT] == NO_NUMBER:
-            if h <= run.x[SHORTEST]:
+        if not is_finite(run) or run.fault == NO_NUMBER:
+            if h <= run.shortest:
                 return NOT_FINITE
-            run.x[STEP] = 0.25 * h
+            run.step = 0.25 * h
             continue
         error = step_error(run)
-        if error <= 1.0 and h > COARSE * run.x[SHORTEST] and doubtful(run, t, h):
+        if error <= 1.0 and h > COARSE * run.shortest and doubtful(run, t, h):
             error = 2.0
-        run.x[ERROR] = error
+        run.error = error
         if adapt(run, h, error, settled):
-            if run.x[FAULT] == DRIVES:
+            if run.fault == DRIVES:
                 return NEGATIVE
             accept(run, MIDDLE, t + 0.5 * h)
             accept(run, THERE, t + h)
             arrive(run, t + h)
         else:
-            run.i[N_REJECTED] += 1
+            run.n_rejected += 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import stick_limit_slope
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, STICK
-from fricmb.integrate.timestepping._layout import HERE, LEEWAY, LIMIT, MIDDLE, POSITION, THERE, TOL, VELOCITY, WHOLE
+from fricmb.integrate.timestepping._layout import HERE, LIMIT, MIDDLE, POSITION, THERE, VELOCITY, WHOLE
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -21,7 +21,7 @@ def set_leeway(run: Run) -> None:
         if run.what[WHOLE, c] >= 0 or run.what[MIDDLE, c] >= 0 or run.what[THERE, c] >= 0:
             for a in range(run.row[c], run.row[c + 1]):
                 for e in range(run.w_start[a], run.w_start[a + 1]):
-                    run.trial[run.w_dof[e]] = run.x[LEEWAY]
+                    run.trial[run.w_dof[e]] = run.leeway
 
 
 @kernel
@@ -142,5 +142,5 @@ def step_error(run: Run) -> float:
         if most_v > 0.0:
             scale = (run.top_v[i] + 0.01 * most_v + run.floor_v[i]) * run.trial[i]
             worst = max(worst, abs(run.v[WHOLE, i] - run.v[THERE, i]) / scale)
-    worst = max(worst, holding_error(run) / run.x[LEEWAY])
-    return float(worst / (3.0 * run.x[TOL]))
+    worst = max(worst, holding_error(run) / run.leeway)
+    return float(worst / (3.0 * run.tol))

@@ -8,7 +8,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.timestepping._band import assemble, factorise, solve
-from fricmb.integrate.timestepping._layout import CONDENSED, FAULT, NO_NUMBER, TIME
+from fricmb.integrate.timestepping._layout import NO_NUMBER
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -83,7 +83,7 @@ def find_normals(run: Run, one: int, two: int, t: float, h: float) -> float:
             run.s.x[a - first] = value
         call(table.address[c], run.s.x, 0, table.p, table.p_start[c], run.s.out, 0)
         if not abs(run.s.out[0]) < math.inf:
-            run.x[FAULT] = NO_NUMBER
+            run.fault = NO_NUMBER
         force = max(0.0, run.s.out[0])
         worst = max(worst, abs(force - run.push[two, c]) / (abs(force) + abs(run.push[two, c]) + 1e-300))
         run.push[two, c] = force
@@ -97,7 +97,7 @@ def find_normals(run: Run, one: int, two: int, t: float, h: float) -> float:
 def compliances(run: Run, h: float, slot: int) -> None:
     """Local compliance h W^T A^-1 W of each contact into ``soft`` (from the diagonal of A where D is not formed)."""
     half, quarter = 0.5 * h, 0.25 * h * h
-    if run.i[CONDENSED] == 0:
+    if run.condensed == 0:
         for i in range(run.load.shape[0]):
             for e in range(run.start[i], run.start[i + 1]):
                 if run.column[e] == i:
@@ -105,7 +105,7 @@ def compliances(run: Run, h: float, slot: int) -> None:
     for c in range(run.soft.shape[0]):
         value = 0.0
         for a in range(run.row[c], run.row[c + 1]):
-            if run.i[CONDENSED] == 1:
+            if run.condensed == 1:
                 value += run.D[slot, a, a]
             else:
                 for e in range(run.w_start[a], run.w_start[a + 1]):
@@ -150,7 +150,7 @@ def responses(run: Run, h: float) -> int:
 @kernel
 def free_motion(run: Run, one: int, two: int, h: float, slot: int) -> None:
     """Relative velocities at the end without friction (condensed), or with v as it is, into ``gf``."""
-    if run.i[CONDENSED] == 1:
+    if run.condensed == 1:
         for i in range(run.dv.shape[0]):
             run.turn[i] = h * run.free[i]
         solve(run, run.lu[slot], run.turn, run.trial)
@@ -158,7 +158,7 @@ def free_motion(run: Run, one: int, two: int, h: float, slot: int) -> None:
         value = -run.w[two, a]
         for e in range(run.w_start[a], run.w_start[a + 1]):
             j = run.w_dof[e]
-            value += run.w_coef[e] * (run.v[one, j] + (run.turn[j] if run.i[CONDENSED] == 1 else 0.0))
+            value += run.w_coef[e] * (run.v[one, j] + (run.turn[j] if run.condensed == 1 else 0.0))
         run.gf[a] = value
 
 
@@ -178,7 +178,7 @@ def add_responses(run: Run, h: float, slot: int, F: Floats) -> None:
 @kernel
 def set_window(run: Run, stop: int) -> None:
     """Functions of time are evaluated between the stops around the present time."""
-    low = run.stops[stop - 1] if stop > 0 else run.x[TIME]
+    low = run.stops[stop - 1] if stop > 0 else run.time
     high = run.stops[stop]
     run.s.window[0] = low + 4e-16 * abs(low) + 1e-300
     run.s.window[1] = high - 4e-16 * abs(high) - 1e-300

@@ -8,15 +8,8 @@ from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece
-from fricmb.integrate.timestepping._band import (
-    add_contacts,
-    assemble,
-    factorise,
-    solve,
-    times_matrix,
-)
+from fricmb.integrate.timestepping._band import add_contacts, assemble, factorise, solve, times_matrix
 from fricmb.integrate.timestepping._descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
-from fricmb.integrate.timestepping._layout import N_NEWTON
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -93,7 +86,7 @@ def newton_band(run: Run, h: float, F: Floats, g: Floats, places: Ints) -> bool:
     for _ in range(NEWTON):
         if stopped():
             return False
-        run.i[N_NEWTON] += 1
+        run.n_newton += 1
         slot = factors_of(run, h)
         keep_piece(run)
         flat = all_flat(run)

@@ -11,7 +11,6 @@ from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece
 from fricmb.integrate.timestepping._descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
-from fricmb.integrate.timestepping._layout import N_NEWTON
 from fricmb.integrate.timestepping._run import Run
 
 DGESV = PLACES.index("dgesv")
@@ -43,7 +42,7 @@ def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -
     for _ in range(NEWTON):
         if stopped():
             return False
-        run.i[N_NEWTON] += 1
+        run.n_newton += 1
         for c in range(run.status.shape[0]):
             row0 = run.row[c]
             d = run.row[c + 1] - row0

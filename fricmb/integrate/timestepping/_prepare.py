@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.compile.lapack import addresses
-from fricmb.integrate.compile.room import room
+from fricmb.integrate.compile.room import room, room_type
 from fricmb.integrate.csr import on_one_pattern
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import narrow_order
@@ -97,7 +97,7 @@ def _statics(problem: Problem, contacts: str | None) -> dict[str, Any]:
         "at": order[rows] * (2 * band + 1) + order[index] - order[rows] + band, "order": order,
         "load": linear.fx[:n], "in_start": in_start, "in_signal": in_signal, "in_u": in_b - in_k, "in_b": in_b,
         "in_du": -in_c, "back_start": back_start, "back_dof": back_dof, "back_k": back_k, "back_c": back_c,
-        "drivers": outside, **_contact_arrays(problem), "band": band, "condensed": condensed,
+        "drivers": outside, **_contact_arrays(problem), "band": band, "condensed": int(condensed),
     }  # fmt: skip
 
 
@@ -118,8 +118,8 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, bool, int]:
-    """The arrays of a run with space for so many rows; whether contacts are condensed, and the band's half width."""
+def run_of(problem: Problem, contacts: str | None, capacity: int) -> Run:
+    """The arrays of a run with space for so many rows."""
     statics = once_per(problem, ("timestepping", contacts), lambda: _statics(problem, contacts))
     n, m, nc, n_u = problem.n, problem.m, problem.n_c, problem.n_u
     band, condensed = statics["band"], statics["condensed"]
@@ -129,7 +129,7 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, 
     k = m if condensed else 0
     z, i = np.zeros, np.int64
     arrays = {
-        **statics, **_states(n, m, nc, n_u),
+        **dict.fromkeys(room_type(Run).numbers, 0), **statics, **_states(n, m, nc, n_u),
         **{name: z(n) for name in ("free", "dv", "turn", "trial", "top_q", "top_v", "floor_q", "floor_v")},
         **{name: z(m) for name in ("gf", "y", "P", "phi", "move", "delta", "away", "rhs")},
         **{name: z(nc) for name in ("rho", "slide", "brake", "soft", "share", "total")},
@@ -138,10 +138,10 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> tuple[Run, 
         "lu": z((slots, n * (2 * band + 1))), "of": z((slots, 3 * nc + 1)), "used": z(slots, i),
         "Y": z((slots if k else 0, k, n)), "D": z((slots if k else 0, k, k)), "J": z(k * k),
         "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "s": scratch_of(problem),
-        "x": z(16), "i": z(16, i), "part": z(n, i), "part_of": z(nc, i), "largest": z((1, 3)), "events": z(1, i),
+        "part": z(n, i), "part_of": z(nc, i), "largest": z((1, 3)), "events": z(1, i),
         **no_rows(n, m, nc, capacity), "places": addresses("newton_condensed" if condensed else "newton_band", *BLOCKS),
     }  # fmt: skip
-    return room(Run(**{name: _solid(arrays[name]) for name in Run._fields})), condensed, band
+    return room(Run(**{name: _solid(arrays[name]) for name in Run._fields}))
 
 
 def _states(n: int, m: int, nc: int, n_u: int) -> dict[str, Any]:
@@ -169,8 +169,3 @@ def _solid(x: Any) -> Any:
     if not isinstance(x, np.ndarray):
         return x
     return np.ascontiguousarray(x, dtype=None if x.dtype in (np.int8, np.float64, np.int32) else np.int64)
-
-
-def with_arrays(run: Run, **arrays: Any) -> Run:
-    """The same run with some arrays exchanged."""
-    return room(Run._make([arrays.get(name, getattr(run, name)) for name in Run._fields]))

@@ -25,7 +25,6 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import residual
-from fricmb.integrate.timestepping._layout import CONDENSED, RESIDUAL
 from fricmb.integrate.timestepping._newton_band import newton_band
 from fricmb.integrate.timestepping._newton_condensed import newton_condensed
 from fricmb.integrate.timestepping._run import Run
@@ -40,7 +39,7 @@ def solve_contacts(run: Run, slot: int, h: float, F: Floats, g: Floats, places: 
 
     The residual |F - P(F - g / soft)| is at most ``x[RESIDUAL]`` times the largest radius.
     """
-    condensed = run.i[CONDENSED] == 1
+    condensed = run.condensed == 1
     largest = 0.0
     for c in range(run.status.shape[0]):
         largest = max(largest, run.rho[c])
@@ -56,7 +55,7 @@ def solve_contacts(run: Run, slot: int, h: float, F: Floats, g: Floats, places: 
             fine = newton_band(run, h, F, g, places)
         for a in range(F.shape[0]):
             F[a] = run.P[a]
-        if fine and residual(run, F, g) <= run.x[RESIDUAL] * largest:
+        if fine and residual(run, F, g) <= run.residual * largest:
             found = True
             break
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.timestepping._layout import HERE, N_EVENTS, N_ROWS
+from fricmb.integrate.timestepping._layout import HERE
 from fricmb.integrate.timestepping._run import Run
 
 
@@ -30,7 +30,7 @@ def copy_state(run: Run, source: int, target: int) -> None:
 @kernel
 def keep_row(run: Run, slot: int, normal: int, t: float) -> None:
     """A row of the state, with the normal forces of slot ``normal``."""
-    k = run.i[N_ROWS]
+    k = run.n_rows
     run.row_t[k] = t
     run.row_q[k] = run.q[slot]
     run.row_v[k] = run.v[slot]
@@ -41,14 +41,14 @@ def keep_row(run: Run, slot: int, normal: int, t: float) -> None:
     run.row_loss[k] = run.total
     run.row_x[k, 0] = run.spent[HERE, 0]
     run.row_x[k, 1] = run.spent[HERE, 1]
-    run.i[N_ROWS] = k + 1
+    run.n_rows = k + 1
 
 
 @kernel
 def keep_event(run: Run, t: float, c: int, kind: int) -> None:
     """Add a transition."""
-    e = run.i[N_EVENTS]
+    e = run.n_events
     run.event[e, 0] = t
     run.event[e, 1] = c
     run.event[e, 2] = kind
-    run.i[N_EVENTS] = e + 1
+    run.n_events = e + 1

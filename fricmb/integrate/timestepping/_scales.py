@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.problem import Floats, Ints
-from fricmb.integrate.timestepping._prepare import with_arrays
 from fricmb.integrate.timestepping._run import Run
 
 

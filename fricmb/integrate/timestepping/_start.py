@@ -7,7 +7,7 @@ from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.timestepping._balls import slide_radius
 from fricmb.integrate.timestepping._free import set_signals, set_window
-from fricmb.integrate.timestepping._layout import HERE, MIDDLE, NOISE, SAME, STEP, TIME, WHOLE
+from fricmb.integrate.timestepping._layout import HERE, MIDDLE, WHOLE
 from fricmb.integrate.timestepping._recorder import keep_event, keep_row
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._step import take_step
@@ -68,7 +68,7 @@ def probe(run: Run, t: float) -> None:
         some = some or run.mode[HERE, c] == STICK
     if not some:
         return
-    h = min(PROBE * run.x[STEP], 0.5 * (run.s.window[1] - t))
+    h = min(PROBE * run.step, 0.5 * (run.s.window[1] - t))
     if not h > 0.0:
         return
     take_step(run, HERE, WHOLE, t, h, run.places)
@@ -84,11 +84,11 @@ def probe(run: Run, t: float) -> None:
 @kernel
 def relative_velocities(run: Run, fine: float) -> None:
     """G of the present state, 0 where it is below ``fine`` of what moves, has moved or will; that of slip as it is."""
-    set_signals(run, WHOLE, run.x[TIME] + run.x[STEP])
+    set_signals(run, WHOLE, run.time + run.step)
     for c in range(run.mode.shape[1]):
         row0 = run.row[c]
         d = run.row[c + 1] - row0
-        size = run.x[NOISE]
+        size = run.noise
         part_of = fine if run.mode[HERE, c] == STICK else ROUND_OFF
         for a in range(row0, row0 + d):
             value = -run.w[HERE, a]
@@ -108,7 +108,7 @@ def relative_velocities(run: Run, fine: float) -> None:
 def begin(run: Run, given: bool) -> None:
     """Signals, relative velocities and modes at the start."""
     set_window(run, 0)
-    set_signals(run, HERE, run.x[TIME])
+    set_signals(run, HERE, run.time)
     relative_velocities(run, ROUND_OFF)
     for c in range(run.mode.shape[1]):
         still = magnitude(run.row, c, run.g[HERE]) == 0.0
@@ -116,9 +116,9 @@ def begin(run: Run, given: bool) -> None:
             run.mode[HERE, c] = STICK if still else SLIP
     if not given and run.mode.shape[1] > 0:
         # what nothing can hold slips from the start
-        take_step(run, HERE, WHOLE, run.x[TIME], PROBE * run.x[STEP], run.places)
+        take_step(run, HERE, WHOLE, run.time, PROBE * run.step, run.places)
         for c in range(run.mode.shape[1]):
             if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == SLIP:
                 run.mode[HERE, c] = SLIP
-    if run.x[SAME] == 0.0:
-        probe(run, run.x[TIME])
+    if run.goes_on == 0.0:
+        probe(run, run.time)

@@ -30,19 +30,7 @@ from fricmb.integrate.timestepping._free import (
     set_signals,
     structure_forces,
 )
-from fricmb.integrate.timestepping._layout import (
-    CAUGHT,
-    CONDENSED,
-    DRIVES,
-    FAULT,
-    HELD,
-    HERE,
-    N_ROUNDS,
-    PASSED,
-    SETTLED,
-    SOUND,
-    VARYING,
-)
+from fricmb.integrate.timestepping._layout import CAUGHT, DRIVES, HELD, HERE, PASSED, SOUND
 from fricmb.integrate.timestepping._proximal import solve_contacts
 from fricmb.integrate.timestepping._review import first_balls, review_balls
 from fricmb.integrate.timestepping._run import Run
@@ -56,7 +44,7 @@ ROUNDS = 16
 def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) -> bool:
     """Step from slot one at t to slot two at t + h; whether all that is lagged has settled."""
     n = run.load.shape[0]
-    condensed = run.i[CONDENSED] == 1
+    condensed = run.condensed == 1
     set_signals(run, two, t + h)
     structure_forces(run, one, two, h)
     slot = responses(run, h) if condensed else 0
@@ -65,7 +53,7 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
         run.dv[i] = 0.0
     for c in range(run.N.shape[0]):
         run.push[two, c] = run.N[c]
-    if run.i[VARYING] == 1:
+    if run.varying == 1:
         find_normals(run, one, two, t, h)
         add_normals(run, two, 1.0)
     for a in range(run.belt.shape[0]):
@@ -75,7 +63,7 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
     for turn in range(ROUNDS):
         if stopped():
             break
-        run.i[N_ROUNDS] += 1
+        run.n_rounds += 1
         free_motion(run, one, two, h, slot)
         if not solve_contacts(run, slot, h, run.F[two], run.g[two], places):
             break
@@ -83,16 +71,16 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
         if condensed:
             add_responses(run, h, slot, run.F[two])
         change = 0.0
-        if run.i[VARYING] == 1:
+        if run.varying == 1:
             add_normals(run, two, -1.0)
             change = find_normals(run, one, two, t, h)
             add_normals(run, two, 1.0)
         change = max(change, review_balls(run, one, two, t, h, turn, places))
-        if change <= run.x[SETTLED]:
+        if change <= run.settled:
             settled = True
             break
-    if run.x[FAULT] == DRIVES:
-        run.x[FAULT] = SOUND  # what counts is where the step ends
+    if run.fault == DRIVES:
+        run.fault = SOUND  # what counts is where the step ends
     keep_end(run, one, two, t, h)
     return settled
 

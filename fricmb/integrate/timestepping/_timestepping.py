@@ -9,38 +9,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fricmb.errors import SceneError
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.step_control import SAMPLED
 from fricmb.integrate.timestepping._doubts import kinks, short_phases
 from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, drive
-from fricmb.integrate.timestepping._layout import (
-    BAND,
-    CONDENSED,
-    END,
-    FIXED,
-    HERE,
-    LEEWAY,
-    LONGEST,
-    N_EVENTS,
-    N_FACTOR,
-    N_NEWTON,
-    N_REJECTED,
-    N_ROUNDS,
-    N_ROWS,
-    N_STEPS,
-    N_UNSETTLED,
-    RESIDUAL,
-    SAME,
-    SETTLED,
-    SHORTEST,
-    STEP,
-    TIME,
-    TOL,
-    VARYING,
-)  # fmt: skip
-from fricmb.integrate.timestepping._prepare import refusal, run_of, with_arrays
+from fricmb.integrate.timestepping._layout import HERE
+from fricmb.integrate.timestepping._prepare import refusal, run_of
 from fricmb.integrate.timestepping._run import Run
 from fricmb.integrate.timestepping._scales import add_floors, with_parts
 from fricmb.integrate.timestepping._start import begin
@@ -117,8 +94,7 @@ class TimeStepping(Integrator):
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         width = 2 * problem.n + 2 * problem.m + 2 * problem.n_c + 4
         capacity = int(np.clip(ROWS / width, 8, 1024))
-        run, condensed, band = run_of(problem, self.contacts, capacity)
-        run.i[CONDENSED], run.i[BAND] = int(condensed), band
+        run = run_of(problem, self.contacts, capacity)
         run = self._set_start(problem, run, start, t_end, tolerance)
         watched(begin, run, start.mode is not None)
         chunks: list[dict[str, Any]] = []
@@ -129,7 +105,7 @@ class TimeStepping(Integrator):
             chunks.append(_emptied(run))
             held += 8 * width * len(chunks[-1]["row_t"])
             if progress is not None:
-                progress(float(run.x[TIME]))
+                progress(run.time)
         if held == 0:  # ended before its first step
             chunks.append(_start_alone(run))
         failure = None if code == DONE else ended() or FAILURES.get(code)
@@ -154,15 +130,14 @@ class TimeStepping(Integrator):
         inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
         span = t_end - start.t
         fastest = float(np.max(problem.omega, initial=0.0))
-        x = run.x
-        x[TIME], x[END], x[RESIDUAL] = start.t, t_end, self.residual
-        x[TOL], x[LEEWAY] = TIGHT * tolerance.rtol**1.5, LOOSE / (TIGHT * tolerance.rtol**0.5)
-        x[LONGEST] = SAMPLED * span if problem.loads_bend else span
-        x[SHORTEST], x[FIXED] = 1e-9 * span, self.fixed_step or 0.0
-        x[STEP] = min(0.01 * span, 0.3 / fastest) if fastest > 0.0 else 0.01 * span
-        x[SETTLED] = 1e-10 if self.fixed_step else min(1e-4, 0.01 * tolerance.rtol)
-        x[SAME] = float(isinstance(start, SteppedStart))
-        run.i[VARYING] = int(run.var.any())
+        run.time, run.end, run.residual = start.t, t_end, self.residual
+        run.tol, run.leeway = TIGHT * tolerance.rtol**1.5, LOOSE / (TIGHT * tolerance.rtol**0.5)
+        run.longest = SAMPLED * span if problem.loads_bend else span
+        run.shortest, run.fixed_step = 1e-9 * span, self.fixed_step or 0.0
+        run.step = min(0.01 * span, 0.3 / fastest) if fastest > 0.0 else 0.01 * span
+        run.settled = 1e-10 if self.fixed_step else min(1e-4, 0.01 * tolerance.rtol)
+        run.goes_on = int(isinstance(start, SteppedStart))
+        run.varying = int(run.var.any())
         return with_arrays(run, stops=np.append(inside, t_end))
 
 
@@ -172,20 +147,20 @@ _ROWS = ("row_t", "row_q", "row_v", "row_F", "row_g", "row_N", "row_mode", "row_
 
 def _emptied(run: Run) -> dict[str, Any]:
     """What the space for rows and transitions holds, taken out of it."""
-    rows, events = int(run.i[N_ROWS]), int(run.i[N_EVENTS])
+    rows, events = int(run.n_rows), int(run.n_events)
     taken = {name: getattr(run, name)[:rows].copy() for name in _ROWS}
     taken["event"] = run.event[:events].copy()
-    run.i[N_ROWS], run.i[N_EVENTS] = 0, 0
+    run.n_rows, run.n_events = 0, 0
     return taken
 
 
 def _start_alone(run: Run) -> dict[str, Any]:
     """The start as the one row of a run."""
-    run.row_t[0], run.row_F[0] = run.x[TIME], run.ends[HERE]
+    run.row_t[0], run.row_F[0] = run.time, run.ends[HERE]
     for name in ("q", "v", "g", "mode"):
         getattr(run, f"row_{name}")[0] = getattr(run, name)[HERE]
     run.row_N[0], run.row_loss[0], run.row_x[0] = np.where(run.var == 1, 0.0, run.N), 0.0, 0.0
-    run.i[N_ROWS] = 1
+    run.n_rows = 1
     return _emptied(run)
 
 
@@ -195,15 +170,15 @@ def _trajectory(
     event = np.concatenate([chunk.pop("event") for chunk in chunks])
     event = event[np.argsort(event[:, 0], kind="stable")]
     transitions = Transitions(t=event[:, 0].copy(), contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
-    i = run.i
     notes: tuple[str, ...] = ()
-    if i[N_UNSETTLED]:
-        notes = (f"{i[N_UNSETTLED]} of {i[N_STEPS]} steps were taken though their error or lag is above the tolerance",)
+    if run.n_unsettled:
+        unsettled = f"{run.n_unsettled} of {run.n_steps} steps"
+        notes = (f"{unsettled} were taken though their error or lag is above the tolerance",)
     notes += short_phases(problem, np.concatenate([chunk["row_t"] for chunk in chunks]), transitions)
     notes += kinks(problem, chunks, transitions, rtol)
     counters = Counters(
-        n_steps=int(i[N_STEPS]), n_rejected=int(i[N_REJECTED]), n_rhs=int(i[N_ROUNDS]), n_jac=int(i[N_NEWTON]),
-        n_lu=int(i[N_FACTOR]), notes=notes,
+        n_steps=run.n_steps, n_rejected=run.n_rejected, n_rhs=run.n_rounds, n_jac=run.n_newton,
+        n_lu=run.n_factor, notes=notes,
     )  # fmt: skip
     direction = np.zeros(problem.m)
     row = problem.contacts.row
@@ -211,7 +186,7 @@ def _trajectory(
         part = run.g[HERE, row[k] : row[k + 1]]
         direction[row[k] : row[k + 1]] = part / (np.linalg.norm(part) or 1.0)
     end = SteppedStart(
-        t=float(run.x[TIME]), q=run.q[HERE].copy(), v=run.v[HERE].copy(), z=np.zeros(0), mode=run.mode[HERE].copy(),
+        t=float(run.time), q=run.q[HERE].copy(), v=run.v[HERE].copy(), z=np.zeros(0), mode=run.mode[HERE].copy(),
         direction=direction, **{name: getattr(run, name)[HERE].copy() for name in _HELD},
     )  # fmt: skip
     return SteppedRun(problem, chunks, transitions, counters, end, failure)

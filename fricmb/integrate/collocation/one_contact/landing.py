@@ -35,7 +35,7 @@ def tail_of_r(run: Run, r0: float) -> float:
 def grain_of_r(run: Run, h: float) -> float:
     """Round-off of r over a step: of what friction alone changes it by, many forces being about as large."""
     last = run.belt.shape[0] - 1
-    return float(1e-14 * h * run.mu_0_N[0] * max(run.D[0, 0], run.D[last, last]))
+    return float(1e-14 * h * run.mu_0_N * max(run.D[0, 0], run.D[last, last]))
 
 
 @kernel
@@ -127,7 +127,7 @@ def closing_rate(run: Run, since: float) -> float:
             value += run.c1[a, j] * (run.a[j] - run.e1[j]) + run.c0[a, j] * run.v_end[j]
         run.out[2, a] = value
         for b in range(m):
-            value -= run.D[a, b] * run.mu_0_N[0] * run.direction[b, end]
+            value -= run.D[a, b] * run.mu_0_N * run.direction[b, end]
         rate += run.direction[a, end] * value
     return float(rate)
 
@@ -146,7 +146,7 @@ def turns(run: Run) -> bool:
         for b in range(2):
             force += run.D_inv[a, b] * run.out[2, b]
         hold += force * force
-    return bool(math.sqrt(hold) > run.mu_0_N[0] * (1.0 + 1e-9))
+    return bool(math.sqrt(hold) > run.mu_0_N * (1.0 + 1e-9))
 
 
 @kernel
@@ -156,8 +156,8 @@ def snap(run: Run, r: float, tau: float) -> None:
         push = 0.0
         lift = 0.0
         for a in range(run.belt.shape[0]):
-            push -= run.b1[a, j] * run.mu_0_N[0] * run.n[a]
-            lift -= run.b0[a, j] * run.mu_0_N[0] * run.n[a]
+            push -= run.b1[a, j] * run.mu_0_N * run.n[a]
+            lift -= run.b0[a, j] * run.mu_0_N * run.n[a]
         acceleration = run.a[j] + push
         velocity = run.v[j] + lift
         run.u[j], run.u_low[j] = two_sum(
@@ -165,8 +165,8 @@ def snap(run: Run, r: float, tau: float) -> None:
         )  # fmt: skip
         jerk = run.k[j] - run.w2[0, j] * lift - run.damp[0, j] * acceleration
         run.v[j] += acceleration * tau + 0.5 * jerk * tau * tau
-    run.time[0], run.time_low[0] = two_sum(run.time[0], run.time_low[0], tau)
-    run.loss[0] += 0.5 * run.mu_0_N[0] * r * tau
+    run.time, run.time_low = two_sum(run.time, run.time_low, tau)
+    run.loss += 0.5 * run.mu_0_N * r * tau
 
 
 @block
@@ -177,10 +177,10 @@ def arrive(run: Run, since: float, address: Ints) -> None:
     project(run)
     sticks = settle(run)
     if sticks or (run.belt.shape[0] == 1 and run.n[0] * before < 0.0):
-        run.events[run.used[2], 0] = run.time[0] + run.time_low[0]
+        run.events[run.used[2], 0] = run.time + run.time_low
         run.events[run.used[2], 1] = EVENT_STICK if sticks else EVENT_REVERSAL
         run.used[2] += 1
-    run.next_step[0] = run.first_step[0]
+    run.next_step = run.first_step
 
 
 @block
@@ -217,8 +217,8 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
         tau = -r / rate
         if abs(tau) > 0.5 * length:
             return -4.0
-        reach = max(run.change[0], run.change[m - 1]) * run.mu_0_N[0] * abs(tau)
-        swing = abs(tau) * run.fastest[0]
+        reach = max(run.change[0], run.change[m - 1]) * run.mu_0_N * abs(tau)
+        swing = abs(tau) * run.fastest
         if reach * (0.5 * turn * abs(tau) + 0.2 * swing * swing) <= 5e-3 * tol and swing <= 0.01:
             accelerations(run, 0, run.w2.shape[1], since)
             loss = keep_slip(run, length)

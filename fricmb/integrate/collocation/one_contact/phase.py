@@ -16,9 +16,9 @@ from fricmb.integrate.problem import SLIP, STICK, Ints
 def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
     """Block states of structure z at the present state, its loads, and a row of the phase."""
     n = run.pos.shape[0]
-    t = run.time[0]
+    t = run.time
     for i in range(n):
-        value = run.load_0[i] + run.load_1[i] * t + run.load_1[i] * run.time_low[0]
+        value = run.load_0[i] + run.load_1[i] * t + run.load_1[i] * run.time_low
         slope = run.load_1[i]
         for j in range(n):
             value -= run.stiff[i, j] * (run.pos[j] + run.pos_low[j])
@@ -35,7 +35,7 @@ def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
         run.phases[phase, 3 * n + 2 + i] = 0.0
         run.phases[phase, 4 * n + 2 + i] = 0.0
     run.phases[phase, 2 * n] = t
-    run.phases[phase, 2 * n + 1] = run.time_low[0]
+    run.phases[phase, 2 * n + 1] = run.time_low
     modal = run.modal[z] == 1
     for j in range(b):
         u = 0.0
@@ -82,7 +82,7 @@ def keep_row(run: Run, mode: int, b: int, h: float) -> int:
     run.kinds[row, 0] = mode
     run.kinds[row, 1] = run.used[1] - 1
     step = run.steps[row]
-    step[AT_TIME], step[AT_LOW], step[AT_LENGTH], step[AT_LOSS] = run.time[0], run.time_low[0], h, run.loss[0]
+    step[AT_TIME], step[AT_LOW], step[AT_LENGTH], step[AT_LOSS] = run.time, run.time_low, h, run.loss
     for j in range(b):
         step[AT_BLOCKS + j] = run.u[j] + run.u_low[j]
         step[AT_BLOCKS + n + j] = run.v[j]
@@ -123,7 +123,7 @@ def contact_acceleration(run: Run) -> None:
     n = run.pos.shape[0]
     m = run.belt.shape[0]
     for i in range(n):
-        value = run.load_0[i] + run.load_1[i] * run.time[0]
+        value = run.load_0[i] + run.load_1[i] * run.time
         for j in range(n):
             value -= run.stiff[i, j] * (run.pos[j] + run.pos_low[j]) + run.visc[i, j] * run.vel[j]
         run.force[i] = value
@@ -164,9 +164,9 @@ def settle(run: Run) -> bool:
     size = 0.0
     for a in range(m):
         size += run.out[1, a] * run.out[1, a]
-    if math.sqrt(size) <= run.mu_s_N[0] * (1.0 + 1e-12):
-        run.mode[0] = STICK
+    if math.sqrt(size) <= run.mu_s_N * (1.0 + 1e-12):
+        run.mode = STICK
         return True
-    run.mode[0] = SLIP
+    run.mode = SLIP
     start_direction(run)
     return False

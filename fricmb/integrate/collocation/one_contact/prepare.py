@@ -102,19 +102,17 @@ def _model(problem: Problem) -> Model:
         "mu_s_N": stick_limits(contacts)[0], "mu_0_N": contacts.mu_0[0] * N,
         "fastest": np.sqrt(np.abs(slip.w2)).max(initial=0.0),
     }  # fmt: skip
-    floats = _both_structures(slip, stick, M) | {name: np.array([value]) for name, value in numbers.items()} | {
+    floats = _both_structures(slip, stick, M) | {
         "c0": c0, "c1": c1, "b0": b0, "b1": b1, "linked": linked, "hold_u": hold_u, "hold_v": hold_v, "wt": W.T,
         "mw": MW.T, "D": D, "D_inv": Dinv, "belt": w, "stiff": K, "visc": C, "minv": Minv,
         "load_0": linear.fx[:n] + Ku @ start - linear.Cx[:n, n:] @ rate, "load_1": Ku @ rate,
         "stuck_v": stick.stuck_motion @ w,
     }  # fmt: skip
     whole = {
-        "modal": [slip.modal, stick.modal], "stuck_blocks": [b],
-        "coupled": [m == 2 and bool(linked[0, 1] or linked[1, 0])],
+        "stuck_blocks": b, "coupled": int(m == 2 and bool(linked[0, 1] or linked[1, 0])),
+        "modal": np.array([slip.modal, stick.modal], np.int64),
     }  # fmt: skip
-    return {name: np.ascontiguousarray(x, dtype=float) for name, x in floats.items()} | {
-        name: np.array(x, dtype=np.int64) for name, x in whole.items()
-    }
+    return {name: np.ascontiguousarray(x, dtype=float) for name, x in floats.items()} | numbers | whole
 
 
 def model(problem: Problem) -> Model:

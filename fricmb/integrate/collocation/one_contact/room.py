@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
 from fricmb.integrate.step.tableau import Tableau
 
@@ -15,7 +14,7 @@ Ints2 = Ints
 AT_TIME, AT_LOW, AT_LENGTH, AT_LOSS, AT_BLOCKS = range(5)
 
 
-class Run(NamedTuple):
+class Run(Layout):
     """Arrays of a run of one contact, with n dofs, m rows, s nodes, x' for x and places beside it (``compile.lanes``).
 
     Structure in slip (0) and stick (1), block by block: v' = -w2 u - damp v with ``w2``, ``damp`` (2, n); displacement
@@ -24,7 +23,7 @@ class Run(NamedTuple):
     Contact: ``c0``, ``c1`` (m, n) relative velocity by u and v of the blocks in slip, ``b0``, ``b1`` (m, n) inputs of u
     and v by forces, ``linked`` (m, m) whether one row's force reaches another's velocity; ``hold_u``, ``hold_v`` (m, n)
     force in stick by block states; ``wt``, ``mw`` (m, n) W and M^-1 W; ``D``, ``D_inv`` (m, m) W^T M^-1 W;
-    ``mu_s_N``, ``mu_0_N``, ``fastest`` frequency (1,), ``belt`` (m,), ``stuck_blocks`` (1,) their number, ``coupled``.
+    ``mu_s_N``, ``mu_0_N``, ``fastest`` frequency, ``belt`` (m,), ``stuck_blocks`` their number, ``coupled``.
     Dofs: ``stiff``, ``visc``, ``minv`` (n, n); load ``load_0 + load_1 t`` (n,); ``stuck_v`` (n,) velocity in stick.
     Nodes: see ``collocation.nodes``.  Weights by step size (see ``moment_weights``): ``S`` to ``Q3`` (slots, n, s'),
     ``answers`` (slots, m m, s, s'), slot 0 for steps off the ``ladder``; ``slots``: slot of a rung or -1, then how many
@@ -35,7 +34,7 @@ class Run(NamedTuple):
     friction; ``jacobian`` (s+2, s'), ``unit`` (s, s') the unit matrix, ``kappa`` (n + 1, TERMS; its last row is work),
     ``terms`` (n,), ``radau`` (s, s), ``rhs`` (s,), ``coefficients`` (s+1,), ``out`` (3, m), ``change`` (m,) of signals
     per impulse on a row.
-    State between phases: ``pos`` with its low part, ``vel``, ``scale`` (n,); ``g``, ``n`` (m,); (1,): ``time`` with its
+    State between phases: ``pos`` with its low part, ``vel``, ``scale`` (n,); ``g``, ``n`` (m,); ``time`` with its
     low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``mode``.  ``used`` (3,) rows of
     steps, phases and events; ``counts`` (5,) work done (see Counters).
     ``steps``, ``kinds``, ``phases``, ``events``: rows of what is kept.  ``places``: table of the blocks.
@@ -63,12 +62,12 @@ class Run(NamedTuple):
     mw: Floats2
     D: Floats2
     D_inv: Floats2
-    mu_s_N: Floats
-    mu_0_N: Floats
-    fastest: Floats
+    mu_s_N: float
+    mu_0_N: float
+    fastest: float
     belt: Floats
-    stuck_blocks: Ints
-    coupled: Ints
+    stuck_blocks: int
+    coupled: int
     stiff: Floats2
     visc: Floats2
     minv: Floats2
@@ -122,12 +121,12 @@ class Run(NamedTuple):
     scale: Floats
     g: Floats
     n: Floats
-    time: Floats
-    time_low: Floats
-    loss: Floats
-    next_step: Floats
-    first_step: Floats
-    mode: Ints
+    time: float
+    time_low: float
+    loss: float
+    next_step: float
+    first_step: float
+    mode: int
     used: Ints
     counts: Ints
     steps: Floats2

@@ -73,10 +73,10 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
     for a in range(m):
         fresh = fresh and run.g[a] == 0.0
     while taken < REBASE and not stopped():
-        left = (t_end - run.time[0]) - run.time_low[0]
+        left = (t_end - run.time) - run.time_low
         if left <= 0.0:
             break
-        rung = rung_of(run, run.next_step[0])
+        rung = rung_of(run, run.next_step)
         if rung >= RUNGS:
             return UNDERFLOW
         h = run.ladder[rung]
@@ -92,7 +92,7 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
             for i in range(s):
                 run.direction[a, i] = run.n[a]
         if not solve_slip(run, slot, h, tol, run.places):
-            run.next_step[0] = 0.5 * h
+            run.next_step = 0.5 * h
             run.counts[1] += 1
             continue
         r0 = 0.0
@@ -106,13 +106,13 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
                 arrive(run, since + gone, run.places)
                 return DONE
             run.counts[1] += 1
-            run.next_step[0] = max(stop * h * length_factor(-gone, s), 0.01 * h)
+            run.next_step = max(stop * h * length_factor(-gone, s), 0.01 * h)
             continue
         error = step_error(run, h, tol)
         error = max(error, stop - 2.0)
         if error > 1.0:
             run.counts[1] += 1
-            run.next_step[0] = h * length_factor(error, s)
+            run.next_step = h * length_factor(error, s)
             continue
         loss = keep_slip(run, h)
         end_state(run, slot, h)
@@ -120,9 +120,9 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
         since += h
         taken += 1
         if fresh:
-            run.first_step[0] = h
+            run.first_step = h
             fresh = False
-        run.next_step[0] = h * length_factor(error, s) * 1.0000001
+        run.next_step = h * length_factor(error, s) * 1.0000001
         if nearly_stopped(run, since, tol, run.rhs[s - 1], h):
             arrive(run, since, run.places)
             return DONE
@@ -135,7 +135,7 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
     """Stick until the force reaches its cone or the run ends."""
     n = run.pos.shape[0]
     m = run.belt.shape[0]
-    b = run.stuck_blocks[0]
+    b = run.stuck_blocks
     contact_acceleration(run)
     for a in range(m):
         run.free[a, 0] = run.out[1, a]
@@ -157,7 +157,7 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
         for j in range(b):
             value -= run.hold_v[a, j] * run.e1[j]
         run.free[a, 1] = value
-    left = (t_end - run.time[0]) - run.time_low[0]
+    left = (t_end - run.time) - run.time_low
     found = release_time(run, left)
     if found == -2.0:
         return ENDLESS
@@ -173,15 +173,15 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
     for a in range(m):
         run.g[a] = 0.0
     if found < 0.0:
-        run.time[0] = t_end
-        run.time_low[0] = 0.0
+        run.time = t_end
+        run.time_low = 0.0
         return DONE
-    run.time[0], run.time_low[0] = two_sum(run.time[0], run.time_low[0], h)
+    run.time, run.time_low = two_sum(run.time, run.time_low, h)
     contact_acceleration(run)
     start_direction(run)
-    run.mode[0] = SLIP
-    run.next_step[0] = run.first_step[0]
-    run.events[run.used[2], 0] = run.time[0] + run.time_low[0]
+    run.mode = SLIP
+    run.next_step = run.first_step
+    run.events[run.used[2], 0] = run.time + run.time_low
     run.events[run.used[2], 1] = EVENT_SLIP
     run.used[2] += 1
     return DONE
@@ -191,20 +191,20 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
 def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float) -> int:
     """Run from the state until the end, or until there is no space for the rows of another phase."""
     stalled = 0
-    if run.mode[0] == UNSETTLED:
+    if run.mode == UNSETTLED:
         settle(run)
-    while run.time[0] + run.time_low[0] < t_end:
+    while run.time + run.time_low < t_end:
         if run.used[0] + REBASE + 2 > run.steps.shape[0] or run.used[1] + 2 > run.phases.shape[0]:
             return FULL
         if run.used[2] + 2 > run.events.shape[0]:
             return FULL
-        if run.time[0] > t_pause:
+        if run.time > t_pause:
             return PAUSE
         if stopped():
             return FULL
-        t = run.time[0]
-        low = run.time_low[0]
-        if run.mode[0] == STICK:
+        t = run.time
+        low = run.time_low
+        if run.mode == STICK:
             code = stick_phase(run, t_end, run.places)
         else:
             code = slip_phase(run, t_end, tol, stiff, run.places)
@@ -213,7 +213,7 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float)
         for i in range(run.pos.shape[0]):
             if not abs(run.pos[i]) + abs(run.vel[i]) < 1e300:
                 return NOT_FINITE
-        stalled = stalled + 1 if (run.time[0] - t) + (run.time_low[0] - low) <= 1e-15 * abs(t) else 0
+        stalled = stalled + 1 if (run.time - t) + (run.time_low - low) <= 1e-15 * abs(t) else 0
         if stalled > 50:
             return ENDLESS
     return DONE

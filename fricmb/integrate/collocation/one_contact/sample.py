@@ -112,7 +112,7 @@ def slip_blocks(run: Run, k: int, work: Floats2, polynomial: Floats2, tau: float
 def stuck_blocks(run: Run, k: int, work: Floats2, tau: float) -> None:
     """What u gains in tau, and v after it, in closed form."""
     n = run.w2.shape[1]
-    for j in range(run.stuck_blocks[0]):
+    for j in range(run.stuck_blocks):
         w2 = run.w2[1, j]
         x0, x1, x2 = fundamental(w2, run.damp[1, j], tau)
         v0, a0 = run.steps[k, AT_BLOCKS + n + j], run.steps[k, AT_BLOCKS + 2 * n + j]
@@ -126,7 +126,7 @@ def dofs_from_blocks(run: Run, k: int, work: Floats2, tau: float, i: int, q: Flo
     """Positions, velocities and relative velocity at sample i; the gains become block states first."""
     n, m = run.w2.shape[1], run.belt.shape[0]
     slips = run.kinds[k, 0] == SLIP
-    z, b = (0, n) if slips else (1, run.stuck_blocks[0])
+    z, b = (0, n) if slips else (1, run.stuck_blocks)
     phase = run.phases[run.kinds[k, 1]]
     since = (run.steps[k, AT_TIME] - phase[2 * n]) + (run.steps[k, AT_LOW] - phase[2 * n + 1]) + tau
     moved, speed = work[MOVED], work[SPEED]
@@ -162,7 +162,7 @@ def slip_force(run: Run, polynomial: Floats2, gone: float, i: int, F: Floats2) -
             value = value * gone + polynomial[a, r]
         F[a, i] = value
         size += value * value
-    size = run.mu_0_N[0] / math.sqrt(size)
+    size = run.mu_0_N / math.sqrt(size)
     for a in range(run.belt.shape[0]):
         F[a, i] *= size
 

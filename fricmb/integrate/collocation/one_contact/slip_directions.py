@@ -13,12 +13,12 @@ from fricmb.integrate.problem import Floats2
 @kernel
 def relative_velocity(run: Run, slot: int, d: int) -> None:
     """Relative velocity at the nodes for the directions there, F = -mu N n."""
-    muN = run.mu_0_N[0]
+    muN = run.mu_0_N
     for a in range(d):
         for at in range(0, run.free.shape[1], LANES):
             g = lanes(run.free[a], at)
             for b in range(d):
-                if a == b or run.coupled[0] == 1:
+                if a == b or run.coupled == 1:
                     answer = run.answers[slot, d * a + b]
                     for l in range(answer.shape[0]):
                         g = g - muN * run.direction[b, l] * lanes(answer[l], at)
@@ -32,7 +32,7 @@ def turning(run: Run, slot: int) -> None:
     The right-hand side is the column behind them.
     """
     J, answers = run.jacobian, run.answers[slot]
-    s, muN, coupled = run.basis.shape[0], run.mu_0_N[0], run.coupled[0] == 1
+    s, muN, coupled = run.basis.shape[0], run.mu_0_N, run.coupled == 1
     for at in range(0, run.free.shape[1], LANES):
         x, y = lanes(run.direction[0], at), lanes(run.direction[1], at)
         gx, gy = lanes(run.relative[0], at), lanes(run.relative[1], at)
@@ -126,12 +126,12 @@ def start_direction(run: Run) -> float:
     """
     if run.belt.shape[0] == 1:
         run.n[0] = 1.0 if run.out[0, 0] >= 0.0 else -1.0
-        return float(max(0.0, abs(run.out[0, 0]) - run.mu_0_N[0] * run.D[0, 0]))
+        return float(max(0.0, abs(run.out[0, 0]) - run.mu_0_N * run.D[0, 0]))
     rho = 0.0
     for _ in range(60):
-        p = run.mu_0_N[0] * run.D[0, 0] + rho
-        q = 0.5 * run.mu_0_N[0] * (run.D[0, 1] + run.D[1, 0])
-        r = run.mu_0_N[0] * run.D[1, 1] + rho
+        p = run.mu_0_N * run.D[0, 0] + rho
+        q = 0.5 * run.mu_0_N * (run.D[0, 1] + run.D[1, 0])
+        r = run.mu_0_N * run.D[1, 1] + rho
         det = p * r - q * q
         if det == 0.0:
             rho = max(rho, 1e-300)
@@ -147,7 +147,7 @@ def start_direction(run: Run) -> float:
         curve = (run.n[0] * (r * run.n[0] - q * run.n[1]) + run.n[1] * (p * run.n[1] - q * run.n[0])) / det
         size = math.sqrt(size2)
         step = (size - 1.0) * size2 / curve
-        if step <= 1e-15 * (rho + run.mu_0_N[0] * (run.D[0, 0] + run.D[1, 1])):
+        if step <= 1e-15 * (rho + run.mu_0_N * (run.D[0, 0] + run.D[1, 1])):
             break
         rho += step
     size = math.hypot(run.n[0], run.n[1])

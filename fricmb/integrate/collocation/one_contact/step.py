@@ -78,7 +78,7 @@ def solve_slip(run: Run, slot: int, h: float, tol: float, address: Ints) -> bool
         relative_velocity(run, slot, 1)
         return True
     enough = min(
-        1e-6, 0.1 * tol / max(1e-300, run.change[0], run.change[1]) / (run.mu_0_N[0] * h + 1e-300),
+        1e-6, 0.1 * tol / max(1e-300, run.change[0], run.change[1]) / (run.mu_0_N * h + 1e-300),
     )  # fmt: skip
     count = slip_directions(run, slot, max(enough, 1e-28))
     run.counts[2] += max(count, 1)
@@ -93,7 +93,7 @@ def end_state(run: Run, slot: int, h: float) -> None:
     s = run.basis.shape[0]
     end = s - 1
     modal = run.modal[0] == 1
-    muN = run.mu_0_N[0]
+    muN = run.mu_0_N
     for j in range(run.w2.shape[1]):
         du = run.v[j] * h + run.a[j] * run.IS[slot, j, end] + run.k[j] * run.IIS[slot, j, end]
         dv = run.a[j] * run.S[slot, j, end] + run.k[j] * run.IS[slot, j, end]
@@ -139,7 +139,7 @@ def step_error(run: Run, h: float, tol: float) -> float:
     """Estimated error of a slip step in units of the tolerance, the worst over signals by their own scales."""
     m = run.belt.shape[0]
     s = run.basis.shape[0]
-    muN = run.mu_0_N[0]
+    muN = run.mu_0_N
     worst = 0.0
     for a in range(m):
         last = 0.0
@@ -163,7 +163,7 @@ def rates(run: Run) -> None:
         for j in range(n):
             value += run.minv[i, j] * run.force[j]
         for a in range(run.belt.shape[0]):
-            value -= run.mw[a, i] * run.mu_0_N[0] * run.n[a]
+            value -= run.mw[a, i] * run.mu_0_N * run.n[a]
         run.rate[i] = value
 
 
@@ -177,17 +177,17 @@ def keep_slip(run: Run, h: float) -> float:
     at = AT_BLOCKS + 3 * n
     for a in range(m):
         for l in range(s):
-            run.steps[at_row, at + a * s + l] = -run.mu_0_N[0] * run.direction[a, l]
+            run.steps[at_row, at + a * s + l] = -run.mu_0_N * run.direction[a, l]
     at += m * s
     power = 0.0
     for a in range(m):
         power += run.g[a] * run.g[a]
-    run.steps[at_row, at] = run.mu_0_N[0] * math.sqrt(power)
+    run.steps[at_row, at] = run.mu_0_N * math.sqrt(power)
     loss = 0.0
     for l in range(s):
         power = 0.0
         for a in range(m):
-            power += run.mu_0_N[0] * run.direction[a, l] * run.relative[a, l]
+            power += run.mu_0_N * run.direction[a, l] * run.relative[a, l]
         run.steps[at_row, at + 1 + l] = power
         loss += h * run.tab.b[l] * power
     return loss
@@ -204,5 +204,5 @@ def commit(run: Run, h: float, loss: float) -> None:
     for a in range(run.belt.shape[0]):
         run.g[a] = run.relative[a, end]
         run.n[a] = run.direction[a, end]
-    run.time[0], run.time_low[0] = two_sum(run.time[0], run.time_low[0], h)
-    run.loss[0] += loss
+    run.time, run.time_low = two_sum(run.time, run.time_low, h)
+    run.loss += loss

@@ -77,8 +77,8 @@ def safe_step(F: float, FdF: float, dF: float, bound: float, limit: float) -> fl
 def release_time(run: Run, longest: float) -> float:
     """First time in [0, longest] at which |F| reaches ``limit``; -1 if it does not, -2 if the search does not end."""
     m = run.belt.shape[0]
-    b = run.stuck_blocks[0]
-    limit = run.mu_s_N[0]
+    b = run.stuck_blocks
+    limit = run.mu_s_N
     fastest = 0.0
     cap = 1e300
     for j in range(b):

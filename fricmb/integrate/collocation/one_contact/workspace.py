@@ -30,10 +30,10 @@ BY_BLOCK = (
     "u", "u_low", "v", "a", "k", "load", "slope", "e0", "e1", "u_end", "low_end", "v_end", "force", "rate", "pos",
     "pos_low", "vel", "scale",
 )  # fmt: skip
-SCALARS = ("time", "time_low", "loss", "next_step", "first_step")
+NUMBERS = ("time", "time_low", "loss", "next_step", "first_step", "mode")
 WORK = (
     "ladder", "free", "direction", "relative", "jacobian", "kappa", "terms", "radau", "rhs", "coefficients", "out",
-    "change", "g", "n", "mode", "used", "counts",
+    "change", "g", "n", "used", "counts",
 )  # fmt: skip
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
@@ -57,7 +57,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
     """
     size = problem.n, problem.m, s
     p = model(problem)
-    content = once_per(problem, "model content", lambda: b"".join([held.tobytes() for held in p.values()]))
+    content = once_per(problem, "model content", lambda: b"".join([np.asarray(held).tobytes() for held in p.values()]))
     with _turn:
         free = _store.setdefault(size, [])
         place = next((i for i, (other, _) in enumerate(free) if other == content), None)
@@ -116,24 +116,30 @@ def _made(p: Model, s: int) -> Run:
     slots[-1] = 0
     wide = padded(s)
     shapes: dict[str, tuple[int, ...]] = {
-        **dict.fromkeys(TABLES, (count, n, wide)), **dict.fromkeys(BY_BLOCK, (n,)), **dict.fromkeys(SCALARS, (1,)),
+        **dict.fromkeys(TABLES, (count, n, wide)), **dict.fromkeys(BY_BLOCK, (n,)),
         "answers": (count, m * m, s, wide), "tk": (1, m * m, s, wide), "ladder": (RUNGS + 1,),
         "free": (m, wide), "direction": (m, wide), "relative": (m, wide), "jacobian": (s + 2, wide),
         "kappa": (n + 1, TERMS), "radau": (s, s), "rhs": (s,), "coefficients": (s + 1,), "out": (3, m), "change": (m,),
         "g": (m,), "n": (m,),
     }  # fmt: skip
     arrays: dict[str, Any] = {name: np.zeros(shape) for name, shape in shapes.items()}
-    whole = {"mode": 1, "used": 3, "counts": 5, "terms": n}
+    whole = {"used": 3, "counts": 5, "terms": n}
     arrays |= {name: np.zeros(size, np.int64) for name, size in whole.items()}
-    arrays |= {name: array.copy() for name, array in p.items()} | nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
+    arrays |= {name: held.copy() if isinstance(held, np.ndarray) else held for name, held in p.items()}
+    arrays |= dict.fromkeys(NUMBERS, 0) | nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
     return room(Run(**arrays, slots=slots, unit=np.eye(s, wide), places=addresses(*BLOCKS)))
 
 
 def _begin_anew(run: Run, p: Model) -> None:
     """The constants of another scene of the same size; nothing is left of the run before."""
-    for name, array in p.items():
-        getattr(run, name)[...] = array
-    for name in (*BY_BLOCK, *SCALARS, *WORK):
+    for name, held in p.items():
+        if isinstance(held, np.ndarray):
+            getattr(run, name)[...] = held
+        else:
+            setattr(run, name, held)
+    for name in (*BY_BLOCK, *WORK):
         getattr(run, name).fill(0)
+    for name in NUMBERS:
+        setattr(run, name, 0)
     run.slots[:-1] = -1
     run.slots[-1] = 0
