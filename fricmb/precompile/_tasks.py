@@ -9,7 +9,7 @@ from __future__ import annotations
 import pkgutil
 from importlib import import_module
 
-from fricmb.integrate.compile.block import block_address, block_names
+from fricmb.integrate.compile.block import block_names, load_block
 from fricmb.integrate.compile.kernel import compile_entry, entry_names
 
 #: Share of the duration of a model's standard run that is run here: enough to begin.
@@ -41,7 +41,7 @@ def runs() -> list[str]:
 def do(task: str) -> None:
     """Do one task."""
     kind, _, name = task.partition(" ")
-    {"block": block_address, "entry": compile_entry, "model": _run_model, "dae": _run_equations}[kind](name)
+    {"block": load_block, "entry": compile_entry, "model": _run_model, "dae": _run_equations}[kind](name)
 
 
 def _run_model(name: str) -> None:

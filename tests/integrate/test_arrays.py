@@ -15,12 +15,13 @@ from scipy.integrate import solve_ivp
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Tolerance
+from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.run_setup import Collector, set_accuracy
 from fricmb.integrate.methods.run_workspace import implicit_step, made
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Ints, Linear, Problem, Signals, Start, Templates
+from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Linear, Problem, Signals, Start, Templates
 from fricmb.integrate.run.workspace import Workspace
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
@@ -29,19 +30,18 @@ from fricmb.integrate.step.tableau import radau
 
 
 @entry
-def one_try(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, h: float, address: Ints
-) -> float:
+def one_try(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, h: float) -> float:
     """A step from y; its end in ``end``.  The error that it is given, -1 where it is not solved."""
-    if not attempt(packed, s, y, one, acc, h, address):
+    if not attempt(packed, s, y, one, acc, h):
         return -1.0
-    error = step_error(packed, s, y, one, acc, h, address)
-    finish(packed, s, end, one, acc, h, address)
+    error = step_error(packed, s, y, one, acc, h)
+    finish(packed, s, end, one, acc, h)
     return error
 
 
 def begun(problem, start, t_end):
     """A run in a workspace of its own."""
+    load_stages(problem)
     return Collector(problem, start, t_end, Workspace(made(problem)).rooms)
 
 
@@ -166,7 +166,7 @@ def test_a_step_of_given_modes(seed, stages):
     run.begin()
     assert (np.asarray(run.y.mode) == mode).all()
     run.end.q[:], run.end.v[:], run.end.mode[:], run.end.n[:] = q, v, mode, sign * slipping
-    error = one_try(run.packed, run.scratch, run.y, run.end, one, acc, h, run.address)
+    error = one_try(run.packed, run.scratch, run.y, run.end, one, acc, h)
     V, F = stages_by_hand(arrays, stages, h, q, v, slipping, sign)
     np.testing.assert_allclose(one.st.V, V, atol=1e-11)
     np.testing.assert_allclose(one.w.F, F, atol=1e-8)
@@ -196,7 +196,7 @@ def test_a_step_is_as_accurate_as_its_order():
         run = begun(problem, Start(t=0.0, q=q, v=v, z=np.zeros(0)), 10.0)
         one = room(implicit_step(problem, radau(5)))
         run.begin()
-        one_try(run.packed, run.scratch, run.y, run.end, one, set_accuracy(run, Tolerance(rtol=1e-3)), h, run.address)
+        one_try(run.packed, run.scratch, run.y, run.end, one, set_accuracy(run, Tolerance(rtol=1e-3)), h)
         exact = solve_ivp(rates, (0.0, h), np.concatenate([q, v]), method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
         errors.append(np.abs(np.asarray(run.end.v) - exact[4:]).max())
     assert 8.0 < np.log2(errors[0] / errors[1]) < 11.0

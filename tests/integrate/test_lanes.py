@@ -11,7 +11,7 @@ from fricmb.integrate.collocation.one_contact.slip_directions import eliminate, 
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, padded, roots, set_lanes
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Floats, Floats2, Floats4, Ints
+from fricmb.integrate.problem import Floats, Floats2, Floats4
 
 
 class Contact(NamedTuple):
@@ -24,8 +24,8 @@ class Contact(NamedTuple):
     relative: Floats2
     jacobian: Floats2
     unit: Floats2
-    mu_0_N: Floats
-    coupled: Ints
+    mu_0_N: float
+    coupled: int
 
 
 def contact(s, coupled=1):
@@ -33,7 +33,7 @@ def contact(s, coupled=1):
     free, direction, relative = (np.zeros((2, wide)) for _ in range(3))
     return Contact(
         np.zeros((s, wide)), np.zeros((1, 4, s, wide)), free, direction, relative, np.zeros((s + 2, wide)),
-        np.eye(s, wide), np.array([0.7]), np.array([coupled]),
+        np.eye(s, wide), 0.7, coupled,
     )  # fmt: skip
 
 

@@ -1,17 +1,18 @@
-"""Rooms (named tuples behind one pointer) and blocks (kernels called through a table of addresses)."""
+"""Rooms (named tuples behind one pointer) and blocks (kernels called by name)."""
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from numba import njit
 
-from fricmb.integrate.compile.block import block, block_address
-from fricmb.integrate.compile.block_places import CORE, FURTHER, LAPACK, PLACES
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.exchange import with_arrays
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import Layout, room, room_type
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 from fricmb.integrate.run.workspace import Workspace
@@ -190,53 +191,64 @@ def test_the_type_of_a_room_is_that_of_its_tuple_and_made_once():
     assert room_type(Outer).at == {"A": 0, "inner": 24, "mode": 32, "T": 48}
 
 
-def test_every_place_in_the_table_is_taken_once():
-    assert len(set(PLACES)) == len(PLACES)
-    assert PLACES[: len(LAPACK)] == LAPACK
-    assert set(CORE) | set(FURTHER) <= set(PLACES)
+@block
+def doubled_sum(o: Inner, factor: float) -> float:
+    o.x[0] = factor
+    return float(o.x[0] + o.x[1] + o.x[2])
 
 
-def test_only_a_name_in_the_table_becomes_a_block():
-    def stranger(x: Floats, address: Ints) -> None:
-        """Not in the table."""
-
-    with pytest.raises(ValueError, match=r"not in tuple"):
-        block(stranger)
+@declared
+def defined_above(o: Inner) -> int:
+    """What a floor above defines."""
+    raise NotImplementedError
 
 
-def test_a_block_is_called_through_the_table_of_addresses():
-    # "complete" stands for any block: here it is one of this file, with arguments and result of its own
-    import fricmb.integrate.compile.block as module
-
-    kept = dict(module._blocks)
-    try:
-
-        def complete(o: Inner, factor: float, address: Ints) -> float:
-            o.x[0] = factor
-            return float(o.x[0] + o.x[1] + o.x[2])
-
-        called = block(complete)
-
-        @njit(error_model="numpy")
-        def caller(o, address):
-            return called(o, 10.0, address)
-
-        inner = outer().inner
-        table = np.zeros(len(PLACES), np.int64)
-        table[PLACES.index("complete")] = block_address("complete")
-        assert caller(room(inner), table) == 16.0
-        assert inner.x[0] == 10.0
-    finally:
-        module._blocks.clear()
-        module._blocks.update(kept)
+@njit(error_model="numpy")
+def call_both(o):
+    return doubled_sum(o, 10.0), defined_above(o)
 
 
-def test_addresses_hold_lapack_and_what_is_asked_for():
-    import fricmb.integrate.model.accelerations  # noqa: F401  (where it is defined)
+def test_blocks_are_called_by_name_also_those_that_are_defined_later():
+    @block
+    def defined_above(o: Inner) -> int:
+        return int(o.k[0] + 1)
 
-    table = addresses("complete")
-    assert table.dtype == np.int64
-    assert table[0] != 0
-    assert table[1] != 0
-    assert table[PLACES.index("complete")] == block_address("complete")
-    assert table[PLACES.index("bdf_step")] == 0
+    load_blocks("doubled_sum", "defined_above")
+    inner = outer().inner
+    assert call_both(room(inner)) == (16.0, 8)
+    assert inner.x[0] == 10.0
+
+
+def test_a_name_is_that_of_one_block():
+    def complete(x: Floats) -> None:
+        """A block of the package has this name."""
+
+    import fricmb.integrate.model.accelerations  # noqa: F401  (where it is)
+
+    with pytest.raises(NameError, match=r"'complete' is defined in .*accelerations and in"):
+        block(complete)
+
+
+def test_a_block_that_is_not_loaded_says_so_and_does_nothing_else():
+    asked = subprocess.run([sys.executable, "-c", UNLOADED], capture_output=True, text=True, cwd="/")
+    assert asked.returncode != 0
+    assert "the kernel 'later' is called before it is loaded" in asked.stderr
+
+
+UNLOADED = """from __future__ import annotations
+from typing import NamedTuple
+import numpy as np
+from numba import njit
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.problem import Floats
+
+@block
+def later(x: Floats) -> float:
+    return x[0]
+
+@njit
+def caller(x):
+    return later(x)
+
+caller(np.ones(1))
+"""

@@ -5,15 +5,19 @@ import subprocess
 import sys
 
 from fricmb.integrate.compile import parallel_compile
-from fricmb.integrate.compile.block import block_address, block_module
+from fricmb.integrate.compile.block import block_module, cell, load_block
 from fricmb.integrate.methods.run_setup import Collector  # noqa: F401  (defines the blocks)
 
 BLOCKS = ("mark_rest", "find_open", "complete")
 
 
-def test_addresses_come_in_the_order_of_the_names():
-    assert parallel_compile.shared_addresses(BLOCKS) == [block_address(name) for name in BLOCKS]
-    assert parallel_compile.shared_addresses(()) == []
+def test_each_block_has_the_address_that_it_has_alone():
+    parallel_compile.load_blocks(*BLOCKS)
+    found = [cell(name).value for name in BLOCKS]
+    assert len(set(found)) == len(BLOCKS)
+    for name in BLOCKS:
+        load_block(name)
+    assert [cell(name).value for name in BLOCKS] == found
 
 
 def test_a_pool_or_a_user_who_says_so_compiles_alone(monkeypatch):

@@ -40,18 +40,18 @@ def stop_and_window(times: Stops, window: Floats, t: float) -> float:
 @entry
 def solve_real(ab: Floats, pivots: Pivots, sizes: Pivots, b: Floats, address: Ints) -> float:
     """Factor and solve; spread of the pivots, -1 where the matrix is singular."""
-    if not factor_band(ab, pivots, sizes, address):
+    if not factor_band(ab, pivots, sizes):
         return -1.0
-    solve_band(ab, pivots, sizes, b, address)
+    solve_band(ab, pivots, sizes, b)
     return spread_of_pivots(ab, sizes)
 
 
 @entry
 def solve_complex(ab: Complexes, pivots: Pivots, sizes: Pivots, b: Complexes, address: Ints) -> bool:
     """Factor and solve."""
-    if not factor_band(ab, pivots, sizes, address):
+    if not factor_band(ab, pivots, sizes):
         return False
-    solve_band(ab, pivots, sizes, b, address)
+    solve_band(ab, pivots, sizes, b)
     return True
 
 

@@ -20,7 +20,7 @@ from fricmb.integrate.model.forces import Scratch, set_instant
 from fricmb.integrate.model.law_values import point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Ints
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, widest
 from fricmb.integrate.step.stage_predictor import contacts_from_start
@@ -118,21 +118,19 @@ def guess_velocities(packed: Packed, y: State, one: OneStep) -> None:
 
 
 @kernel
-def solve_held(
-    packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, h: float, address: Ints
-) -> int:  # fmt: skip
+def solve_held(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, h: float) -> int:
     """Solve the contacts' equations with what sticks eliminated beforehand; its iterations, -1, or 0 where it is not.
 
     A step off the ladder is one of a kind, and not worth it.
     """
     w, ex = one.w, one.exact
     pattern = pattern_of(packed, y.mode) if slot > 0 else 0
-    place = place_of(packed, one, y.mode, pattern, h, address) if pattern > 0 else -1
+    place = place_of(packed, one, y.mode, pattern, h) if pattern > 0 else -1
     if place < 0:
         return 0
     first, free = np.empty(w.dF.shape[0]), np.empty(y.mode.shape[0], np.int8)
     hold_rows(ex, w, place, y.mode, free, first)
-    found = solve_ports(packed.ports, packed.laws, s, w, one.st.hA, free, one.tol, address)
+    found = solve_ports(packed.ports, packed.laws, s, w, one.st.hA, free, one.tol)
     give_held_forces(packed, ex, w, place, y.mode, first)
     for k in range(y.mode.shape[0]):
         if y.mode[k] == STICK:
@@ -142,7 +140,7 @@ def solve_held(
 
 
 @kernel
-def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, h: float, address: Ints) -> bool:
+def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, h: float) -> bool:
     """The equations of contacts alone, on a structure that answers linearly."""
     w, ex = one.w, one.exact
     m = y.g.shape[0]
@@ -159,9 +157,9 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
             w.gb[i, a] = ex.xf[a, i]
             w.Fo[i, a] = 0.0
     guess_velocities(packed, y, one)
-    found = solve_held(packed, s, y, one, slot, h, address)
+    found = solve_held(packed, s, y, one, slot, h)
     if found == 0:
-        found = solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol, address)
+        found = solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol)
     if found < 0:
         return False
     for a in range(m):
@@ -171,13 +169,13 @@ def solve_linear(packed: Packed, s: Scratch, y: State, one: OneStep, slot: int, 
 
 
 @block
-def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
+def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
     """Solve a step h from y on an exact structure (stands in for :func:`attempt`).  False without convergence."""
     ex = one.exact
     set_instant(packed.signals, s, y.t, y.q, y.v)
     load_at_start(packed, s, y.q, ex.f)
     start_blocks(ex, y.v)
-    slot = slot_of(one, h, address)
+    slot = slot_of(one, h)
     ex.length = h
     outputs_at_start(packed, s, y, one, h)
     free_outputs(ex, slot, h, ex.unknown)
@@ -188,9 +186,9 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     if ex.c1.shape[0] > y.g.shape[0]:
-        solved = exact_ports(packed, s, y, one, acc, slot, address)
+        solved = exact_ports(packed, s, y, one, acc, slot)
     else:
-        solved = solve_linear(packed, s, y, one, slot, h, address)
+        solved = solve_linear(packed, s, y, one, slot, h)
     one.last_t = y.t
     one.last_h = h if solved else 0.0
     if not solved:

@@ -8,13 +8,13 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch, belt_velocity, gather, set_time
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import STICK, Floats, Ints
+from fricmb.integrate.problem import STICK, Floats
 from fricmb.integrate.step.exact_structure import RUNGS, Exact, rung_below
 from fricmb.integrate.step.radau_step import OneStep
 
 
 @block
-def exact_tables(one: OneStep, h: float, slot: int, address: Ints) -> None:
+def exact_tables(one: OneStep, h: float, slot: int) -> None:
     """Fill a slot of the tables for the step h."""
     ex = one.exact
     modal = ex.modal == 1
@@ -23,12 +23,12 @@ def exact_tables(one: OneStep, h: float, slot: int, address: Ints) -> None:
 
 
 @kernel
-def slot_of(one: OneStep, h: float, address: Ints) -> int:
+def slot_of(one: OneStep, h: float) -> int:
     """Slot of the tables for h, filled if it was not; 0 for a step off the ladder."""
     ex = one.exact
     rung = rung_below(h)
     if ex.ladder[rung] != h:
-        exact_tables(one, h, 0, address)
+        exact_tables(one, h, 0)
         one.counts[4] += 1
         return 0
     slot = ex.slots[rung]
@@ -40,7 +40,7 @@ def slot_of(one: OneStep, h: float, address: Ints) -> int:
             for r in range(RUNGS):
                 if ex.slots[r] == slot:
                     ex.slots[r] = -1
-        exact_tables(one, h, slot, address)
+        exact_tables(one, h, slot)
         one.counts[4] += 1
         ex.slots[rung] = slot
     return int(slot)

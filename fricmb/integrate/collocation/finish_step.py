@@ -17,7 +17,7 @@ from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
-from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
@@ -133,9 +133,7 @@ def stiff_error(y: State, one: OneStep, acc: Accuracy, h: float, tol: float) -> 
 
 
 @block
-def exact_error(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
-) -> float:
+def exact_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
     """Error of the step just solved in units of the tolerance (stands in for :func:`step_error`)."""
     tol = one.exact.safety * acc.rtol
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
@@ -147,7 +145,7 @@ def exact_error(
 
 
 @block
-def exact_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
+def exact_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
     """Put the end of the step into y, with forces and accelerations (stands in for :func:`finish`)."""
     ex, w = one.exact, one.w
     n = y.q.shape[0]
@@ -160,7 +158,7 @@ def exact_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accura
         y.z[a] = w.z[last, a]
     for a in range(y.n.shape[0]):
         y.n[a] = w.n[last, a]
-    done = complete(packed, s, y, w.sizes, w.pivots, address)
+    done = complete(packed, s, y, w.sizes, w.pivots)
     for k in range(y.mode.shape[0]):
         if y.mode[k] == SLIP:
             # found as a gain over the step: of small slip speeds the difference of velocities knows less
@@ -179,9 +177,7 @@ def scales_of_step(packed: Packed, y: State, end: State, one: OneStep, acc: Accu
 
 
 @block
-def exact_record(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows, address: Ints
-) -> None:
+def exact_record(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows) -> None:
     """Keep the step's inputs beside the row of its end, which comes next (stands in for :func:`record_inside`).
 
     Behind the row proper: h, inputs P (n_in s), states z (s n_z), powers (s (n_c + 2)).  A transition may have been

@@ -58,7 +58,7 @@ def list_rows(packed: Packed, mode: Codes, n_s: int, into: Ints) -> int:
 
 
 @kernel
-def eliminate_stuck(ex: Exact, w: PortState, place: int, stuck: int, address: Ints) -> bool:
+def eliminate_stuck(ex: Exact, w: PortState, place: int, stuck: int) -> bool:
     """Fill a place of ``held`` from G; ``ex.rows`` holds the rows.  False where forces in stick are not determined."""
     H, X, E = ex.held[place, 0], ex.held[place, 1], ex.held[place, 2]
     n = w.G.shape[0]
@@ -71,7 +71,7 @@ def eliminate_stuck(ex: Exact, w: PortState, place: int, stuck: int, address: In
         b[i, i] = 1.0
         for j in range(stuck, n):
             b[j, i] = w.G[rows[i], rows[j]]
-    if not solve_rows(address[0], a, b, stuck, w.sizes, w.pivots):
+    if not solve_rows(a, b, stuck, w.sizes, w.pivots):
         return False
     H[:, :] = 0.0
     X[:, :] = 0.0
@@ -91,7 +91,7 @@ def eliminate_stuck(ex: Exact, w: PortState, place: int, stuck: int, address: In
 
 
 @kernel
-def place_of(packed: Packed, one: OneStep, mode: Codes, pattern: int, h: float, address: Ints) -> int:
+def place_of(packed: Packed, one: OneStep, mode: Codes, pattern: int, h: float) -> int:
     """Place of ``held`` for a pattern and a rung, filled if it was not; -1 where there is none."""
     ex = one.exact
     rung = rung_below(h)
@@ -106,7 +106,7 @@ def place_of(packed: Packed, one: OneStep, mode: Codes, pattern: int, h: float, 
         ex.held_next += 1
         ex.held_for[place, PATTERN] = 0
         stuck = list_rows(packed, mode, one.w.F.shape[0], ex.rows)
-        if not eliminate_stuck(ex, one.w, place, stuck, address):
+        if not eliminate_stuck(ex, one.w, place, stuck):
             return -1
         ex.held_for[place, PATTERN] = pattern
         ex.held_for[place, RUNG] = rung

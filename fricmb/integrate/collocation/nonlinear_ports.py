@@ -20,7 +20,7 @@ from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.forces import Scratch, evaluate
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import OPEN, Floats3, Ints
+from fricmb.integrate.problem import OPEN, Floats3
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
@@ -91,7 +91,7 @@ def evaluate_normals(packed: Packed, s: Scratch, one: OneStep, first: int) -> No
 
 
 @kernel
-def eliminate_elements(one: OneStep, slot: int, m: int, mi: int, JR: Floats3, address: Ints) -> bool:
+def eliminate_elements(one: OneStep, slot: int, m: int, mi: int, JR: Floats3) -> bool:
     """Answer of elements to their residuals (row 0) and to port inputs (1 + l mi + c): ``R``, and their forces J R."""
     ex = one.exact
     n_in = ex.b1.shape[0]
@@ -119,7 +119,7 @@ def eliminate_elements(one: OneStep, slot: int, m: int, mi: int, JR: Floats3, ad
             for l in range(n_s):
                 for c in range(mi):
                     ex.R[1 + l * mi + c, row] = tk[slot, n_in * (m + a) + c, i, l]
-    if not solve_rows(address[0], ex.A, ex.R, inner, one.w.sizes, ex.pivots):
+    if not solve_rows(ex.A, ex.R, inner, one.w.sizes, ex.pivots):
         return False
     for x in range(ex.R.shape[0]):
         for l in range(n_s):
@@ -212,7 +212,7 @@ def take_inputs(packed: Packed, y: State, one: OneStep, JR: Floats3) -> float:
 
 
 @block
-def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, slot: int, address: Ints) -> bool:
+def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, slot: int) -> bool:
     """Solve for contacts, elements and varying normal forces together; inputs into P.  False without convergence."""
     ex, w = one.exact, one.w
     m = y.g.shape[0]
@@ -229,13 +229,13 @@ def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
         all_outputs(ex, slot)
         evaluate_elements(packed, s, one, m, mi - m)
         evaluate_normals(packed, s, one, first_normal)
-        if ex.J.shape[2] > 0 and not eliminate_elements(one, slot, m, mi, JR, address):
+        if ex.J.shape[2] > 0 and not eliminate_elements(one, slot, m, mi, JR):
             return False
         condense(packed, y, one, slot, JR)
         for i in range(n_s):
             for c in range(mi):
                 w.Fo[i, c] = w.Fin[i, c]
-        if solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol, address) < 0:
+        if solve_ports(packed.ports, packed.laws, s, w, one.st.hA, y.mode, one.tol) < 0:
             return False
         change = take_inputs(packed, y, one, JR)
         if not change < np.inf:

@@ -20,7 +20,7 @@ from fricmb.integrate.model.forces import Scratch, belt_velocity, set_time
 from fricmb.integrate.model.law_values import along, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Floats2, Ints
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Floats2
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import evaluate, polynomial
 from fricmb.integrate.step.event_functions import margin
@@ -49,7 +49,7 @@ def unit_directions(packed: Packed, end: State) -> None:
 @kernel
 def move_to(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, h: float, tau: float, series: Floats2,
-    gain: Floats2, address: Ints,
+    gain: Floats2,
 ) -> bool:  # fmt: skip
     """Put the state at tau of the step h just solved into ``end``.
 
@@ -77,7 +77,7 @@ def move_to(
     set_time(packed.signals, s, y.t, n)
     for a in range(m):
         gain[0, n + a] = belt_velocity(ports, s, n, a)
-    done = complete(packed, s, end, w.sizes, w.pivots, address)
+    done = complete(packed, s, end, w.sizes, w.pivots)
     for k in range(y.mode.shape[0]):
         if y.mode[k] == SLIP:
             # as a gain over the step: of small slip speeds the difference of velocities knows less
@@ -111,9 +111,7 @@ def exact_as_its_tolerance(packed: Packed, y: State, k: int) -> bool:
 
 
 @kernel
-def may_stay(
-    packed: Packed, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, tau: float
-) -> bool:  # fmt: skip
+def may_stay(packed: Packed, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, tau: float) -> bool:
     """Whether tau is so near to the end of the step h, or forces so smooth, that the step need not be solved anew.
 
     Forces at ``end``, the state there, must be those of the polynomials: slip that ends passes through what a law has
@@ -138,7 +136,7 @@ def may_stay(
 @block
 def exact_root(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, guess: float,
-    found: Floats, address: Ints,
+    found: Floats,
 ) -> float:  # fmt: skip
     """Secants on the motion within the step (stands in for :func:`root_along_step`)."""
     ex = one.exact
@@ -149,7 +147,7 @@ def exact_root(
     gains_at(ex, h, h, series, gain[2, :n], gain[3, :n])
     t_unit = EPS * max(abs(y.t), h)
     first = guess
-    if not move_to(packed, s, y, end, one, h, first, series, gain, address):
+    if not move_to(packed, s, y, end, one, h, first, series, gain):
         return np.nan
     f = distance(packed, s, y, end, k, found)
     second = first * (1.0 - OFFSET)
@@ -168,7 +166,7 @@ def exact_root(
             if may_stay(packed, y, end, one, acc, k, h, first):
                 return -max(first, 1e-290)
             break
-        if not second <= 1.5 * guess or not move_to(packed, s, y, end, one, h, second, series, gain, address):
+        if not second <= 1.5 * guess or not move_to(packed, s, y, end, one, h, second, series, gain):
             first = np.nan
             break
         after = distance(packed, s, y, end, k, found)
@@ -176,5 +174,5 @@ def exact_root(
         first, f, second = second, after, new
         aimed = True
     copy_state(y, end)
-    finish(packed, s, end, one, acc, h, address)
+    finish(packed, s, end, one, acc, h)
     return first

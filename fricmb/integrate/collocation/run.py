@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -12,9 +12,8 @@ from fricmb.integrate.collocation.exact_room import exact_lent
 from fricmb.integrate.collocation.finish_step import exact_error, exact_finish, exact_record
 from fricmb.integrate.collocation.root_along_step import exact_root
 from fricmb.integrate.collocation.sample import sample_exact
-from fricmb.integrate.compile.block_places import CORE, PLACES
-from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.integrator import Tolerance
+from fricmb.integrate.methods.blocks_of_run import load_core
 from fricmb.integrate.methods.one_step import one_step_loop
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import exact_step_workspace, run_workspace
@@ -31,30 +30,11 @@ from fricmb.integrate.step.step_matrix import Factor
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, Trajectory, Transitions
 
-#: Blocks that stand in for those of plain Radau IIA, and those that are not needed then.
-STANDS_FOR = {
-    "attempt": exact_attempt.__name__,
-    "step_error": exact_error.__name__,
-    "finish": exact_finish.__name__,
-    "record_inside": exact_record.__name__,
-    "root_along_step": exact_root.__name__,
-}
-LEFT_OUT = ("factorise", "solve_stages", *STANDS_FOR)
-
-
-@lru_cache(maxsize=4)
-def places(plain: bool, nonlinear: bool) -> Ints:
-    """Table of addresses for exact steps.
-
-    ``plain``: constant friction and normal forces alone; ``nonlinear``: with elements or varying normal forces.
-    """
-    stand_ins = {**STANDS_FOR, "solve_ports": plain_ports.__name__} if plain else STANDS_FOR
-    further = ("exact_tables", "exact_ports") if nonlinear else ("exact_tables",)
-    needed = tuple(name for name in CORE if name not in LEFT_OUT and name not in stand_ins)
-    table = addresses(*needed, *stand_ins.values(), *further).copy()
-    for name, stand_in in stand_ins.items():
-        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
-    return table
+#: Blocks of a step.
+BLOCKS = (
+    exact_attempt.__name__, exact_error.__name__, exact_finish.__name__, exact_record.__name__, exact_root.__name__,
+    "exact_tables",
+)  # fmt: skip
 
 
 def exact_step(problem: Problem, exact: Exact) -> OneStep:
@@ -86,7 +66,7 @@ class ExactRun(RowTrajectory):
         with exact_lent(problem, self._nodes, 1.0, self._exact_up_to) as exact:
             sample_exact(
                 packed, workspace.s, workspace.y, exact, self._values, self._mode, packed.breakpoints, index, t, side,
-                out, modes, sizes, pivots, addresses("complete"),
+                out, modes, sizes, pivots,
             )  # fmt: skip
 
 
@@ -105,7 +85,9 @@ def run_general(
         run_workspace(problem) as workspace,
     ):
         columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
-        run = Collector(problem, start, t_end, workspace, one, places=places(bool(plain), nonlinear), columns=columns)
+        load_core(*BLOCKS, plain_ports.__name__ if plain else "general_ports", *(("exact_ports",) if nonlinear else ()))
+        run = Collector(problem, start, t_end, workspace, one, columns=columns)
+        one.w.plain = run.rest.w.plain = int(plain)
         set_accuracy(run, tolerance)
         run.made = partial(ExactRun, exact=(s, exact_up_to))
         return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)

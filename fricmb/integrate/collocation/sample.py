@@ -90,7 +90,7 @@ def inside_step(
 @entry
 def sample_exact(
     packed: Packed, s: Scratch, y: State, ex: Exact, values: Floats2, modes: Codes2, stops: Floats, index: Ints,
-    t: Floats, side: Floats, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots, address: Ints,
+    t: Floats, side: Floats, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
 
@@ -123,7 +123,7 @@ def sample_exact(
             y.t = t[j]
             point_against_forces(packed, y)
             point_along_slip(packed, s, y)
-            complete(packed, s, y, sizes, pivots, address)
+            complete(packed, s, y, sizes, pivots)
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])
         opened = k if inside else -1

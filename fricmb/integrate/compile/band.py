@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.lapack import BAND_FACTOR, BAND_SOLVE, REAL_BAND_FACTOR, REAL_BAND_SOLVE, call_lapack
-from fricmb.integrate.problem import Complexes, Floats, Ints, Pivots
+from fricmb.integrate.compile.lapack import dgbtrf, dgbtrs, zgbtrf, zgbtrs
+from fricmb.integrate.problem import Complexes, Floats, Pivots
 
 
 def band_sizes(n: int, half: int) -> Pivots:
@@ -19,22 +19,24 @@ def band_sizes(n: int, half: int) -> Pivots:
 
 
 @kernel
-def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, address: Ints) -> bool:
+def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
     """Factor in place; False where the matrix is singular."""
     n, kl, ku, ld, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[5:6]
-    routine = address[BAND_FACTOR if np.iscomplexobj(ab) else REAL_BAND_FACTOR]
-    call_lapack(routine, (n, n, kl, ku, ab, ld, pivots, info))
+    if np.iscomplexobj(ab):
+        zgbtrf((n, n, kl, ku, ab, ld, pivots, info))
+    else:
+        dgbtrf((n, n, kl, ku, ab, ld, pivots, info))
     return bool(sizes[5] == 0)
 
 
 @kernel
-def solve_band(
-    ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes, address: Ints
-) -> None:
+def solve_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
     """Overwrite b (n,) by the solution for the matrix whose factors are in ``ab``."""
     n, kl, ku, ld, one, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[4:5], sizes[5:6]
-    routine = address[BAND_SOLVE if np.iscomplexobj(ab) else REAL_BAND_SOLVE]
-    call_lapack(routine, (sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
+    if np.iscomplexobj(ab):
+        zgbtrs((sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
+    else:
+        dgbtrs((sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
 
 
 @kernel

@@ -3,7 +3,7 @@
 Numba's own stamp is the time and size of the caller's file, so an edit of a kernel that is *called*, or an upgrade that
 keeps a file, would go on running old machine code.  Here the stamp follows the code: functions by their bytecode (so
 comments, names of files and docstrings do not count), kernels that they call, constants, named tuples, and for a block
-that is called through the table its place and the layouts it takes, but not its inside: that is compiled on its own.
+that is called by name the layouts it takes, but not its inside: that is compiled on its own.
 """
 
 from __future__ import annotations

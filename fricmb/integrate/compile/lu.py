@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.lapack import FACTOR, SOLVE, call_lapack
-from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots
+from fricmb.integrate.compile.lapack import dgetrf, dgetrs
+from fricmb.integrate.problem import Floats, Floats2, Pivots
 
 #: Rows up to which elimination here is faster than a call of LAPACK.
 SMALL = 24
 
 
 @kernel
-def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
+def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots) -> bool:
     """Overwrite a (n, n) by its LU factors with row pivoting; False where it is singular."""
     n = a.shape[0]
     if n > SMALL:
@@ -23,7 +23,7 @@ def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
                 x = a[i, j]
                 a[i, j] = a[j, i]
                 a[j, i] = x
-        call_lapack(address[FACTOR], (sizes[:1], sizes[:1], a, sizes[:1], pivots, sizes[2:]))
+        dgetrf((sizes[:1], sizes[:1], a, sizes[:1], pivots, sizes[2:]))
         return bool(sizes[2] == 0)
     for k in range(n):
         best, top = k, abs(a[k, k])
@@ -50,7 +50,7 @@ def lu_factor(a: Floats2, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
 
 
 @kernel
-def lu_solve(a: Floats2, b: Floats, sizes: Pivots, pivots: Pivots, address: Ints) -> None:
+def lu_solve(a: Floats2, b: Floats, sizes: Pivots, pivots: Pivots) -> None:
     """Overwrite b (n,) by the solution for the matrix whose factors are in a."""
     n = a.shape[0]
     if n > SMALL:
@@ -58,10 +58,7 @@ def lu_solve(a: Floats2, b: Floats, sizes: Pivots, pivots: Pivots, address: Ints
         sizes[1] = 1
         sizes[2] = 0
         sizes[3] = ord("N")
-        call_lapack(
-            address[SOLVE],
-            (sizes[3:], sizes[:1], sizes[1:], a, sizes[:1], pivots, b, sizes[:1], sizes[2:]),
-        )
+        dgetrs((sizes[3:], sizes[:1], sizes[1:], a, sizes[:1], pivots, b, sizes[:1], sizes[2:]))
         return
     for k in range(n):
         i = pivots[k]

@@ -11,8 +11,9 @@ import multiprocessing
 import os
 import subprocess
 import sys
+from functools import lru_cache
 
-from fricmb.integrate.compile.block import block_address, block_module, was_compiled
+from fricmb.integrate.compile.block import block_module, load_block, was_compiled
 
 #: The environment of a process that compiles for another one; numba tries overloads by letting them fail, and would set
 #: each message in colours.
@@ -29,27 +30,26 @@ def compile_blocks(arguments: list[str]) -> None:
 
     for module, name in (argument.split(":") for argument in arguments):
         importlib.import_module(module)
-        block_address(name)
+        load_block(name)
 
 
-def shared_addresses(blocks: tuple[str, ...]) -> list[int]:
-    """Addresses of the blocks, compiled by two processes where nothing is cached yet.
+@lru_cache(maxsize=64)
+def load_blocks(*blocks: str) -> None:
+    """Load blocks, compiled by two processes where nothing is cached yet; once for all in a process.
 
     ``FRICMB_COMPILE_PROCESSES=1`` in the environment keeps it to this one; so do a process of a pool and few blocks.
     """
-    found: list[int] = []
     helper = None
     try:
-        for name in blocks:
-            found.append(block_address(name))
-            if len(found) == 1 and was_compiled(name):
+        for count, name in enumerate(blocks):
+            load_block(name)
+            if count == 0 and was_compiled(name):
                 helper = _start_helper(blocks[:0:-1])
     finally:
         if helper is not None:
             # what it may still be at has been done here; numba writes its files atomically
             helper.terminate()
             helper.wait()
-    return found
 
 
 def _start_helper(blocks: tuple[str, ...]) -> subprocess.Popen[bytes] | None:

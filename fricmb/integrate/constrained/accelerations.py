@@ -25,7 +25,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import add_stick
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.forces import element_powers, evaluate
-from fricmb.integrate.problem import NORMAL_LAW, STICK, Floats, Ints
+from fricmb.integrate.problem import NORMAL_LAW, STICK, Floats
 from fricmb.integrate.run.stop import stopped
 
 #: What of friction the matrix of an instant holds.
@@ -57,7 +57,7 @@ def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats, a: int) -> flo
     j = mech.port.joint[c]
     if j < 0:
         return bend(k, mech.port.slip, mech.port.slip.x_start[c] + 2 * a)
-    n_x = call_joint(mech, k, j, lam, mech.address)
+    n_x = call_joint(mech, k, j, lam)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
     value, d = 0.0, directions(mech, c)
     for i in range(n_x):
@@ -72,7 +72,7 @@ def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: i
     """Second derivatives of the constraints into r[r0:], those of the extended coordinates being in ``ddy``."""
     joint = mech.joint
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, mech.address)
+        n_x = call_joint(mech, k, j, lam)
         m = joint.row[j + 1] - joint.row[j]
         B = m + m * n_x + n_x * n_x
         for i in range(m):
@@ -84,10 +84,10 @@ def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: i
 
 
 @block
-def instant_residual(mech: Mech, k: Moving, w: Instant, y: State, address: Ints) -> None:
+def instant_residual(mech: Mech, k: Moving, w: Instant, y: State) -> None:
     """Residual of motion, constraints and friction at the instant for the present a, lam, F into ``w.r``."""
     n, m = y.q.shape[0], y.lam.shape[0]
-    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
+    forces(mech, k, y.lam, y.F, y.N, y.g)
     pull_back(mech, k, w.x)
     mass_times(mech, y.a, w.r, n)
     for i in range(n):
@@ -102,11 +102,11 @@ def instant_residual(mech: Mech, k: Moving, w: Instant, y: State, address: Ints)
             y.ga[row[c] + a] = slip_acceleration(mech, k, c, y.lam, a)
     for e in range(k.ddy.shape[0]):
         k.ddy[e] = w.ddy[e]
-    friction_residual(mech, k, y.mode, y.n, y.F, y.z, y.N, y.g, y.ga, y.zd, w.r, n + m, False, mech.address)
+    friction_residual(mech, k, y.mode, y.n, y.F, y.z, y.N, y.g, y.ga, y.zd, w.r, n + m, False)
 
 
 @block
-def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, address: Ints) -> bool:
+def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -> bool:
     """Factor the matrix of the instant; False where it is singular.
 
     ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
@@ -116,16 +116,16 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, a
     w.L.A0[:] = 0.0
     w.L.A1[:] = 0.0
     add_mass(mech, w.L)
-    add_joints(mech, k, y.lam, y.F, w.L, False, mech.address)
-    add_contacts(mech, k, y.N, w.L, False, mech.address)
+    add_joints(mech, k, y.lam, y.F, w.L, False)
+    add_contacts(mech, k, y.N, w.L, False)
     size = order.place.shape[0]
     if friction == ALL:
-        add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, w.L, False, mech.address)
+        add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, w.L, False)
     else:
         for c in range(y.mode.shape[0]):
             row = size - nz - rows + mech.port.row[c]
             if friction == STUCK and y.mode[c] == STICK:
-                add_stick(mech, k, c, y.lam, w.L, row, False, mech.address)
+                add_stick(mech, k, c, y.lam, w.L, row, False)
                 continue
             for a in range(mech.port.row[c + 1] - mech.port.row[c]):
                 add(order, w.L.A1, row + a, row + a, 1.0)
@@ -133,7 +133,7 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int, a
         add(order, w.L.A1, size - nz + i, size - nz + i, 1.0)
     for i in range(w.ab.shape[0]):
         w.ab[i] = w.L.A0[i] + w.L.A1[i]
-    return factor_band(w.ab, w.pivots, order.sizes, mech.address)
+    return factor_band(w.ab, w.pivots, order.sizes)
 
 
 @kernel
@@ -142,7 +142,7 @@ def solve_instant(mech: Mech, w: Instant) -> None:
     place = mech.order.place
     for i in range(place.shape[0]):
         w.x[place[i]] = w.r[i]
-    solve_band(w.ab, w.pivots, mech.order.sizes, w.x, mech.address)
+    solve_band(w.ab, w.pivots, mech.order.sizes, w.x)
     for i in range(place.shape[0]):
         w.r[i] = w.x[place[i]]
 
@@ -175,23 +175,23 @@ ITERATIONS = 25
 
 
 @block
-def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: Ints) -> bool:
+def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
     """Accelerations, reactions and friction forces of the given modes; False where there are none.
 
     ``factored``: the matrix of practically this instant is there (it serves where there is no friction).
     """
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
-    move(mech, k, y.t, y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v)
     last = np.inf
     # where everything comes to rest, round-off is that of what has been
     size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[1])
     for iteration in range(ITERATIONS):
         if stopped():
             return False
-        instant_residual(mech, k, w, y, mech.address)
+        instant_residual(mech, k, w, y)
         for i in range(nz):
             w.r[n + m + n_c + i] = 0.0
-        if not (factored and n_c == 0) and not instant_matrix(mech, k, w, y, ALL, mech.address):
+        if not (factored and n_c == 0) and not instant_matrix(mech, k, w, y, ALL):
             return False
         solve_instant(mech, w)
         change, size, inertia = 0.0, size0, 0.0
@@ -226,16 +226,16 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, address: 
         last = error
     else:
         return False
-    share_load(mech, k, y.mode, y.N, y.F, 1.0, mech.address)
+    share_load(mech, k, y.mode, y.N, y.F, 1.0)
     # of what has been found: iterates on the way there may be anything
     k.borne[0] = max(k.borne[1], largest(y.lam), largest(y.F), largest_load(mech, y))
-    instant_residual(mech, k, w, y, mech.address)
-    powers(mech, k, y.F, y.g, y.N, y.rate, mech.address)
+    instant_residual(mech, k, w, y)
+    powers(mech, k, y.F, y.g, y.N, y.rate)
     return True
 
 
 @block
-def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats, address: Ints) -> None:
+def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats) -> None:
     """Powers at X with the forces of the last evaluation: friction of every port, damping, input."""
     linear, s, port = mech.linear, k.s, mech.port
     n_y, n_u = k.ddy.shape[0], s.ddu.shape[0]

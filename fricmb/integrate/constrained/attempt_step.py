@@ -19,7 +19,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.problem import Codes, Ints
+from fricmb.integrate.problem import Codes
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
 from fricmb.integrate.step.slip_growth import too_long
@@ -58,7 +58,7 @@ def arrive(
     y.t = stop
     if stop >= c.span[1]:
         return DONE
-    code = change_modes(mech, k, w, y, before, c, out, rec, part, -1, mech.address)
+    code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
     if rec.used[0] > 0:
         rec.after[rec.used[0] - 1] = 1
     return CHANGED if code == DONE else code
@@ -75,7 +75,7 @@ def reject(c: Control, h: float) -> int:
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
-    rec: Record, part: Codes, stop: float, address: Ints,
+    rec: Record, part: Codes, stop: float,
 ) -> int:  # fmt: skip
     """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
     s = st.tab.c.shape[0]
@@ -87,51 +87,51 @@ def radau_step(
     elif h > 0.5 * left:
         h = 0.5 * left
     if h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t):
-        margins(mech, k, w, y, out, False, mech.address)
+        margins(mech, k, w, y, out, False)
         return FAIL_STEP
     c.made = 0.0
-    made = try_step(mech, k, y, st, c, h, mech.address)
+    made = try_step(mech, k, y, st, c, h)
     if nears_singular(out, h) and (not made or dips(mech, k, w, y, end, st, out, h)):
         reached = step_to_singular(mech, k, w, y, end, st, c, out, h)
         if reached > 0.0:
-            record_step(mech, rec, y, end, st, c, reached, mech.address)
-            copy_state(end, y, mech.address)
+            record_step(mech, rec, y, end, st, c, reached)
+            copy_state(end, y)
             near_singular(mech, k, w, y, out, reached)
             return FAIL_SINGULAR
         out.sigma[3] = 0.0
         c.made = 0.0
-        made = try_step(mech, k, y, st, c, h, mech.address)
+        made = try_step(mech, k, y, st, c, h)
     if not made:
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         return reject(c, 0.4 * h)
-    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h, mech.address) / c.rtol)
+    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h) / c.rtol)
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
         return reject(c, 0.4 * h)
     factor = step_factor(error, s + 1, ONE_STEP_SAFETY)
     if error > 1.0:
         return reject(c, h * max(0.2, factor))
-    if not end_step(mech, k, w, y, end, st, c, h, mech.address):
+    if not end_step(mech, k, w, y, end, st, c, h):
         return reject(c, 0.4 * h)
-    if margins(mech, k, w, end, out, False, mech.address) <= 0.0:
+    if margins(mech, k, w, end, out, False) <= 0.0:
         h = last_unique(mech, k, w, y, end, st, c, out, h)
         if h > 0.0:
-            record_step(mech, rec, y, end, st, c, h, mech.address)
-            copy_state(end, y, mech.address)
+            record_step(mech, rec, y, end, st, c, h)
+            copy_state(end, y)
         return FAIL_MARGIN
     find_kinks(mech, k, y, st, out)
-    worst = violated(mech, k, out, y, end, st, mech.address)
+    worst = violated(mech, k, out, y, end, st)
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
             return reject(c, 0.3 * c.h)
-    record_step(mech, rec, y, end, st, c, h, mech.address)
+    record_step(mech, rec, y, end, st, c, h)
     if h == left:
         end.t = stop
     remember(c, y, st, h)
     c.counts[0] += 1
-    copy_state(end, y, mech.address)
+    copy_state(end, y)
     grow(c, out, k, y)
     if worst < 0 and (h < left or factor < 1.0):
         c.h = h * min(3.0, max(0.3, factor))
@@ -144,6 +144,6 @@ def radau_step(
         return ACCEPTED
     if worst >= 0:
         rec.after[rec.used[0] - 1] = 1
-        code = change_modes(mech, k, w, y, before, c, out, rec, part, worst, mech.address)
+        code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
         return CHANGED if code == DONE else code
     return ACCEPTED

@@ -39,7 +39,7 @@ from fricmb.integrate.methods.backward_differences import (
     rescale,
 )
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
@@ -73,7 +73,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     h = past.h
     beta_h = h / past.gamma[past.order]
     n = y.q.shape[0]
-    copy_state(y, base, mech.address)
+    copy_state(y, base)
     for i in range(n):
         base.q[i] = past.new[i]
         base.v[i] = past.new[n + i]
@@ -84,16 +84,16 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     measure(c, y, h, one.scale)
     accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
-        copy_state(y, end, mech.address)
+        copy_state(y, end)
         take(past.guess, end, end.rate)
         fresh = formula.made != beta_h
         if fresh:
             end.t = y.t + h
             k.form[:] = 0
-            linearise(mech, k, end, one, mech.address)
+            linearise(mech, k, end, one)
             c.counts[3] += 1
             c.counts[4] += 1
-            if not factor_stages(mech, one, beta_h, mech.address):
+            if not factor_stages(mech, one, beta_h):
                 formula.made = 0.0
                 return False
             formula.made = beta_h
@@ -101,7 +101,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
             for i in range(part.shape[0]):
                 target[0, i] = part[i]
         keep_held(mech, y.mode, y.F, one.F[0])
-        used = iterate_stages(mech, k, base, one, beta_h, accuracy, mech.address)
+        used = iterate_stages(mech, k, base, one, beta_h, accuracy)
         c.counts[2] += max(used, 1)
         if used == 0 or one.found > SLOW:
             formula.made = 0.0
@@ -179,7 +179,7 @@ def inside(st: Stages, c: Control, past: Differences) -> None:
 @block
 def multistep(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, rec: Record,
-    past: Differences, formula: Formula, left: float, address: Ints,
+    past: Differences, formula: Formula, left: float,
 ) -> int:  # fmt: skip
     """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), HANDOVER, or FAIL_SINGULAR.
 
@@ -196,7 +196,7 @@ def multistep(
         formula.made = 0.0
         return REJECTED
     one = formula.one
-    copy_state(y, end, mech.address)
+    copy_state(y, end)
     end.t = y.t + h
     last_stage(mech, y, end, one)
     if not settle(mech, k, w, end):
@@ -212,14 +212,14 @@ def multistep(
     update(past, formula)
     inside(st, c, past)
     find_kinks(mech, k, y, st, out)
-    unique = margins(mech, k, w, end, out, False, mech.address) > 0.0
-    if not unique or violated(mech, k, out, y, end, st, mech.address) >= 0:
+    unique = margins(mech, k, w, end, out, False) > 0.0
+    if not unique or violated(mech, k, out, y, end, st) >= 0:
         return HANDOVER
     for i in range(y.work.shape[0]):
         for l in range(st.tab.c.shape[0]):
             end.work[i] += h * st.tab.b[l] * c.power[l, i]
-    record_step(mech, rec, y, end, st, c, h, mech.address)
-    copy_state(end, y, mech.address)
+    record_step(mech, rec, y, end, st, c, h)
+    copy_state(end, y)
     c.counts[0] += 1
     c.last_h = 0.0
     grow(c, out, k, y)

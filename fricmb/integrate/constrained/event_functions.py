@@ -14,7 +14,7 @@ from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.step.crossing import first_below
 
 #: Forces at the stages are of lower order than velocities: this part of the largest one, between them, is no sign.
@@ -25,10 +25,10 @@ ROUGH = 1e-6
 def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
     """Distances of open joints at a state."""
     joint = mech.joint
-    move(mech, k, y.t, y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v)
     for j in range(joint.port.shape[0]):
         if is_open(mech, j):
-            call_joint(mech, k, j, y.lam, mech.address)
+            call_joint(mech, k, j, y.lam)
             out.gap[j] = k.out[0]
 
 
@@ -92,7 +92,7 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
 
 
 @block
-def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages, address: Ints) -> int:
+def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages) -> int:
     """The trigger that falls furthest below 0 in the step from y to end, or -1; values at the end stay in ``trigger``.
 
     ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.

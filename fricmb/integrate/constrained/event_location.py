@@ -49,7 +49,7 @@ def locate_trigger(
             step = inside * high
         if not step_to(mech, k, w, y, end, st, c, step):
             return 0.0, j
-        worst = violated(mech, k, out, y, end, st, mech.address)
+        worst = violated(mech, k, out, y, end, st)
         if inside < 1.0 and (worst < 0 or (out.where < 1.0 and i >= DOUBTS)):
             return step, -1
         inside = out.where
@@ -88,12 +88,12 @@ def last_unique(
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        if step_to(mech, k, w, y, end, st, c, middle) and margins(mech, k, w, end, out, False, mech.address) > 0.0:
+        if step_to(mech, k, w, y, end, st, c, middle) and margins(mech, k, w, end, out, False) > 0.0:
             low = middle
         else:
             high = middle
         if high - low <= 1e-13 * h + 4.0 * EPS * abs(y.t):
             break
     if low > 0.0 and step_to(mech, k, w, y, end, st, c, low):
-        margins(mech, k, w, end, out, True, mech.address)
+        margins(mech, k, w, end, out, True)
     return low

@@ -9,11 +9,11 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.model.forces import element_forces, evaluate, gather, set_time
 from fricmb.integrate.model.problem_structs import Table
-from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Floats, Ints
+from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Floats
 
 
 @block
-def move(mech: Mech, k: Moving, t: float, q: Floats, v: Floats, address: Ints) -> None:
+def move(mech: Mech, k: Moving, t: float, q: Floats, v: Floats) -> None:
     """Put time, signals, degrees of freedom and places into X; derivatives of the places; ``ddy``."""
     s, place = k.s, mech.place
     n, n_y = q.shape[0], k.ddy.shape[0]
@@ -90,7 +90,7 @@ def bend(k: Moving, table: Table, a: int) -> float:
 
 
 @block
-def call_joint(mech: Mech, k: Moving, j: int, lam: Floats, address: Ints) -> int:
+def call_joint(mech: Mech, k: Moving, j: int, lam: Floats) -> int:
     """Evaluate joint j into ``k.out``; returns its number of local coordinates."""
     joint = mech.joint
     table = joint.table
@@ -145,7 +145,7 @@ def load_at(mech: Mech, k: Moving, c: int) -> float:
 
 
 @block
-def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats, address: Ints) -> None:
+def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) -> None:
     """All forces on extended coordinates (``k.fy``) and signals (``k.fu``); slip velocities and loads of the ports.
 
     ``lam``, ``F``: multipliers and friction forces; N (n_c,) before max with 0.
@@ -184,7 +184,7 @@ def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Fl
     joint = mech.joint
     table = joint.table
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, mech.address)
+        n_x = call_joint(mech, k, j, lam)
         m = joint.row[j + 1] - joint.row[j]
         a0 = table.x_start[j]
         c = joint.port[j]

@@ -17,13 +17,13 @@ from fricmb.integrate.constrained.slip_rows import (
     friction_coefficient,
 )
 from fricmb.integrate.model.law_values import magnitude, smooth_force
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats
 
 
 @block
 def friction_residual(
     mech: Mech, k: Moving, mode: Codes, n: Floats, F: Floats, z: Floats, N: Floats, g: Floats,
-    rate: Floats, zd: Floats, r: Floats, r0: int, full: bool, address: Ints,
+    rate: Floats, zd: Floats, r: Floats, r0: int, full: bool,
 ) -> None:  # fmt: skip
     """Residuals r[r0:] of the friction forces and rates zd (n_z,) of the states.
 
@@ -58,7 +58,7 @@ def friction_residual(
 @block
 def add_friction(
     mech: Mech, k: Moving, mode: Codes, n: Floats, F: Floats, lam: Floats, z: Floats, N: Floats, g: Floats, ga: Floats,
-    L: Layers, full: bool, address: Ints,
+    L: Layers, full: bool,
 ) -> None:  # fmt: skip
     """Rows of the friction forces and of internal states."""
     port, order = mech.port, mech.order
@@ -70,7 +70,7 @@ def add_friction(
         if port.law[c] == LAW_SMOOTH:
             add_smooth(mech, k, c, mode[c] == OPEN, lam, z, load, g, L, full)
         elif mode[c] == STICK:
-            add_stick(mech, k, c, lam, L, row, full, mech.address)
+            add_stick(mech, k, c, lam, L, row, full)
         elif mode[c] == OPEN:
             for a in range(last - first):
                 add(order, L.A1, row + a, row + a, 1.0)
@@ -78,9 +78,9 @@ def add_friction(
             add(order, L.A1, row, row, 1.0)
             mu, by_speed, by_load = friction_coefficient(mech, k, c, n[first] * g[first], load)
             if full and by_speed != 0.0:
-                add_slip(mech, k, c, 0, lam, L, row, by_speed * load, full, mech.address)
+                add_slip(mech, k, c, 0, lam, L, row, by_speed * load, full)
             if N[c] > 0.0 or port.joint[c] >= 0:
-                add_load(mech, k, c, lam, L, row, n[first] * (mu + by_load * load), full, mech.address)
+                add_load(mech, k, c, lam, L, row, n[first] * (mu + by_load * load), full)
         elif ((full and k.form[c] == 1) or mode[c] == SETTING_OUT) and load > 0.0 and magnitude(port.row, c, F) > 0.0:
             add_found(mech, k, c, n, F, lam, load, g if full else ga, L, row, full)
         else:
@@ -111,8 +111,8 @@ def add_smooth(
             if slope == 0.0:
                 continue
             if j < d and full:
-                add_slip(mech, k, c, j, lam, L, row, -slope, full, mech.address)
+                add_slip(mech, k, c, j, lam, L, row, -slope, full)
             elif j == d and (full or i < d) and (load > 0.0 or port.joint[c] >= 0):
-                add_load(mech, k, c, lam, L, row, -slope, full, mech.address)
+                add_load(mech, k, c, lam, L, row, -slope, full)
             elif j > d and full:
                 add(order, L.A1, row, state0 + a0 + j - d - 1, -slope)

@@ -30,13 +30,13 @@ def react_by_shares(mech: Mech, k: Moving, w: Instant, y: State) -> float:
         part[:] = 0.0
     k.share[0] = 0.0
     reached, step = 0.0, 0.25
-    if react(mech, k, w, y, False, mech.address):
+    if react(mech, k, w, y, False):
         for _ in range(TRIES):
             if reached == 1.0 or step < CLOSE:
                 break
             accelerations, reactions, forces = y.a.copy(), y.lam.copy(), y.F.copy()
             k.share[0] = min(reached + step, 1.0)
-            if react(mech, k, w, y, False, mech.address):
+            if react(mech, k, w, y, False):
                 reached = k.share[0]
                 continue
             y.a[:], y.lam[:], y.F[:] = accelerations, reactions, forces

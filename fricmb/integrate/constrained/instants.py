@@ -43,13 +43,13 @@ def instants(
             y.n[j] = force[i, m + rows + j]
         for j in range(n_c):
             y.mode[j] = mode[i, j]
-        if project and m > 0 and project_positions(mech, k, w, y, mech.address):
-            project_velocities(mech, k, w, y, True, False, mech.address)
+        if project and m > 0 and project_positions(mech, k, w, y):
+            project_velocities(mech, k, w, y, True, False)
             for j in range(y.q.shape[0]):
                 q[i, j] = y.q[j]
                 v[i, j] = y.v[j]
         follow(mech, k, y, small)
-        if not react(mech, k, w, y, False, mech.address):
+        if not react(mech, k, w, y, False):
             failed += 1
         k.borne[1] = max(k.borne[0], k.borne[1])
         for j in range(m):
@@ -72,8 +72,8 @@ def follow(mech: Mech, k: Moving, y: State, small: float) -> None:
         some = some or (y.mode[c] == SLIP and plane(mech, c))
     if not some:
         return
-    move(mech, k, y.t, y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
+    move(mech, k, y.t, y.q, y.v)
+    forces(mech, k, y.lam, y.F, y.N, y.g)
     for c in range(y.mode.shape[0]):
         if y.mode[c] == SLIP and plane(mech, c) and magnitude(mech.port.row, c, y.g) > small:
             point_along(mech.port.row, c, y.g, 1.0, y.n)
@@ -85,13 +85,13 @@ def constraints(
     rate: Floats, Gi: Ints, Gj: Ints, G: Floats,
 ) -> int:  # fmt: skip
     """Constraints (m,), their rates (m,) and entries of their Jacobian G at an instant; the number of entries."""
-    move(mech, k, t, q, v, mech.address)
-    forces(mech, k, lam, F, N, g, mech.address)
+    move(mech, k, t, q, v)
+    forces(mech, k, lam, F, N, g)
     joint, table, place = mech.joint, mech.joint.table, mech.place
     n_y = k.ddy.shape[0]
     count = 0
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, mech.address)
+        n_x = call_joint(mech, k, j, lam)
         m = joint.row[j + 1] - joint.row[j]
         for r in range(m):
             row = joint.row[j] + r

@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, Order, Place
 from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.problem_structs import Table
-from fricmb.integrate.problem import NORMAL_LAW, Floats, Ints
+from fricmb.integrate.problem import NORMAL_LAW, Floats
 
 
 class Layers(Layout):
@@ -39,7 +39,7 @@ def place_slope(place: Place, k: Moving, i: int) -> float:
 
 
 @block
-def add_extended(mech: Mech, k: Moving, L: Layers, row: int, e: int, rate: bool, value: float, address: Ints) -> None:
+def add_extended(mech: Mech, k: Moving, L: Layers, row: int, e: int, rate: bool, value: float) -> None:
     """Add ``value dy_e`` (or ``value dy'_e``) to a row."""
     place = mech.place
     for i in range(place.y_start[e], place.y_start[e + 1]):
@@ -54,7 +54,7 @@ def add_extended(mech: Mech, k: Moving, L: Layers, row: int, e: int, rate: bool,
 
 
 @block
-def add_form(mech: Mech, k: Moving, L: Layers, row: int, table: Table, a: int, value: float, address: Ints) -> None:
+def add_form(mech: Mech, k: Moving, L: Layers, row: int, table: Table, a: int, value: float) -> None:
     """Add ``value d(form a)`` to a row."""
     if value == 0.0:
         return
@@ -63,7 +63,7 @@ def add_form(mech: Mech, k: Moving, L: Layers, row: int, table: Table, a: int, v
         i = table.form_index[j] - 1
         if 0 <= i < 2 * n_y:
             e = i if i < n_y else i - n_y
-            add_extended(mech, k, L, row, e, i >= n_y, value * table.form_coefficient[j], mech.address)
+            add_extended(mech, k, L, row, e, i >= n_y, value * table.form_coefficient[j])
 
 
 @kernel
@@ -84,23 +84,19 @@ def add_slopes(mech: Mech, k: Moving, A: Floats, line: int, by_row: bool, table:
 
 
 @block
-def add_column(
-    mech: Mech, k: Moving, A: Floats, column: int, table: Table, a: int, value: float, address: Ints
-) -> None:
+def add_column(mech: Mech, k: Moving, A: Floats, column: int, table: Table, a: int, value: float) -> None:
     """Add ``value d(form a)/dq`` as a column: minus the force of a multiplier on the degrees of freedom."""
     add_slopes(mech, k, A, column, False, table, a, value)
 
 
 @block
-def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, value: float, address: Ints) -> None:
+def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, value: float) -> None:
     """Add ``value d(form a)/dq`` to a row of one layer."""
     add_slopes(mech, k, A, row, True, table, a, value)
 
 
 @block
-def add_stiffness(
-    mech: Mech, k: Moving, L: Layers, left: Table, a: int, right: Table, b: int, value: float, address: Ints
-) -> None:
+def add_stiffness(mech: Mech, k: Moving, L: Layers, left: Table, a: int, right: Table, b: int, value: float) -> None:
     """Add ``value d(form b)`` to the rows of the degrees of freedom on which a force on form a acts."""
     if value == 0.0:
         return
@@ -111,11 +107,11 @@ def add_stiffness(
         if 0 <= e < n_y:
             for i in range(place.y_start[e], place.y_start[e + 1]):
                 grad = place_slope(place, k, i)
-                add_form(mech, k, L, place.y_dof[i], right, b, value * left.form_coefficient[j] * grad, mech.address)
+                add_form(mech, k, L, place.y_dof[i], right, b, value * left.form_coefficient[j] * grad)
 
 
 @block
-def add_pairs(mech: Mech, k: Moving, L: Layers, i: int, j: int, rate: bool, value: float, address: Ints) -> None:
+def add_pairs(mech: Mech, k: Moving, L: Layers, i: int, j: int, rate: bool, value: float) -> None:
     """Add the entry (i, j) of a stiffness or damping matrix over extended coordinates."""
     place = mech.place
     n_y = k.ddy.shape[0]
@@ -123,7 +119,7 @@ def add_pairs(mech: Mech, k: Moving, L: Layers, i: int, j: int, rate: bool, valu
         return
     for a in range(place.y_start[i], place.y_start[i + 1]):
         grad = place_slope(place, k, a)
-        add_extended(mech, k, L, place.y_dof[a], j, rate, value * grad, mech.address)
+        add_extended(mech, k, L, place.y_dof[a], j, rate, value * grad)
 
 
 @kernel
@@ -135,14 +131,14 @@ def add_mass(mech: Mech, L: Layers) -> None:
 
 
 @block
-def add_structure(mech: Mech, k: Moving, L: Layers, address: Ints) -> None:
+def add_structure(mech: Mech, k: Moving, L: Layers) -> None:
     """Stiffness and damping of linear and nonlinear elements, and of forces that turn with bodies (``k.fy``)."""
     linear, place = mech.linear, mech.place
     n_y = k.ddy.shape[0]
     for e in range(linear.K.shape[0]):
-        add_pairs(mech, k, L, linear.Ki[e], linear.Kj[e], False, linear.K[e], mech.address)
+        add_pairs(mech, k, L, linear.Ki[e], linear.Kj[e], False, linear.K[e])
     for e in range(linear.C.shape[0]):
-        add_pairs(mech, k, L, linear.Ci[e], linear.Cj[e], True, linear.C[e], mech.address)
+        add_pairs(mech, k, L, linear.Ci[e], linear.Cj[e], True, linear.C[e])
     for c in range(place.address.shape[0]):
         d0 = place.dof_start[c]
         b = place.dof_start[c + 1] - d0
@@ -167,17 +163,17 @@ def add_structure(mech: Mech, k: Moving, L: Layers, address: Ints) -> None:
                     grad = spread.coefficient[i] * place_slope(place, k, a)
                     for x in range(n_x):
                         slope = s.out[n_f + f * n_x + x]
-                        add_form(mech, k, L, place.y_dof[a], elements, x0 + x, -grad * slope, mech.address)
+                        add_form(mech, k, L, place.y_dof[a], elements, x0 + x, -grad * slope)
 
 
 @block
-def add_joints(mech: Mech, k: Moving, lam: Floats, F: Floats, L: Layers, full: bool, address: Ints) -> None:
+def add_joints(mech: Mech, k: Moving, lam: Floats, F: Floats, L: Layers, full: bool) -> None:
     """Constraints and reactions; ``full``: with what changes with position (else the rows and columns of G alone)."""
     joint = mech.joint
     table = joint.table
     n = mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - joint.row[-1]
     for j in range(joint.n_x.shape[0]):
-        n_x = call_joint(mech, k, j, lam, mech.address)
+        n_x = call_joint(mech, k, j, lam)
         m = joint.row[j + 1] - joint.row[j]
         a0 = table.x_start[j]
         H = m + m * n_x
@@ -191,28 +187,28 @@ def add_joints(mech: Mech, k: Moving, lam: Floats, F: Floats, L: Layers, full: b
                 continue
             for a in range(n_x):
                 G = k.out[m + r * n_x + a]
-                add_column(mech, k, L.A1, row, table, a0 + a, -G, mech.address)
+                add_column(mech, k, L.A1, row, table, a0 + a, -G)
                 if full:
-                    add_form(mech, k, L, row, table, a0 + n_x + a, G, mech.address)
-                    add_form(mech, k, L, row, table, a0 + a, k.out[B + r * n_x + a], mech.address)
+                    add_form(mech, k, L, row, table, a0 + n_x + a, G)
+                    add_form(mech, k, L, row, table, a0 + a, k.out[B + r * n_x + a])
                 else:
-                    add_row(mech, k, L.A1, row, table, a0 + a, G, mech.address)
+                    add_row(mech, k, L.A1, row, table, a0 + a, G)
         d = directions(mech, c) if c >= 0 else 0
         for i in range(d):
             column = n + joint.row[-1] + mech.port.row[c] + i
             for a in range(n_x):
-                add_column(mech, k, L.A1, column, table, a0 + a, -k.out[at + i * n_x + a], mech.address)
+                add_column(mech, k, L.A1, column, table, a0 + a, -k.out[at + i * n_x + a])
         if full:
             for a in range(n_x):
                 for b in range(n_x):
                     value = k.out[H + a * n_x + b]
                     for i in range(d):
                         value += F[mech.port.row[c] + i] * k.out[slope_at(n_x, at, d, i, a) + b]
-                    add_stiffness(mech, k, L, table, a0 + a, table, a0 + b, -value, mech.address)
+                    add_stiffness(mech, k, L, table, a0 + a, table, a0 + b, -value)
 
 
 @block
-def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool, address: Ints) -> None:
+def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool) -> None:
     """Columns of the friction of contacts that are no joints; ``full``: stiffness of what normal-force laws press."""
     port = mech.port
     n_c = port.joint.shape[0]
@@ -222,10 +218,10 @@ def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool, addres
             continue
         for a in range(port.row[c], port.row[c + 1]):
             form = port.slip.x_start[c] + 2 * (a - port.row[c])
-            add_column(mech, k, L.A1, first + a, port.slip, form, -1.0, mech.address)
+            add_column(mech, k, L.A1, first + a, port.slip, form, -1.0)
         if full and port.normal[c] == NORMAL_LAW and N[c] > 0.0:
             normals, s = port.normals, k.s
             evaluate(normals, c, s)
             x0 = normals.x_start[c]
             for i in range(2):
-                add_stiffness(mech, k, L, normals, x0, normals, x0 + i, -s.out[1 + i], mech.address)
+                add_stiffness(mech, k, L, normals, x0, normals, x0 + i, -s.out[1 + i])

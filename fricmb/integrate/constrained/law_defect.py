@@ -18,7 +18,7 @@ from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.slip_rows import carried, lightness
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats2, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats2
 from fricmb.integrate.step.law_defect import ask_between, force_off, rate_off
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 
@@ -41,13 +41,13 @@ def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> b
     for p in range(y.mode.shape[0]):
         smooth = smooth or mech.port.law[p] == LAW_SMOOTH
     for i in range(st.tab.c.shape[0] if smooth else 0):
-        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
+        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
+        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     return smooth
 
 
 @block
-def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> float:
+def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> float:
     """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the stages."""
     port, tab = mech.port, st.tab
     worst = 0.0
@@ -63,8 +63,8 @@ def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float
         d, nz = port.row[p + 1] - port.row[p], port.z_start[p + 1] - z0
         for a in range(d):
             # what a unit of force does to the slip velocity, and to the velocities over their scales
-            st.x[2 * a] = lightness(mech, k, p, a, y.lam, mech.mass, mech.address)
-            st.x[2 * a + 1] = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia, mech.address))
+            st.x[2 * a] = lightness(mech, k, p, a, y.lam, mech.mass)
+            st.x[2 * a + 1] = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia))
         for j in range(tab.c.shape[0]):
             gap = h * (tab.c[j] - (tab.c[j - 1] if j > 0 else 0.0))
             line = tab.mid[j]

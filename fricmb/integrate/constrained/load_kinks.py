@@ -110,7 +110,7 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
 @kernel
 def read_slopes(mech: Mech, k: Moving, j: int, lam: Floats, out: Floats) -> None:
     """Slopes dN/dlam of joint j into its rows of ``out``."""
-    call_joint(mech, k, j, lam, mech.address)
+    call_joint(mech, k, j, lam)
     at = slopes(mech, j)
     for r in range(mech.joint.row[j], mech.joint.row[j + 1]):
         out[r] = k.out[at + r - mech.joint.row[j]]

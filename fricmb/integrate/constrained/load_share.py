@@ -103,9 +103,7 @@ def rank(D: Floats2) -> int:
 
 
 @block
-def share_load(
-    mech: Mech, k: Moving, mode: Codes, N: Floats, F: Floats, part: float, address: Ints
-) -> float:  # fmt: skip
+def share_load(mech: Mech, k: Moving, mode: Codes, N: Floats, F: Floats, part: float) -> float:
     """Share what contacts in loops hold so that none is beyond ``part`` of its cone: see ``friction_discs.share``.
 
     ``k.way`` (m_p,) becomes the motion in which they would give way.  The place must have been evaluated.
@@ -133,11 +131,11 @@ def share_stages(mech: Mech, k: Moving, y: State, end: State, st: Stages) -> boo
     for i in range(st.tab.c.shape[0]):
         if overloaded(mech, k, end.mode, st.N[i], st.F[i], 1.0):
             time = y.t + st.tab.c[i] * (end.t - y.t)
-            move(mech, k, time, st.Q[i], st.V[i], mech.address)
-            share_load(mech, k, end.mode, st.N[i], st.F[i], 1.0, mech.address)
+            move(mech, k, time, st.Q[i], st.V[i])
+            share_load(mech, k, end.mode, st.N[i], st.F[i], 1.0)
             some = True
     if some:
-        move(mech, k, end.t, end.q, end.v, mech.address)
+        move(mech, k, end.t, end.q, end.v)
     return some
 
 
@@ -147,9 +145,9 @@ def give_way(mech: Mech, k: Moving, y: State, part: Codes, code: int) -> bool:
 
     They reach their cones as one: none can hold the load without the others.
     """
-    move(mech, k, y.t, y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v)
     k.way[:] = 0.0
-    if share_load(mech, k, y.mode, y.N, y.F, NEARLY, mech.address) <= 0.0:
+    if share_load(mech, k, y.mode, y.N, y.F, NEARLY) <= 0.0:
         return False
     slips = least_slip(mech.port.row, k.way)
     for c in range(part.shape[0] if slips > 0.0 else 0):
@@ -175,7 +173,7 @@ def mark_loops(mech: Mech, k: Moving, y: State, part: Codes) -> None:
     held = at_rest_in_loops(mech, part)
     if not (held == STICK).any():
         return
-    move(mech, k, y.t, y.q, y.v, mech.address)
+    move(mech, k, y.t, y.q, y.v)
     D = mobility(mech, k, held)
     whole = rank(D)
     for c in range(part.shape[0]):
@@ -199,7 +197,7 @@ def join_rest(mech: Mech, k: Moving, y: State, part: Codes, small: float, code: 
         if not slips or y.N[c] <= 0.0 or magnitude(mech.port.row, c, y.g) > small:
             continue
         if whole < 0:
-            move(mech, k, y.t, y.q, y.v, mech.address)
+            move(mech, k, y.t, y.q, y.v)
             whole = rank(mobility(mech, k, held))
         held[c] = STICK
         if rank(mobility(mech, k, held)) > whole:

@@ -27,11 +27,11 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import plane
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import magnitude, point_along
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes
 
 
 @block
-def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int, address: Ints) -> int:
+def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> int:
     """Modes of the ports in ``part`` (their slip is 0); the others keep theirs.  ``forced`` (or -1) does not stick.
 
     Sticking first (a joint that is at its limit already stays there where another breaks away; contacts in loops share
@@ -71,8 +71,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
             release(mech, k, y, worst)
         else:
             y.mode[worst] = STICK
-    code = enumerate_modes(mech, k, w, y, part, count, False, mech.address)
-    return enumerate_modes(mech, k, w, y, part, count, True, mech.address) if code == NO_SOLUTION else code
+    code = enumerate_modes(mech, k, w, y, part, count, False)
+    return enumerate_modes(mech, k, w, y, part, count, True) if code == NO_SOLUTION else code
 
 
 @kernel
@@ -117,7 +117,7 @@ def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool
         else:
             count -= 1
     # back at a solution there is: on the way that has led there once, another may be met
-    return not changed or react(mech, k, w, y, False, mech.address)
+    return not changed or react(mech, k, w, y, False)
 
 
 @kernel

@@ -20,7 +20,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import plane
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.problem import SLIP, Codes, Ints
+from fricmb.integrate.problem import SLIP, Codes
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
@@ -48,9 +48,7 @@ def solved_by_shares(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
 
 
 @block
-def enumerate_modes(
-    mech: Mech, k: Moving, w: Instant, y: State, part: Codes, count: int, patient: bool, address: Ints
-) -> int:  # fmt: skip
+def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, count: int, patient: bool) -> int:
     """Try every combination of stick and the two directions of slip; the state is left at the first that holds.
 
     Combinations that give the same accelerations are one solution: of joints that hold more than there is to hold,

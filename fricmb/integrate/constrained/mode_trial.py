@@ -62,7 +62,7 @@ def release(mech: Mech, k: Moving, y: State, c: int) -> None:
     k.held[c] = force
     k.slight[c] = 0.0
     for a in range(row[c + 1] - row[c]):
-        k.slight[c] += SLIGHT * force * lightness(mech, k, c, a, y.lam, mech.mass, mech.address)
+        k.slight[c] += SLIGHT * force * lightness(mech, k, c, a, y.lam, mech.mass)
     for a in range(row[c], row[c + 1]):
         y.n[a] = -y.F[a] / force if force > 0.0 else (1.0 if a == row[c] else 0.0)
 
@@ -90,11 +90,11 @@ def ease(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
         some = some or y.mode[c] == SETTING_OUT
     for part in range(1, STEPS_OUT if some else 1):
         k.part[0] = part / STEPS_OUT
-        if not react(mech, k, w, y, False, mech.address):
+        if not react(mech, k, w, y, False):
             k.part[0] = 1.0
             return False
     k.part[0] = 1.0
-    return bool(react(mech, k, w, y, False, mech.address))
+    return bool(react(mech, k, w, y, False))
 
 
 @kernel
@@ -118,6 +118,6 @@ def largest_acceleration(mech: Mech, k: Moving, y: State) -> float:
     row = mech.port.row
     for c in range(y.mode.shape[0]):
         for a in range(row[c], row[c + 1]):
-            light = lightness(mech, k, c, a - row[c], y.lam, mech.mass, mech.address)
+            light = lightness(mech, k, c, a - row[c], y.lam, mech.mass)
             value = max(value, abs(y.ga[a]), abs(y.F[a]) * light)
     return value

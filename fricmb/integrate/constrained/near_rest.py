@@ -26,7 +26,7 @@ def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
             continue
         force, light = magnitude(row, c, y.F), 0.0
         for a in range(d):
-            light += lightness(mech, k, c, a, y.lam, mech.mass, mech.address)
+            light += lightness(mech, k, c, a, y.lam, mech.mass)
         change = magnitude(row, c, y.ga) + force * light
         if y.N[c] <= 0.0 or force <= 0.0 or magnitude(row, c, y.g) > NEAR * h * change:
             continue
@@ -58,7 +58,7 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
             for a in range(st.R.shape[1]):
                 st.R[i, a] = 0.0
         st.R[p % s, force_place(mech, turns.contact[p // s]) + turns.line[p // s]] = 1.0
-        newton_change(mech, st, mech.address)
+        newton_change(mech, st)
         for i in range(s):
             for a in range(st.R.shape[1]):
                 turns.answer[p, i, a] = st.R[i, a]

@@ -94,15 +94,15 @@ def add_found(
         n_a = -F[first + a] / size
         add(mech.order, L.A1, row + m, row + a, -n_a)
         if full and by_speed != 0.0:
-            add_slip(mech, k, c, a, lam, L, row + m, -by_speed * load * n_a, full, mech.address)
+            add_slip(mech, k, c, a, lam, L, row + m, -by_speed * load * n_a, full)
         if a == m:
             continue
-        add_slip(mech, k, c, a, lam, L, row + a, -n_m, full, mech.address)
-        add_slip(mech, k, c, m, lam, L, row + a, n_a, full, mech.address)
+        add_slip(mech, k, c, a, lam, L, row + a, -n_m, full)
+        add_slip(mech, k, c, m, lam, L, row + a, n_a, full)
         add(mech.order, L.A1, row + a, row + a, -n_m * apart / size)
         add(mech.order, L.A1, row + a, row + m, n_a * apart / size)
     slope = 1.0 if full else eased_slope(k, c, mu * load)
-    add_load(mech, k, c, lam, L, row + m, -slope * (mu + by_load * load), full, mech.address)
+    add_load(mech, k, c, lam, L, row + m, -slope * (mu + by_load * load), full)
 
 
 @kernel
@@ -122,6 +122,6 @@ def add_along(
             other = g[first + b] / speed
             across = (1.0 if a == b else 0.0) - unit * other
             slope = load * (mu / speed * across + by_speed * unit * other)
-            add_slip(mech, k, c, b, lam, L, row + a, slope, full, mech.address)
+            add_slip(mech, k, c, b, lam, L, row + a, slope, full)
         if load > 0.0:
-            add_load(mech, k, c, lam, L, row + a, unit * (mu + by_load * load), full, mech.address)
+            add_load(mech, k, c, lam, L, row + a, unit * (mu + by_load * load), full)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
-from fricmb.integrate.compile.block import block_address
-from fricmb.integrate.compile.block_places import MECHANISM, MECHANISM_LOOPS, MECHANISM_STEPS, PLACES
-from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
@@ -111,11 +109,11 @@ class Mech(Layout):
     order: Order
     breakpoints: Floats
     mass: Floats
-    address: Ints
 
 
 def mech_of(problem: Problem) -> Mech:
     """The problem as the kernels take it, made once per problem object."""
+    load_mechanism()
     return once_per(problem, "mechanism", lambda: _pack(problem))
 
 
@@ -160,7 +158,7 @@ def _pack(problem: Problem) -> Mech:
     return room(Mech(
         linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread_of(problem),
         Order(order, band_sizes(size, half)),
-        np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), addresses(*_blocks()),
+        np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m),
     ))  # fmt: skip
 
 
@@ -190,19 +188,3 @@ def _place_rows(m: Mechanism) -> tuple[Ints, ...]:
             at.extend(int(grad[k]) + c * len(mine) + b for b in range(len(mine)))
             start.append(len(dof))
     return (grad, hess, *[np.array(x, dtype=np.int64) for x in (start, dof, at)])
-
-
-def _blocks() -> tuple[str, ...]:
-    """Names of this package's blocks, their modules imported."""
-    from fricmb.integrate.constrained import time_loop  # noqa: F401  (its import makes the blocks known)
-
-    return MECHANISM + MECHANISM_STEPS + MECHANISM_LOOPS
-
-
-def add_blocks(*names: str) -> None:
-    """Put further blocks, whose modules are imported, into the table of addresses that all mechanisms share."""
-    table = addresses(*_blocks())
-    for name in names:
-        table[PLACES.index(name)] = block_address(name)
-
-

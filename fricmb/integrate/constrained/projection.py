@@ -8,7 +8,7 @@ from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.problem import STICK, Ints
+from fricmb.integrate.problem import STICK
 from fricmb.integrate.run.breakpoints import EPS
 
 #: Corrections of positions at most: after a step one or two are needed.
@@ -16,14 +16,14 @@ CORRECTIONS = 6
 
 
 @block
-def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints) -> bool:
+def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
     """Move q the least, in the norm of the mass matrix, so that phi(q) = 0 to round-off; leaves the factored matrix."""
     n, m = y.q.shape[0], y.lam.shape[0]
     last = 1e300
     for i in range(CORRECTIONS):
-        move(mech, k, y.t, y.q, y.v, mech.address)
-        forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
-        if i == 0 and not instant_matrix(mech, k, w, y, NONE, mech.address):
+        move(mech, k, y.t, y.q, y.v)
+        forces(mech, k, y.lam, y.F, y.N, y.g)
+        if i == 0 and not instant_matrix(mech, k, w, y, NONE):
             return False
         for j in range(w.r.shape[0]):
             w.r[j] = 0.0
@@ -43,13 +43,13 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State, address: Ints
 
 
 @block
-def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, stuck: bool, address: Ints) -> bool:
+def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bool, stuck: bool) -> bool:
     """Move v the least so that the constraints' rates, and the slip of ports that stick (``stuck``), are 0."""
     n, m, n_c = y.q.shape[0], y.lam.shape[0], y.mode.shape[0]
     row = mech.port.row
-    move(mech, k, y.t, y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
-    if not (factored and not stuck) and not instant_matrix(mech, k, w, y, STUCK if stuck else NONE, mech.address):
+    move(mech, k, y.t, y.q, y.v)
+    forces(mech, k, y.lam, y.F, y.N, y.g)
+    if not (factored and not stuck) and not instant_matrix(mech, k, w, y, STUCK if stuck else NONE):
         return False
     for _ in range(2):
         for j in range(w.r.shape[0]):
@@ -63,6 +63,6 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
         solve_instant(mech, w)
         for j in range(n):
             y.v[j] -= w.r[j]
-        move(mech, k, y.t, y.q, y.v, mech.address)
-        forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
+        move(mech, k, y.t, y.q, y.v)
+        forces(mech, k, y.lam, y.F, y.N, y.g)
     return True

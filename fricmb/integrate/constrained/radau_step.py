@@ -93,7 +93,7 @@ def state_noise(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: floa
         for i in range(nz):
             c.noise_z[z0 + i] = 0.0
         for a in range(d if nz > 0 else 0):
-            slip = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia, mech.address))
+            slip = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia))
             smooth_force(port.laws, p, k.s, y.g, row0, d, y.N[p], y.z, z0, nz)
             for i in range(nz):
                 c.noise_z[z0 + i] += part * h * abs(k.s.out[d + nz + (d + i) * (d + 1 + nz) + a]) * slip
@@ -139,15 +139,15 @@ KAPPA = 1e-3
 
 
 @block
-def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, address: Ints) -> bool:
+def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
     """Solve the stages of a step h from y."""
     if c.made == 0.0:
         choose_forms(mech, k, y, st, h)
-        linearise(mech, k, y, st, mech.address)
+        linearise(mech, k, y, st)
         c.counts[3] += 1
     if c.made != h:
         c.counts[4] += 1
-        if not factor_stages(mech, st, h, mech.address):
+        if not factor_stages(mech, st, h):
             c.made = 0.0
             return False
         c.made = h
@@ -156,7 +156,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, 
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol, 1e-14), mech.address)
+    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol, 1e-14))
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
@@ -187,9 +187,9 @@ def settle(mech: Mech, k: Moving, w: Instant, end: State) -> bool:
     for c in range(end.mode.shape[0]):
         held = held or end.mode[c] == STICK
     return bool(
-        project_positions(mech, k, w, end, mech.address)
-        and project_velocities(mech, k, w, end, True, held, mech.address)
-        and react(mech, k, w, end, True, mech.address)
+        project_positions(mech, k, w, end)
+        and project_velocities(mech, k, w, end, True, held)
+        and react(mech, k, w, end, True)
     )
 
 
@@ -209,9 +209,7 @@ def last_stage(mech: Mech, y: State, end: State, st: Stages) -> None:
 
 
 @block
-def end_step(
-    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float, address: Ints
-) -> bool:
+def end_step(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float) -> bool:
     """The end of the step: values of the last stage on the constraints, and all that follows there."""
     s = st.tab.c.shape[0]
     n_c = y.mode.shape[0]
@@ -232,15 +230,13 @@ def end_step(
 @kernel
 def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int) -> None:
     """Powers at stage i into ``c.power[i]``."""
-    move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
-    powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i], mech.address)
+    move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
+    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
+    powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i])
 
 
 @kernel
-def step_to(
-    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float
-) -> bool:
+def step_to(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float) -> bool:
     """Solve a step h from y and put its end into ``end``; False where it could not be made."""
-    solved = try_step(mech, k, y, st, c, h, mech.address)
-    return bool(solved and end_step(mech, k, w, y, end, st, c, h, mech.address))
+    solved = try_step(mech, k, y, st, c, h)
+    return bool(solved and end_step(mech, k, w, y, end, st, c, h))

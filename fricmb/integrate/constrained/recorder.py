@@ -46,7 +46,7 @@ def record_of(problem: Problem, stages: int, capacity: int) -> Record:
 
 
 @block
-def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Control, h: float, address: Ints) -> None:
+def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Control, h: float) -> None:
     """Add the step from y to end."""
     i = out.used[0]
     n, nz, nw, m, rows = y.q.shape[0], y.z.shape[0], y.work.shape[0], y.lam.shape[0], y.F.shape[0]
@@ -86,7 +86,7 @@ def crowded(out: Record, n_c: int) -> bool:
 
 
 @block
-def copy_state(a: State, b: State, address: Ints) -> None:
+def copy_state(a: State, b: State) -> None:
     """Put state a into b."""
     b.t = a.t
     for source, target in ((a.q, b.q), (a.v, b.v), (a.a, b.a), (a.z, b.z), (a.lam, b.lam)):

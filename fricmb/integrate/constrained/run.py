@@ -7,11 +7,12 @@ from functools import partial
 
 import numpy as np
 
+from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.constrained.bdf_history import Formula, formula_of, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
-from fricmb.integrate.constrained.problem_structs import add_blocks, masses, mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import masses, mech_of, mechanism_of
 from fricmb.integrate.constrained.recorder import record_of
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
@@ -68,7 +69,7 @@ def run_mechanism(
         code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
             _settle(workspace, problem, start, t_end, reach)
-            code = chunks.fill(go_on, y.t, memory, progress)
+            code = chunks.fill(go_on, y, memory, progress)
         chunks.take()
         failure = None if code == DONE else ended()
         failure = failure or (failure_text(code, problem, k, y, out) if code not in (DONE, FULL) else None)
@@ -133,7 +134,7 @@ COST = 3.3
 
 def _history(problem: Problem, start: Start, t_end: float, stages: int) -> tuple[Differences, Formula]:
     """What BDF keeps of a run; its block is compiled for those who ask for it."""
-    add_blocks("multistep")
+    load_blocks("multistep")
     past = differences(signals(problem), t_end - start.t, COST * stages / 5)
     return past, formula_of(problem, start)
 

@@ -15,7 +15,6 @@ from fricmb.integrate.constrained.recorder import copy_state
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.problem import Ints
 
 #: Inverse iterations where nothing is known of the direction.
 TURNS = 20
@@ -64,7 +63,7 @@ def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: fl
     out.sigma[2] = out.sigma[0]
     out.sigma[3] = h
     # without friction the factors of the projection are those of the instant
-    if y.F.shape[0] > 0 and not instant_matrix(mech, k, w, y, NONE, mech.address):
+    if y.F.shape[0] > 0 and not instant_matrix(mech, k, w, y, NONE):
         return True
     out.sigma[0] = least_singular(mech, w, out, 1)
     return bool(out.sigma[0] < SINGULAR * out.sigma[1])
@@ -80,10 +79,10 @@ def nears_singular(out: Watch, h: float) -> bool:
 @kernel
 def dips(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, out: Watch, h: float) -> bool:
     """Whether the least singular value falls to less than half at a stage of the step just solved."""
-    copy_state(y, end, mech.address)
+    copy_state(y, end)
     for i in range(st.tab.c.shape[0]):
-        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-        if not instant_matrix(mech, k, w, end, NONE, mech.address):
+        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
+        if not instant_matrix(mech, k, w, end, NONE):
             return True
         if least_singular(mech, w, out, 1) < 0.5 * out.sigma[0]:
             return True
@@ -99,10 +98,10 @@ def step_to_singular(
     for _ in range(50):
         a = low + 0.381966 * (high - low)
         b = low + 0.618034 * (high - low)
-        first = sigma_after(mech, k, w, y, end, st, c, out, a, mech.address)
+        first = sigma_after(mech, k, w, y, end, st, c, out, a)
         if first <= REACHED * out.sigma[1]:
             return a
-        second = sigma_after(mech, k, w, y, end, st, c, out, b, mech.address)
+        second = sigma_after(mech, k, w, y, end, st, c, out, b)
         if second <= REACHED * out.sigma[1]:
             return b
         if first < second or first > 1e299:
@@ -117,9 +116,9 @@ def step_to_singular(
 @block
 def sigma_after(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch,
-    h: float, address: Ints,
+    h: float,
 ) -> float:  # fmt: skip
     """Least singular value of the constraints after a step h, left in ``end``; a large one where none can be made."""
-    if not step_to(mech, k, w, y, end, st, c, h) or not instant_matrix(mech, k, w, end, NONE, mech.address):
+    if not step_to(mech, k, w, y, end, st, c, h) or not instant_matrix(mech, k, w, end, NONE):
         return 1e300
     return float(least_singular(mech, w, out, 1))

@@ -47,6 +47,6 @@ def growth(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> float:
             continue
         light = 0.0
         for a in range(port.row[p + 1] - port.row[p]):
-            light = max(light, lightness(mech, k, p, a, y.lam, mech.mass, mech.address))
+            light = max(light, lightness(mech, k, p, a, y.lam, mech.mass))
         worst = max(worst, h * fall * light / LONGEST)
     return float(worst)

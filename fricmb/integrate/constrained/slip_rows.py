@@ -95,7 +95,6 @@ def aim(mech: Mech, mode: Codes, F: Floats, n: Floats) -> None:
 @block
 def add_slip(
     mech: Mech, k: Moving, c: int, direction: int, lam: Floats, L: Layers, row: int, value: float, full: bool,
-    address: Ints,
 ) -> None:  # fmt: skip
     """Add ``value dg`` of port c to a row (``full``: by velocity and position; else the derivative of g' by v')."""
     port, table = mech.port, mech.joint.table
@@ -103,27 +102,27 @@ def add_slip(
     if j < 0:
         a0 = port.slip.x_start[c] + 2 * direction
         if full:
-            add_form(mech, k, L, row, port.slip, a0 + 1, value, mech.address)
+            add_form(mech, k, L, row, port.slip, a0 + 1, value)
         else:
-            add_row(mech, k, L.A1, row, port.slip, a0, value, mech.address)
+            add_row(mech, k, L.A1, row, port.slip, a0, value)
         return
-    n_x = call_joint(mech, k, j, lam, mech.address)
+    n_x = call_joint(mech, k, j, lam)
     at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
     own, d = at + direction * n_x, directions(mech, c)
     a0 = table.x_start[j]
     for a in range(n_x):
         if not full:
-            add_row(mech, k, L.A1, row, table, a0 + a, value * k.out[own + a], mech.address)
+            add_row(mech, k, L.A1, row, table, a0 + a, value * k.out[own + a])
             continue
-        add_form(mech, k, L, row, table, a0 + n_x + a, value * k.out[own + a], mech.address)
+        add_form(mech, k, L, row, table, a0 + n_x + a, value * k.out[own + a])
         turn = 0.0
         for b in range(n_x):
             turn += k.out[slope_at(n_x, at, d, direction, b) + a] * k.x[n_x + b]
-        add_form(mech, k, L, row, table, a0 + a, value * turn, mech.address)
+        add_form(mech, k, L, row, table, a0 + a, value * turn)
 
 
 @block
-def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: Floats, address: Ints) -> float:
+def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: Floats) -> float:
     """Change of the slip velocity of port c by a unit force in its direction, were there no (other) joints.
 
     With other values (n,) than the masses: the sum of squares of slopes over these.
@@ -131,7 +130,7 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
     port, place, j = mech.port, mech.place, mech.port.joint[c]
     table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
     if j >= 0:
-        n_x = call_joint(mech, k, j, lam, mech.address)
+        n_x = call_joint(mech, k, j, lam)
         table, first = mech.joint.table, mech.joint.table.x_start[j]
         at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
     value = 0.0
@@ -148,19 +147,17 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
 
 
 @block
-def add_stick(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, full: bool, address: Ints) -> None:
+def add_stick(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, full: bool) -> None:
     """Rows of a port that sticks."""
     for a in range(mech.port.row[c + 1] - mech.port.row[c]):
-        add_slip(mech, k, c, a, lam, L, row + a, 1.0, full, mech.address)
+        add_slip(mech, k, c, a, lam, L, row + a, 1.0, full)
         if mech.port.soft[c] > 0.0:
-            soft = mech.port.soft[c] * lightness(mech, k, c, a, lam, mech.mass, mech.address)
+            soft = mech.port.soft[c] * lightness(mech, k, c, a, lam, mech.mass)
             add(mech.order, L.A2 if full else L.A1, row + a, row + a, soft)
 
 
 @block
-def add_load(
-    mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, value: float, full: bool, address: Ints
-) -> None:
+def add_load(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, value: float, full: bool) -> None:
     """Add ``value dN`` of port c to a row; without ``full`` by the multipliers alone."""
     port, joint = mech.port, mech.joint
     j = port.joint[c]
@@ -169,9 +166,9 @@ def add_load(
             normals, s = port.normals, k.s
             n_x = evaluate(normals, c, s)
             for i in range(n_x):
-                add_form(mech, k, L, row, normals, normals.x_start[c] + i, value * s.out[1 + i], mech.address)
+                add_form(mech, k, L, row, normals, normals.x_start[c] + i, value * s.out[1 + i])
         return
-    n_x = call_joint(mech, k, j, lam, mech.address)
+    n_x = call_joint(mech, k, j, lam)
     m = joint.row[j + 1] - joint.row[j]
     at = load_place(n_x, friction_at(n_x, m), directions(mech, c)) + 1
     first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1] - joint.row[-1]
@@ -179,4 +176,4 @@ def add_load(
         add(mech.order, L.A1, row, first + joint.row[j] + i, value * k.out[at + i])
     if full:
         for a in range(2 * n_x):  # by positions, then by velocities
-            add_form(mech, k, L, row, joint.table, joint.table.x_start[j] + a, value * k.out[at + m + a], mech.address)
+            add_form(mech, k, L, row, joint.table, joint.table.x_start[j] + a, value * k.out[at + m + a])

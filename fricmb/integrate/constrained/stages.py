@@ -23,7 +23,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, mech_of, mechanism_of
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
-from fricmb.integrate.problem import Complexes2, Floats, Floats2, Ints, Pivots, Problem
+from fricmb.integrate.problem import Complexes2, Floats, Floats2, Pivots, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.tableau import Tableau
 
@@ -75,26 +75,26 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
 
 
 @block
-def linearise(mech: Mech, k: Moving, y: State, st: Stages, address: Ints) -> None:
+def linearise(mech: Mech, k: Moving, y: State, st: Stages) -> None:
     """The three layers of the Jacobian at the state."""
     L = st.L
     L.A0[:] = 0.0
     L.A1[:] = 0.0
     L.A2[:] = 0.0
-    move(mech, k, y.t, y.q, y.v, mech.address)
-    forces(mech, k, y.lam, y.F, y.N, y.g, mech.address)
+    move(mech, k, y.t, y.q, y.v)
+    forces(mech, k, y.lam, y.F, y.N, y.g)
     add_mass(mech, L)
-    add_structure(mech, k, L, mech.address)
-    add_joints(mech, k, y.lam, y.F, L, True, mech.address)
-    add_contacts(mech, k, y.N, L, True, mech.address)
-    add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, L, True, mech.address)
+    add_structure(mech, k, L)
+    add_joints(mech, k, y.lam, y.F, L, True)
+    add_contacts(mech, k, y.N, L, True)
+    add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, L, True)
     size = mech.order.place.shape[0]
     for i in range(size - y.z.shape[0], size):
         add(mech.order, L.A0, i, i, 1.0)
 
 
 @block
-def factor_stages(mech: Mech, st: Stages, h: float, address: Ints) -> bool:
+def factor_stages(mech: Mech, st: Stages, h: float) -> bool:
     """Factor the real and the complex systems for a step h."""
     order, L, tab = mech.order, st.L, st.tab
     size = order.place.shape[0]
@@ -104,7 +104,7 @@ def factor_stages(mech: Mech, st: Stages, h: float, address: Ints) -> bool:
             up, down = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real
             for j in range(st.real.shape[0]):
                 st.real[j] = up * L.A0[j] + L.A1[j] + down * L.A2[j]
-            if not factor_band(st.real, pivots, order.sizes, mech.address):
+            if not factor_band(st.real, pivots, order.sizes):
                 return False
         else:
             shift = h * tab.lam[i]
@@ -112,13 +112,13 @@ def factor_stages(mech: Mech, st: Stages, h: float, address: Ints) -> bool:
             pair = st.pairs[i]
             for j in range(st.real.shape[0]):
                 pair[j] = inverse * L.A0[j] + L.A1[j] + shift * L.A2[j]
-            if not factor_band(pair, pivots, order.sizes, mech.address):
+            if not factor_band(pair, pivots, order.sizes):
                 return False
     return True
 
 
 @block
-def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int, address: Ints) -> None:
+def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int) -> None:
     """Residual of stage i into ``st.R[i]``."""
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
     r = st.R[i]
@@ -130,8 +130,8 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
             st.acc[a] += st.Ainv[i, j] * (st.V[j, a] - y.v[a])
             st.Q[i, a] += h * st.tab.A[i, j] * st.V[j, a]
         st.acc[a] /= h
-    move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i], mech.address)
-    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i], mech.address)
+    move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
+    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     pull_back(mech, k, st.x)
     for a in range(n):
         r[a] = -st.x[a]
@@ -141,7 +141,7 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
     for a in range(m):
         r[n + a] = k.phi_rate[a]
     friction_residual(
-        mech, k, y.mode, y.n, st.F[i], st.Z[i], st.N[i], st.g[i], st.g[i], st.zd, r, n + m, True, mech.address,
+        mech, k, y.mode, y.n, st.F[i], st.Z[i], st.N[i], st.g[i], st.g[i], st.zd, r, n + m, True,
     )  # fmt: skip
     for a in range(nz):
         rate = 0.0
@@ -151,7 +151,7 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
 
 
 @block
-def newton_change(mech: Mech, st: Stages, address: Ints) -> None:
+def newton_change(mech: Mech, st: Stages) -> None:
     """Solve for the changes of all unknowns: R is overwritten."""
     order, tab = mech.order, st.tab
     size, s = order.place.shape[0], tab.c.shape[0]
@@ -163,7 +163,7 @@ def newton_change(mech: Mech, st: Stages, address: Ints) -> None:
                 for j in range(s):
                     value += tab.Tinv[i, j].real * st.R[j, a]
                 st.x[order.place[a]] = value
-            solve_band(st.real, pivots, order.sizes, st.x, mech.address)
+            solve_band(st.real, pivots, order.sizes, st.x)
             for a in range(size):
                 st.w[i, a] = st.x[order.place[a]]
             continue
@@ -175,7 +175,7 @@ def newton_change(mech: Mech, st: Stages, address: Ints) -> None:
             for j in range(s):
                 value_c += tab.Tinv[i, j] * st.R[j, a]
             w[order.place[a]] = value_c
-        solve_band(pair, pivots, order.sizes, w, mech.address)
+        solve_band(pair, pivots, order.sizes, w)
     for j in range(s):
         for a in range(size):
             value = 0.0
@@ -190,7 +190,7 @@ ITERATIONS = 12
 
 
 @block
-def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float, address: Ints) -> int:
+def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> int:
     """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
     s = st.tab.c.shape[0]
     last = np.inf
@@ -199,10 +199,10 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
         if stopped():
             return 0
         for i in range(s):
-            stage_residual(mech, k, y, st, h, i, mech.address)
+            stage_residual(mech, k, y, st, h, i)
         if st.turns.near > 0:
             spread_of_stages(mech, st.turns, st.F, st.g)
-        newton_change(mech, st, mech.address)
+        newton_change(mech, st)
         if st.turns.near > 0:
             correct_turns(mech, st.turns, st.R)
         change, sound = 0.0, 0.0

@@ -47,7 +47,7 @@ def begin(
 ) -> int:
     """Modes, forces and accelerations at the start."""
     set_window(c, k.s.window, y.t + 4e-16 * abs(y.t) + 1e-300)
-    if not project_velocities(mech, k, w, y, False, False, mech.address):
+    if not project_velocities(mech, k, w, y, False, False):
         return FAIL_SINGULAR
     if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
         return FAIL_SINGULAR
@@ -57,16 +57,16 @@ def begin(
         for i in range(part.shape[0]):
             if y.mode[i] == SLIP:
                 part[i] = SLIPS_ON
-    code = decide(mech, k, w, y, part, -1, mech.address)
+    code = decide(mech, k, w, y, part, -1)
     if code != FOUND:
-        if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
+        if margins(mech, k, w, y, out, True) <= 0.0:
             return FAIL_MARGIN
         return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     # what sticks moves by nothing, not by the round-off of velocities that have been given or projected
-    if not (project_velocities(mech, k, w, y, False, True, mech.address) and react(mech, k, w, y, False, mech.address)):
+    if not (project_velocities(mech, k, w, y, False, True) and react(mech, k, w, y, False)):
         return FAIL_MODES
     grow(c, out, k, y)
-    if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
+    if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
     out.sigma[0] = out.sigma[1]
     n_c = y.mode.shape[0]
@@ -81,7 +81,7 @@ def begin(
         if let_go(mech, k, w, y, out, worst - 2 * n_c) != DONE:
             return FAIL_LOST
         mark_rest(mech, y, small, part)
-        code = decide(mech, k, w, y, part, -1, mech.address)
+        code = decide(mech, k, w, y, part, -1)
         if code != FOUND:
             return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     return DONE
@@ -110,7 +110,7 @@ def drive(
         elif crowded(rec, y.mode.shape[0]):
             return FULL
         elif past.on == 1:
-            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t, mech.address)
+            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t)
             if code == ACCEPTED and is_slower(past, formula.usual):
                 c.h = formula.usual
             elif code == HANDOVER:
@@ -118,7 +118,7 @@ def drive(
                 hand_over(past)
         else:
             t = y.t
-            code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop, mech.address)
+            code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop)
             h = y.t - t
             if may_begin(past, code) and h > 0.0:
                 formula.usual = h

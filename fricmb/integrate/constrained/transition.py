@@ -22,7 +22,7 @@ from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.model.law_values import magnitude, point_along
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window
 from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL
 
@@ -44,8 +44,8 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
         y.mode[c] = OPEN
         for a in range(mech.port.row[c], mech.port.row[c + 1]):
             y.F[a] = 0.0
-    move(mech, k, y.t, y.q, y.v, mech.address)
-    instant_matrix(mech, k, w, y, NONE, mech.address)
+    move(mech, k, y.t, y.q, y.v)
+    instant_matrix(mech, k, w, y, NONE)
     out.sigma[0] = out.sigma[1] = least_singular(mech, w, out, TURNS)
     out.sigma[3] = 0.0
     return DONE
@@ -77,7 +77,7 @@ def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
 
     ``size``: largest slip velocity, of which slip may be round-off to 1e-11.
     """
-    if not project_velocities(mech, k, w, y, False, False, mech.address):
+    if not project_velocities(mech, k, w, y, False, False):
         return False
     row = mech.port.row
     for i in range(y.mode.shape[0]):
@@ -95,7 +95,7 @@ def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> b
         if part[i] in (ARRIVES, RESTED, LETS_GO) and y.mode[i] == SLIP and not plane(mech, i):
             y.mode[i] = STICK
             part[i] = LENT
-    done = project_velocities(mech, k, w, y, False, True, mech.address)
+    done = project_velocities(mech, k, w, y, False, True)
     for i in range(part.shape[0]):
         if part[i] == LENT:
             y.mode[i] = SLIP
@@ -114,12 +114,11 @@ def change_modes(
     rec: Record,
     part: Codes,
     j: int,
-    address: Ints,
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
     turn_with_slip(mech, k, y, out.size[0], j // 2 if j < 2 * n_c else -1)
-    copy_state(y, before, mech.address)
+    copy_state(y, before)
     if j >= 2 * n_c:
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
         if code != DONE:
@@ -149,17 +148,17 @@ def change_modes(
             part[port] = SLIPS_ON
             y.n[row[port]] = -y.n[row[port]]
     join_rest(mech, k, y, part, 1e-9 * out.size[0], ARRIVES)
-    code = decide(mech, k, w, y, part, forced, mech.address)
+    code = decide(mech, k, w, y, part, forced)
     if code != FOUND:
-        margins(mech, k, w, y, out, True, mech.address)
+        margins(mech, k, w, y, out, True)
         return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     record_changes(mech.port, y.t, y, before, rec)
     if not bring_to_rest(mech, k, w, y, part):
         return FAIL_PROJECT
-    if not react(mech, k, w, y, False, mech.address):
+    if not react(mech, k, w, y, False):
         return FAIL_MODES
     c.last_h = 0.0
     c.made = 0.0
-    if margins(mech, k, w, y, out, True, mech.address) <= 0.0:
+    if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
     return DONE

@@ -109,9 +109,9 @@ def correct_turns(mech: Mech, turns: Turns, R: Floats2) -> None:
         for q in range(full):
             work[p, q] = turns.gain[p, q] * turns.spread[q] + (1.0 if p == q else 0.0)
     turn = turns.turn[:full]
-    if not lu_factor(work, turns.sizes, turns.pivots, mech.address):
+    if not lu_factor(work, turns.sizes, turns.pivots):
         return
-    lu_solve(work, turn, turns.sizes, turns.pivots, mech.address)
+    lu_solve(work, turn, turns.sizes, turns.pivots)
     for q in range(full):
         part = turns.spread[q] * turn[q]
         for i in range(s):

@@ -14,14 +14,14 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import MANY, Watch
 from fricmb.integrate.model.law_values import along, coefficient
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, Floats
 
 #: Directions of the reaction for which the margin of a joint is looked at.
 AROUND = 16
 
 
 @block
-def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool, address: Ints) -> float:
+def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool) -> float:
     """Margins of all ports that slip; returns the least.  ``whole``: also of them together, after a change of modes.
 
     In between the minors of all of them, and of all but one, cannot vanish unless a margin does.
@@ -41,7 +41,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
         # dlam/dF: the other ports as they are, this one's force given
         mode = y.mode[c]
         y.mode[c] = OPEN
-        regular = instant_matrix(mech, k, w, y, ALL, mech.address)
+        regular = instant_matrix(mech, k, w, y, ALL)
         y.mode[c] = mode
         if not regular:
             out.margin[c] = -1.0
@@ -63,7 +63,7 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
                 for i in range(rows):
                     angle = 2.0 * np.pi * (d + 0.13) / AROUND
                     out.lam[joint.row[j] + i] = np.cos(angle) if i == 0 else np.sin(angle)
-            call_joint(mech, k, j, out.lam, mech.address)
+            call_joint(mech, k, j, out.lam)
             answer = 0.0
             for i in range(rows):
                 answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
@@ -105,7 +105,7 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
         return 1.0
     for i in range(count):
         y.mode[out.contacts[i]] = OPEN
-    regular = instant_matrix(mech, k, w, y, ALL, mech.address)
+    regular = instant_matrix(mech, k, w, y, ALL)
     for j in range(count if regular else 0):
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
@@ -115,7 +115,7 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
             c = out.contacts[i]
             owner = port.joint[c]
             rows = joint.row[owner + 1] - joint.row[owner]
-            n_x = call_joint(mech, k, owner, y.lam, mech.address)
+            n_x = call_joint(mech, k, owner, y.lam)
             at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
             mu, _, by_load = coefficient(port, port.laws, c, k.s, along(port.row, c, y.n, y.g), max(y.N[c], 0.0))
             answer = 0.0
@@ -129,12 +129,12 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
         return -1.0
     least = 1.0
     for subset in range(1, 1 << count):
-        least = min(least, minor(out, count, subset, mech.address))
+        least = min(least, minor(out, count, subset))
     return least
 
 
 @kernel
-def minor(out: Watch, count: int, subset: int, address: Ints) -> float:
+def minor(out: Watch, count: int, subset: int) -> float:
     """Determinant of the rows and columns of A in a subset (by its bits)."""
     size = 0
     for i in range(count):
@@ -148,7 +148,7 @@ def minor(out: Watch, count: int, subset: int, address: Ints) -> float:
                 B[row, column] = out.A[i * MANY + j]
                 column += 1
         row += (subset >> i) & 1
-    if not lu_factor(B, out.sizes, out.pivots, address):
+    if not lu_factor(B, out.sizes, out.pivots):
         return 0.0
     value = 1.0
     for i in range(size):

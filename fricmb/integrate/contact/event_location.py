@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch
@@ -17,32 +17,32 @@ from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
-from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.event_functions import find_changing_contact, margin
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, attempt, finish, is_exact
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 from fricmb.integrate.step.step_error import step_error
 
 
-@block
-def root_along_step(
+@declared
+def exact_root(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, k: int, h: float, guess: float,
-    found: Floats, address: Ints,
+    found: Floats,
 ) -> float:  # fmt: skip
     """Where contact k comes to its transition, near ``guess``, on the motion of the step h just solved.
 
-    Negative where ``end`` has been moved there and may stay; nan where no root is found.  To be stood in for, where
-    the motion within a step is known as well as its end.
+    Negative where ``end`` has been moved there and may stay; nan where no root is found.  On an exact structure, where
+    the motion within a step is known as well as its end; see ``collocation.root_along_step``.
     """
-    return np.nan
+    raise NotImplementedError
 
 
 @block
 def locate(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, contact: int, h: float, x: float,
-    found: Floats, retry: Floats, address: Ints,
+    found: Floats, retry: Floats,
 ) -> int:  # fmt: skip
     """Find the step that ends at the first transition, by real steps from y; ``contact`` is the first suspect.
 
@@ -57,8 +57,8 @@ def locate(
     same = 0
     failures = 0
     last = one.tab.c.shape[0] - 1
-    if one.exact.ladder.shape[0] > 0 and step_error(packed, s, y, one, acc, h, address) <= 1.0:
-        new = root_along_step(packed, s, y, end, one, acc, contact, h, step, found, address)
+    if is_exact(one) and step_error(packed, s, y, one, acc, h) <= 1.0:
+        new = exact_root(packed, s, y, end, one, acc, contact, h, step, found)
         if new < 0.0:
             return contact
         step = new if 0.0 < new < h else step
@@ -68,7 +68,7 @@ def locate(
         if hi <= 4.0 * t_unit or step <= 2.0 * t_unit:
             copy_state(y, end)
             return contact
-        if not attempt(packed, s, y, one, acc, step, address):
+        if not attempt(packed, s, y, one, acc, step):
             failures += 1
             if failures > 8:
                 # close to a sharp turn that looks like a stop: up to where it can be solved, and on from there
@@ -78,14 +78,14 @@ def locate(
             f_hi = np.nan
             step = lo + 0.5 * (step - lo)
             continue
-        error = step_error(packed, s, y, one, acc, step, address)
+        error = step_error(packed, s, y, one, acc, step)
         if error > 1.0:
             retry[0] = step * max(0.1, step_factor(error, one.tab.c.shape[0], ONE_STEP_SAFETY))
             return -1
         copy_state(y, end)
-        if not finish(packed, s, end, one, acc, step, address):
+        if not finish(packed, s, end, one, acc, step):
             return -2
-        sooner = find_changing_contact(packed, s, y, end, one, acc, found, address)
+        sooner = find_changing_contact(packed, s, y, end, one, acc, found)
         if sooner >= 0 and sooner != contact and found[0] * step < step - 4.0 * t_unit:
             contact = sooner
             hi = step
@@ -98,8 +98,8 @@ def locate(
             continue
         f = margin(packed, s, y, end, one.w.r[last, contact], contact, found)
         new = np.nan
-        if one.exact.ladder.shape[0] > 0:
-            new = root_along_step(packed, s, y, end, one, acc, contact, step, step, found, address)
+        if is_exact(one):
+            new = exact_root(packed, s, y, end, one, acc, contact, step, step, found)
             if new < 0.0:
                 return contact
         slipping = y.mode[contact] == SLIP and packed.ports.law[contact] != LAW_SMOOTH

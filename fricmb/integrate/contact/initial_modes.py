@@ -13,25 +13,25 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.output.recorder import AFTER, Rows, record
-from fricmb.integrate.problem import SLIP, Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import SLIP, Floats, Floats2, Problem
 
 
 @entry
-def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: bool, out: Rows, address: Ints) -> int:
+def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: bool, out: Rows) -> int:
     """Modes at the start of a run: from D^-1 a against the cone where g = 0, not from the velocity; see ``settle``.
 
     ``given``: modes and directions come from an earlier run and are kept where they can be; where they cannot (a
     lighter load), that is a transition.
     """
     if not given:
-        find_open(packed, s, y, address)
-    mark_rest(packed, s, y, r, True, address)
+        find_open(packed, s, y)
+    mark_rest(packed, s, y, r, True)
     if given:
         for k in range(y.mode.shape[0]):
             if r.part[k] == 1 and y.mode[k] == SLIP:
                 r.part[k] = 2
         keep_modes(y, old)
-    code = settle(packed, s, y, r, address)
+    code = settle(packed, s, y, r)
     if given and code == 0:
         record_changes(packed.ports, y.t, y, old, out)
     record(out, y, AFTER)

@@ -26,7 +26,7 @@ from fricmb.integrate.model.friction_discs import share
 from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
 from fricmb.integrate.model.state import INFINITE, State
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Problem
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.contact_unknowns import PortState, port_state
@@ -81,7 +81,7 @@ def fill_rest(r: Rest, packed: Packed) -> None:
 
 
 @kernel
-def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
+def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
     """Forces, modes and directions of the contacts in ``r.part``; a0 must hold their accelerations without friction.
 
     Returns the number of trials, or -1 where none of them holds.
@@ -109,7 +109,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
         elif r.part[k] == 2:
             r.mode[k] = SLIP
     for trial in range(6 * nc + 10):
-        if stopped() or not try_modes(packed, y, r, s, address):
+        if stopped() or not try_modes(packed, y, r, s):
             break
         worst, back = find_wrong(y, r, held, least * big)
         if worst >= 0:
@@ -117,7 +117,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> 
             r.mode[worst] = SLIP
         elif back >= 0:
             r.mode[back] = STICK
-        elif not hold_again(packed, y, r, s, held, least * big, address):
+        elif not hold_again(packed, y, r, s, held, least * big):
             break
         else:
             take_modes(packed, y, r, w.n[0], w.F[0])
@@ -153,9 +153,7 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
 
 
 @kernel
-def hold_again(
-    packed: Packed, y: State, r: Rest, s: Scratch, held: Floats, least: float, address: Ints
-) -> bool:
+def hold_again(packed: Packed, y: State, r: Rest, s: Scratch, held: Floats, least: float) -> bool:
     """Where several were released, hold those that come to rest and need not slip; False without convergence.
 
     A contact that was released first may be able to stick once another has let go.  What breaks away (part 2) takes
@@ -172,7 +170,7 @@ def hold_again(
         if r.mode[k] != SLIP or r.part[k] != 1 or r.rested[k] == 1 or count < 2:
             continue
         r.mode[k] = STICK
-        changed = not try_modes(packed, y, r, s, address)
+        changed = not try_modes(packed, y, r, s)
         if not changed:
             worst, back = find_wrong(y, r, held, least)
             changed = worst >= 0 or back >= 0
@@ -180,11 +178,11 @@ def hold_again(
             r.mode[k] = SLIP
         else:
             count -= 1
-    return not changed or try_modes(packed, y, r, s, address)
+    return not changed or try_modes(packed, y, r, s)
 
 
 @kernel
-def try_modes(packed: Packed, y: State, r: Rest, s: Scratch, address: Ints) -> bool:
+def try_modes(packed: Packed, y: State, r: Rest, s: Scratch) -> bool:
     """Forces and directions under ``r.mode``, from directions ``y.n``; False without convergence."""
     w = r.w
     for k in range(r.mode.shape[0]):
@@ -194,7 +192,7 @@ def try_modes(packed: Packed, y: State, r: Rest, s: Scratch, address: Ints) -> b
             w.Fo[0, a] = 0.0
             w.gb[0, a] = y.a0[a]
             w.n[0, a] = y.n[a]
-    return bool(solve_ports(r.ports, packed.laws, s, w, r.hA, r.mode, r.tol, address) >= 0)
+    return bool(solve_ports(r.ports, packed.laws, s, w, r.hA, r.mode, r.tol) >= 0)
 
 
 @kernel
@@ -209,7 +207,7 @@ def take_modes(packed: Packed, y: State, r: Rest, n: Floats, F: Floats) -> None:
 
 
 @block
-def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
+def settle(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
     """Find modes, directions, forces and accelerations of the state: contacts with ``r.part`` 0 keep their mode.
 
     On entry part marks contacts at rest (1) or just released (2).  Velocities of those at rest are projected to g = 0.
@@ -225,15 +223,15 @@ def settle(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> int:
             some = True
             y.mode[k] = STICK
     if some:
-        project(packed, s, y, r, address)
+        project(packed, s, y, r)
         kinematics(packed, s, y)
         if packed.ports.soft > 0.0 and find_held(packed, y, r):
-            project(packed, s, y, r, address)
+            project(packed, s, y, r)
             kinematics(packed, s, y)
         known_forces(packed, s, y)
-        if solve_rest(packed, s, y, r, address) < 0:
+        if solve_rest(packed, s, y, r) < 0:
             return 1
-    if not complete(packed, s, y, sizes, pivots, address):
+    if not complete(packed, s, y, sizes, pivots):
         return 3 if y.fault == INFINITE else 2
     return 0
 
@@ -256,7 +254,7 @@ def find_held(packed: Packed, y: State, r: Rest) -> bool:
 
 
 @kernel
-def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> None:
+def project(packed: Packed, s: Scratch, y: State, r: Rest) -> None:
     """Take the last round-off of g away where a contact is at rest: v += M^-1 W D^-1 (-g), momentum conserved.
 
     Forces and accelerations of ``y`` are lost.
@@ -271,7 +269,7 @@ def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> Non
             size += 1
     if size == 0:
         return
-    if not solve_response(packed.ports, y, r.part, False, size, r.w.sizes, r.w.pivots, address):
+    if not solve_response(packed.ports, y, r.part, False, size, r.w.sizes, r.w.pivots):
         return
     i = 0
     y.f[:] = 0.0
@@ -288,7 +286,7 @@ def project(packed: Packed, s: Scratch, y: State, r: Rest, address: Ints) -> Non
 
 
 @block
-def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, jumped: bool, address: Ints) -> None:
+def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, jumped: bool) -> None:
     """Mark as at rest every contact that sticks or whose relative velocity is nothing but round-off.
 
     ``jumped``: prescribed velocities may have jumped; what stuck slips then, where it has a speed.
@@ -311,7 +309,7 @@ def mark_rest(packed: Packed, s: Scratch, y: State, r: Rest, jumped: bool, addre
 
 
 @block
-def find_open(packed: Packed, s: Scratch, y: State, address: Ints) -> None:
+def find_open(packed: Packed, s: Scratch, y: State) -> None:
     """Open the contacts whose normal force is not positive, close the others."""
     kinematics(packed, s, y)
     for k in range(y.mode.shape[0]):

@@ -26,7 +26,6 @@ from fricmb.integrate.problem import (
     STICK,
     Codes,
     Floats,
-    Ints,
 )
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.room_protocols import Events, Laws, Modes
@@ -120,7 +119,7 @@ def give_way(packed: Packed, s: Scratch, y: State, r: Rest, old: Before) -> bool
 
 @block
 def transition(
-    packed: Packed, s: Scratch, y: State, contact: int, lifted: bool, r: Rest, old: Before, out: Rows, address: Ints
+    packed: Packed, s: Scratch, y: State, contact: int, lifted: bool, r: Rest, old: Before, out: Rows
 ) -> int:
     """Go through the transition that ``contact`` has reached (-1: a breakpoint of prescribed motion).
 
@@ -133,11 +132,11 @@ def transition(
     lifted = lifted or (contact >= 0 and (y.mode[contact] == OPEN or holds_nothing(packed, y, contact)))
     record(out, y, BEFORE)
     keep_modes(y, old)
-    find_open(packed, s, y, address)
+    find_open(packed, s, y)
     if lifted:
         # the normal force is at its zero, up to round-off of either sign
         y.mode[contact] = SLIP if old.mode[contact] == OPEN else OPEN
-    mark_rest(packed, s, y, r, contact < 0, address)
+    mark_rest(packed, s, y, r, contact < 0)
     for c in range(y.mode.shape[0]):
         row0 = ports.row[c]
         force = ports.D[row0, row0] * stick_limit(ports, packed.laws, c, s, y.N[c])
@@ -154,7 +153,7 @@ def transition(
             point_along(ports.row, contact, y.F, -1.0, y.n)
         else:
             r.part[contact] = 1
-    code = settle(packed, s, y, r, address)
+    code = settle(packed, s, y, r)
     if code != 0:
         return code
     record_changes(ports, y.t, y, old, out)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.contact.event_location import locate, passes_by
@@ -16,7 +16,7 @@ from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import INFINITE, State, copy_state, swap_state
 from fricmb.integrate.output.recorder import INSIDE, STEP, Rows, put, record
-from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import (
     ACCEPTED,
@@ -31,7 +31,7 @@ from fricmb.integrate.run.outcomes import (
 )
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, update_scales
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, is_exact, update_scales
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
 from fricmb.integrate.step.step_error import step_error
 
@@ -85,7 +85,7 @@ def reject(clock: Clock, one: OneStep, h: float) -> int:
 @block
 def advance(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, r: Rest, old: Before, out: Rows,
-    clock: Clock, left: float, address: Ints,
+    clock: Clock, left: float,
 ) -> int:  # fmt: skip
     """Try one step of ``clock.h``, at most ``left``, from y.
 
@@ -97,30 +97,30 @@ def advance(
     h = min(clock.h, clock.longest)
     if h >= left * (1.0 - 1e-9):
         h = left
-    elif one.exact.ladder.shape[0] > 0:
+    elif is_exact(one):
         h = one.exact.ladder[rung_below(h)]
     else:
         # steps of a ladder come again, and their factors with them
         h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h, ONE_STEP_RUNGS)
     # the shortest rung of the ladder of exact structure is no end of steps: what is asked for is
     if not min(h, clock.h) > 8.0 * EPS * abs(t) + 1e-280:
-        return end_round_off(packed, s, y, r, old, out, clock, address)
+        return end_round_off(packed, s, y, r, old, out, clock)
     error = np.inf
-    if attempt(packed, s, y, one, acc, h, address):
-        error = step_error(packed, s, y, one, acc, h, address)
+    if attempt(packed, s, y, one, acc, h):
+        error = step_error(packed, s, y, one, acc, h)
     if not error < np.inf:
         return reject(clock, one, 0.25 * h)
     copy_state(y, end)
-    if not finish(packed, s, end, one, acc, h, address):
+    if not finish(packed, s, end, one, acc, h):
         return incomplete(end)
-    contact = find_changing_contact(packed, s, y, end, one, acc, clock.found, address)
+    contact = find_changing_contact(packed, s, y, end, one, acc, clock.found)
     wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
-    if one.exact.ladder.shape[0] > 0:
+    if is_exact(one):
         wanted = min(wanted, one.exact.cap)
     if contact < 0 and error <= 1.0:
         if end.fault > 0.0:
             return FAIL_LAW
-        record_inside(packed, s, y, end, one, acc, out, address)
+        record_inside(packed, s, y, end, one, acc, out)
         swap_state(y, end)
         record(out, y, STEP)
         one.counts[0] += 1
@@ -136,9 +136,9 @@ def advance(
         one.last_h = 0.0
         return reject(clock, one, 0.2 * h)
     clock.retry[0] = wanted
-    contact = locate(packed, s, y, end, one, acc, contact, h, clock.found[0], clock.found, clock.retry, address)
+    contact = locate(packed, s, y, end, one, acc, contact, h, clock.found[0], clock.found, clock.retry)
     if contact == -2:
-        return end_round_off(packed, s, y, r, old, out, clock, address)
+        return end_round_off(packed, s, y, r, old, out, clock)
     if contact == -1:
         return reject(clock, one, clock.retry[0])
     lifted = clock.found[1] == 1.0
@@ -146,11 +146,11 @@ def advance(
         one.last_h = 0.0
         return reject(clock, one, 0.5 * (end.t - t))
     if end.t > t:
-        record_inside(packed, s, y, end, one, acc, out, address)
+        record_inside(packed, s, y, end, one, acc, out)
         one.counts[0] += 1
     clock.at_once = 0 if end.t - t > 16.0 * EPS * abs(t) else clock.at_once + 1
     if clock.at_once == PATIENCE:
-        code = end_round_off(packed, s, y, r, old, out, clock, address)
+        code = end_round_off(packed, s, y, r, old, out, clock)
         if code != FAIL_STEP:
             return code
     if clock.at_once > 20 + 4 * y.mode.shape[0] or pile_up(clock, end.t, y.mode.shape[0]):
@@ -158,7 +158,7 @@ def advance(
     copy_state(end, y)
     clock.h = clock.usual
     one.last_h = 0.0
-    return settled(transition(packed, s, y, contact, lifted, r, old, out, address))
+    return settled(transition(packed, s, y, contact, lifted, r, old, out))
 
 
 @kernel
@@ -174,9 +174,7 @@ def pile_up(clock: Clock, t: float, n_c: int) -> bool:
 
 
 @kernel
-def end_round_off(
-    packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints
-) -> int:
+def end_round_off(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock) -> int:
     """Where no step can be taken: end the slips that are as good as round-off and settle, if there are any.
 
     Slips that land together (two points of a pad that comes to rest) leave each other a speed of some roundings of
@@ -197,15 +195,28 @@ def end_round_off(
     if not found or clock.at_once > 20 + 4 * y.mode.shape[0]:
         return FAIL_STEP
     clock.h = clock.usual
-    code = settled(transition(packed, s, y, -1, False, r, old, out, address))
+    code = settled(transition(packed, s, y, -1, False, r, old, out))
     r.small[:] = kept
     return code
 
 
+@declared
+def exact_record(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows) -> None:
+    """:func:`record_inside` on an exact structure; see ``collocation.finish_step``."""
+    raise NotImplementedError
+
+
+@kernel
+def record_inside(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows) -> None:
+    """What dense output needs of an accepted step beside its ends."""
+    if is_exact(one):
+        exact_record(packed, s, y, end, one, acc, out)
+    else:
+        record_stages(packed, s, y, end, one, acc, out)
+
+
 @block
-def record_inside(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows, address: Ints
-) -> None:
+def record_stages(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, out: Rows) -> None:
     """Rows for the stages inside an accepted step: dense output between them keeps the accuracy of the step."""
     # of accepted steps alone: a wild trial must not loosen the tolerance for the rest of the run
     update_scales(packed, y, one, acc)

@@ -13,6 +13,7 @@ from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.integrator import Integrator, Tolerance, odd_stages
 from fricmb.integrate.methods.backward_differences import differences
 from fricmb.integrate.methods.bdf_stability import guard_of, spectrum
+from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.one_step import run_one_step
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
@@ -90,7 +91,8 @@ class Bdf(Integrator):
             return run_one_step(problem, start, t_end, formula, tolerance, memory, progress)
         single, several = step_workspace(problem, one_stage()), step_workspace(problem, formula)
         with run_workspace(problem) as workspace, several as (one,), single as (multi,):
-            run = Collector(problem, start, t_end, workspace, one, multi, further=("start_history", "bdf_step"))
+            load_stages(problem, "start_history", "bdf_step")
+            run = Collector(problem, start, t_end, workspace, one, multi)
             set_accuracy(run, tolerance)
             code = run.begin()
             return run_loop(run, code, bdf_loop(run, one, multi), memory, progress)
@@ -106,5 +108,5 @@ def bdf_loop(run: Collector, one: OneStep, multi: OneStep) -> Callable[[], int]:
     past.wait, past.slower = SETTLE, 1
     return partial(
         drive, run.packed, run.scratch, run.y, run.end, one, multi, run.acc, past, guard_of(problem, spectral),
-        run.rest, run.old, run.rows, run.clock, run.address,
+        run.rest, run.old, run.rows, run.clock,
     )  # fmt: skip

@@ -20,6 +20,7 @@ import numpy as np
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.bdf2_paper_step import Last, drive_paper
+from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.problem import Floats, Problem, Start
@@ -58,11 +59,12 @@ class Bdf2Paper(Integrator):
         if step is None or not step > 0.0:
             raise ValueError(f"bdf2-paper needs a step > 0, got {step!r}")
         with run_workspace(problem) as workspace, step_workspace(problem, one_stage()) as (one,):
-            run = Collector(problem, start, t_end, workspace, one, further=("solve_with",))
+            load_stages(problem, "solve_with")
+            run = Collector(problem, start, t_end, workspace, one)
             # its equations are solved to round-off: their error is not to be seen beside that of the formula
             acc = set_accuracy(run, Tolerance(rtol=1e-8))
             code, y = run.begin(), run.y
             values = np.zeros(2 * problem.n + problem.n_z)
             last = room(Last(values, 0.0, y.mode.copy(), y.n.copy(), y.mode.copy()))
-            given = (run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end, run.address)
+            given = (run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end)
             return run_loop(run, code, partial(drive_paper, *given), None, progress)

@@ -18,7 +18,7 @@ from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, newton_tolerances, prepare_at
@@ -56,7 +56,7 @@ def formula(y: State, one: OneStep, last: Last, h: float, two: bool) -> float:
 
 @block
 def solve_with(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, last: Last, mode: Codes, h: float, address: Ints
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, last: Last, mode: Codes, h: float
 ) -> bool:
     """Solve the step for the given modes."""
     st, w = one.st, one.w
@@ -65,7 +65,7 @@ def solve_with(
         if mode[k] != last.mode[k]:
             same = False
     beta_h = formula(y, one, last, h, same)
-    if not prepare_at(packed, s, y, one, beta_h, True, address):
+    if not prepare_at(packed, s, y, one, beta_h, True):
         return False
     st.t[0] = y.t + h
     st.hA[0, 0] = beta_h
@@ -74,7 +74,7 @@ def solve_with(
     contacts_from_start(packed, y, w, 0)
     newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
-    return solve_stages(packed, one.tab, s, one.fac, st, w, mode, one.tol, one.scale, address) > 0
+    return solve_stages(packed, one.tab, s, one.fac, st, w, mode, one.tol, one.scale) > 0
 
 
 @kernel
@@ -102,7 +102,7 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
 @entry
 def drive_paper(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, last: Last, out: Rows, h: float,
-    t_end: float, address: Ints,
+    t_end: float,
 ) -> int:  # fmt: skip
     """Step from y to ``t_end``, or until the space for rows is used up."""
     n = y.q.shape[0]
@@ -117,7 +117,7 @@ def drive_paper(
             last.trial[k] = SLIP if packed.ports.law[k] == LAW_SMOOTH else (OPEN if y.mode[k] == OPEN else STICK)
         settled = False
         for _ in range(3 * y.mode.shape[0] + 3):
-            if stopped() or not solve_with(packed, s, y, one, acc, last, last.trial, step, address):
+            if stopped() or not solve_with(packed, s, y, one, acc, last, last.trial, step):
                 return FAIL_STEP
             if not revise(packed, s, y, one, last.trial):
                 settled = True
@@ -135,7 +135,7 @@ def drive_paper(
             end.mode[k] = last.trial[k]
         for a in range(y.n.shape[0]):
             end.n[a] = one.w.n[0, a]
-        if not complete(packed, s, end, one.w.sizes, one.w.pivots, address):
+        if not complete(packed, s, end, one.w.sizes, one.w.pivots):
             return incomplete(end)
         if end.fault > 0.0:
             return FAIL_LAW

@@ -33,7 +33,7 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import STEP, Rows, record
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_LAW, HANDOVER, REJECTED
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_to_position, newton_tolerances, state_noise, widest
@@ -45,9 +45,7 @@ from fricmb.integrate.step.step_matrix import forget, prepare
 
 
 @kernel
-def solve_formula(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, past: Differences, address: Ints
-) -> bool:
+def solve_formula(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, past: Differences) -> bool:
     """Solve the step's equations from the prediction."""
     n = y.q.shape[0]
     st, w = one.st, one.w
@@ -55,7 +53,7 @@ def solve_formula(
     beta_h = h / past.gamma[past.order]
     nonlinear = packed.elements.address.shape[0] > 0 or w.Fin.shape[1] > y.F.shape[0]
     again = nonlinear and one.fac.made[one.fac.slot] != beta_h
-    if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True, address):
+    if not prepare(packed, one.tab, s, one.fac, w, one.counts, beta_h, again, True):
         return False
     st.t[0] = y.t + h
     st.hA[0, 0] = beta_h
@@ -79,7 +77,7 @@ def solve_formula(
     part = min(1e-3, 0.02 * h * past.unit)
     newton_tolerances(acc, h, y, one.tol, one.scale, part)
     one.counts[2] += 1
-    return solve_stages(packed, one.tab, s, one.fac, st, w, y.mode, one.tol, one.scale, address) > 0
+    return solve_stages(packed, one.tab, s, one.fac, st, w, y.mode, one.tol, one.scale) > 0
 
 
 @kernel
@@ -151,7 +149,7 @@ def select_order(
 @block
 def bdf_step(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, past: Differences, guard: Guard,
-    out: Rows, left: float, address: Ints,
+    out: Rows, left: float,
 ) -> int:  # fmt: skip
     """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), or HANDOVER."""
     n, nz = y.q.shape[0], y.z.shape[0]
@@ -160,7 +158,7 @@ def bdf_step(
         return HANDOVER
     predict(past)
     copy_state(y, end)
-    if not solve_formula(packed, s, y, one, acc, past, address):
+    if not solve_formula(packed, s, y, one, acc, past):
         forget(one.fac)
         past.rejections += 2
         one.counts[1] += 1
@@ -185,7 +183,7 @@ def bdf_step(
     end.t = y.t + past.h
     for a in range(y.n.shape[0]):
         end.n[a] = one.w.n[0, a]
-    if not complete(packed, s, end, one.w.sizes, one.w.pivots, address) or meets_transition(packed, s, y, end, guard):
+    if not complete(packed, s, end, one.w.sizes, one.w.pivots) or meets_transition(packed, s, y, end, guard):
         return HANDOVER
     if end.fault > 0.0:
         return FAIL_LAW
@@ -206,7 +204,7 @@ def bdf_step(
 
 @block
 def start_history(
-    packed: Packed, s: Scratch, before: State, y: State, one: OneStep, past: Differences, h: float, address: Ints
+    packed: Packed, s: Scratch, before: State, y: State, one: OneStep, past: Differences, h: float
 ) -> None:
     """Differences of order up to 4 from the polynomial of the one-step step just done, from ``before`` to y."""
     tab, st, w = one.tab, one.st, one.w

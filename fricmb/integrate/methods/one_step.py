@@ -10,6 +10,7 @@ from typing import ClassVar
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.backward_differences import no_differences
 from fricmb.integrate.methods.bdf_stability import no_guard
+from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import drive
@@ -74,6 +75,7 @@ def run_one_step(
 ) -> Trajectory:  # fmt: skip
     """A run by the formula of a tableau; see ``Integrator.integrate``."""
     with run_workspace(problem) as workspace, step_workspace(problem, tableau) as (one,):
+        load_stages(problem)
         run = Collector(problem, start, t_end, workspace, one)
         set_accuracy(run, tolerance)
         return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)
@@ -83,5 +85,5 @@ def one_step_loop(run: Collector, one: OneStep) -> Callable[[], int]:
     """The loop over the steps of one formula."""
     return partial(
         drive, run.packed, run.scratch, run.y, run.end, one, one, run.acc, no_differences(), no_guard(), run.rest,
-        run.old, run.rows, run.clock, run.address,
+        run.old, run.rows, run.clock,
     )  # fmt: skip

@@ -15,11 +15,10 @@ from fricmb.integrate.model.state import set_out
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.output.recorder import rows, widths
 from fricmb.integrate.output.row_trajectory import RowTrajectory
-from fricmb.integrate.problem import Ints, Problem, Start
+from fricmb.integrate.problem import Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
-from fricmb.integrate.step.band_matrix import places_of
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import SAMPLED, first_step
@@ -55,7 +54,7 @@ class Collector:
 
     def __init__(
         self, problem: Problem, start: Start, t_end: float, workspace: RunWorkspace, *steps: OneStep,
-        further: tuple[str, ...] = (), places: Ints | None = None, columns: int = 0,
+        columns: int = 0,
     ) -> None:  # fmt: skip
         self.problem = problem
         self.start = start
@@ -67,8 +66,6 @@ class Collector:
         set_out(self.end, start)
         self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
         self.rows = rows(problem, self.chunk, columns)
-        half = int(self.packed.structure.half)
-        self.address = places_of(half, "step_error", *further) if places is None else places
         self.natural_v, self.natural_q = natural_scales(
             problem, self.packed, self.scratch, start.t, t_end - start.t, start.q
         )
@@ -83,7 +80,7 @@ class Collector:
         # a function of time that switches right at the start has switched
         self.scratch.window[0] = self.start.t + 4e-16 * abs(self.start.t) + 1e-300
         rooms = (self.packed, self.scratch, self.y, self.rest, self.old)
-        code = watched(begin, *rooms, given, self.rows, self.address)
+        code = watched(begin, *rooms, given, self.rows)
         return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]
 
     def trajectory(self, failure: str | None) -> RowTrajectory:
@@ -122,7 +119,7 @@ def run_loop(
     """Let ``step`` fill the space for rows, again and again, until the end of the run, of memory, or a failure."""
     if code == DONE:
         set_clock(run)
-        code = run.chunks.fill(step, run.y.t, memory, progress)
+        code = run.chunks.fill(step, run.y, memory, progress)
     if code == DONE:
         return run.trajectory(None)
     return run.trajectory(ended() or (None if code == FULL else FAILURES[code]))

@@ -14,7 +14,6 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
-from fricmb.integrate.problem import Ints
 from fricmb.integrate.run.breakpoints import reached, set_window
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
 from fricmb.integrate.run.stop import stopped
@@ -23,9 +22,7 @@ from fricmb.integrate.step.step_matrix import forget
 
 
 @kernel
-def arrive(
-    packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock, stop: float, address: Ints
-) -> int:
+def arrive(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock, stop: float) -> int:
     """Go through a stop that has been reached: DONE at the end of the run, else as a transition."""
     y.t = stop
     if out.used[0] > 0:
@@ -34,7 +31,7 @@ def arrive(
     if stop >= clock.span[1]:
         return DONE
     stop = set_window(clock, s.window, stop)
-    code = settled(transition(packed, s, y, -1, False, r, old, out, address))
+    code = settled(transition(packed, s, y, -1, False, r, old, out))
     clock.h = min(clock.usual, 0.1 * (stop - y.t))
     return code
 
@@ -48,7 +45,7 @@ def crowded(out: Rows, n_s: int, nc: int) -> bool:
 @entry
 def drive(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
-    past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock, address: Ints,
+    past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until the space for rows is used up.
 
@@ -60,23 +57,23 @@ def drive(
             return FULL
         left = stop - y.t
         if reached(y.t, stop):
-            code = arrive(packed, s, y, r, old, out, clock, stop, address)
+            code = arrive(packed, s, y, r, old, out, clock, stop)
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
             past.on = 0
         elif past.on == 1:
-            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left, address)
+            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)
             if code == ACCEPTED and is_slower(past, clock.usual):
                 clock.h = clock.usual
             if code == HANDOVER:
                 clock.h = max(clock.h, past.h)
                 hand_over(past)
         else:
-            code = advance(packed, s, y, end, one, acc, r, old, out, clock, left, address)
+            code = advance(packed, s, y, end, one, acc, r, old, out, clock, left)
             h = y.t - end.t
             if may_begin(past, code) and calm(packed, y, h):
                 usual = past.good if past.good > 0.0 else h
-                start_history(packed, s, end, y, one, past, min(usual, 0.25 * h), address)
+                start_history(packed, s, end, y, one, past, min(usual, 0.25 * h))
                 note_loads(packed, s, end, y, guard)
                 if packed.elements.address.shape[0] > 0:
                     forget(multi.fac)

@@ -14,7 +14,7 @@ from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_for
 from fricmb.integrate.model.problem_structs import Packed, Ports
 from fricmb.integrate.model.state import INFINITE, NEGATIVE, State
 from fricmb.integrate.model.structure import Structure
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Ints, Pivots
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Pivots
 
 #: Softening of redundant contacts at rest, and rounds of refinement that take it out again (SOFT^rounds < round-off).
 SOFT, REFINEMENTS = 1e-4, 5
@@ -123,9 +123,7 @@ def fill_response(ports: Ports, y: State, codes: Codes, zero: bool, size: int, s
 
 
 @kernel
-def solve_response(
-    ports: Ports, y: State, codes: Codes, zero: bool, size: int, sizes: Pivots, pivots: Pivots, address: Ints
-) -> bool:
+def solve_response(ports: Ports, y: State, codes: Codes, zero: bool, size: int, sizes: Pivots, pivots: Pivots) -> bool:
     """Solve D x = ``y.rhs`` in place over the rows of the contacts whose code is 0 (``zero``) or is not.
 
     Where D is singular (redundant contacts): the least-norm solution, by Tikhonov's regularisation with iterative
@@ -134,7 +132,7 @@ def solve_response(
     """
     if ports.soft == 0.0:
         fill_response(ports, y, codes, zero, size, 0.0)
-        return bool(solve_real(address[0], y.J, y.rhs, size, sizes, pivots) == 0)
+        return bool(solve_real(y.J, y.rhs, size, sizes, pivots) == 0)
     b, x = y.rhs[:size].copy(), np.zeros(size)
     for _ in range(REFINEMENTS):
         fill_response(ports, y, codes, zero, size, 0.0)
@@ -144,7 +142,7 @@ def solve_response(
                 value -= y.J[i * size + j] * x[j]
             y.rhs[i] = value
         fill_response(ports, y, codes, zero, size, SOFT)
-        if solve_real(address[0], y.J, y.rhs, size, sizes, pivots) != 0:
+        if solve_real(y.J, y.rhs, size, sizes, pivots) != 0:
             return False
         for i in range(size):
             x[i] += y.rhs[i]
@@ -154,7 +152,7 @@ def solve_response(
 
 
 @kernel
-def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
+def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots) -> bool:
     """Forces of stuck contacts from zero relative acceleration, D F = -a0; adds them to f and a."""
     ports = packed.ports
     size = 0
@@ -169,7 +167,7 @@ def stuck_forces(packed: Packed, y: State, sizes: Pivots, pivots: Pivots, addres
         if not abs(y.rhs[i]) < np.inf:
             y.fault = INFINITE
             return False
-    if not solve_response(ports, y, y.mode, True, size, sizes, pivots, address):
+    if not solve_response(ports, y, y.mode, True, size, sizes, pivots):
         return False
     i = 0
     for k in range(y.mode.shape[0]):
@@ -202,11 +200,11 @@ def share_load(packed: Packed, s: Scratch, mode: Codes, N: Floats, F: Floats, g:
 
 
 @block
-def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots, address: Ints) -> bool:
+def complete(packed: Packed, s: Scratch, y: State, sizes: Pivots, pivots: Pivots) -> bool:
     """All that follows from t, q, v, z, modes and directions.  False: redundant stuck contacts, or see ``fault``."""
     kinematics(packed, s, y)
     known_forces(packed, s, y)
-    if not stuck_forces(packed, y, sizes, pivots, address):
+    if not stuck_forces(packed, y, sizes, pivots):
         return False
     if packed.ports.soft > 0.0:
         share_load(packed, s, y.mode, y.N, y.F, y.way, 1.0)

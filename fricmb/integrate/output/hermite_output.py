@@ -124,7 +124,7 @@ def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
 @kernel
 def complete_at(
     packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, sizes: Pivots,
-    pivots: Pivots, address: Ints,
+    pivots: Pivots,
 ) -> None:  # fmt: skip
     """Make y the state at t between row k and the next one, with its forces and powers; ``work`` stays."""
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
@@ -143,20 +143,20 @@ def complete_at(
         y.F[a] = left[at_F + a]
     point_against_forces(packed, y)
     point_along_slip(packed, s, y)
-    complete(packed, s, y, sizes, pivots, address)
+    complete(packed, s, y, sizes, pivots)
 
 
 @kernel
 def add_powers(
     packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, out: Floats2,
-    sizes: Pivots, pivots: Pivots, address: Ints,
+    sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Add integrals of the powers (row 0 of ``out``) and of their magnitudes (row 1) from row k to t, by Gauss."""
     h = t - values[k, 0]
     for g in range(3):
         root = (g - 1.0) * np.sqrt(0.6)
         weight = h * (4.0 / 9.0 if g == 1 else 5.0 / 18.0)
-        complete_at(packed, s, y, values, k, modes, values[k, 0] + 0.5 * h * (1.0 + root), sizes, pivots, address)
+        complete_at(packed, s, y, values, k, modes, values[k, 0] + 0.5 * h * (1.0 + root), sizes, pivots)
         for i in range(y.rate.shape[0]):
             out[0, i] += weight * y.rate[i]
             out[1, i] += weight * abs(y.rate[i])
@@ -165,14 +165,14 @@ def add_powers(
 @kernel
 def open_step(
     packed: Packed, s: Scratch, y: State, values: Floats2, ends: Ints, modes: Codes2, part: Floats3,
-    sizes: Pivots, pivots: Pivots, address: Ints,
+    sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Integrals of the powers from row ``ends[0]``, where a step starts, up to every row of it until ``ends[1]``."""
     part[0] = 0.0
     for k in range(ends[0], ends[1]):
         part[k + 1 - ends[0]] = part[k - ends[0]]
         add_powers(
-            packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots, address
+            packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots
         )  # fmt: skip
 
 
@@ -193,7 +193,7 @@ def ends_of_step(values: Floats2, kind: Codes, k: int, ends: Ints) -> bool:
 @kernel
 def work_at(
     packed: Packed, s: Scratch, y: State, values: Floats2, at_w: int, ends: Ints, part: Floats3, k: int, modes: Codes,
-    t: float, sizes: Pivots, pivots: Pivots, address: Ints,
+    t: float, sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Energies at t after row k: those where the step starts and the integral of the powers of the dense output.
 
@@ -201,7 +201,7 @@ def work_at(
     magnitude of the power: what is lost never comes back, and where there is no power nothing changes.
     """
     since = part[k - ends[0]].copy()
-    add_powers(packed, s, y, values, k, modes, t, since, sizes, pivots, address)
+    add_powers(packed, s, y, values, k, modes, t, since, sizes, pivots)
     whole = part[ends[1] - ends[0]]
     left, right = values[ends[0]], values[ends[1]]
     for i in range(y.work.shape[0]):
@@ -236,7 +236,6 @@ def state_of_row(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes
 def sample_rows(
     packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, modes: Codes2, stops: Floats, index: Ints,
     t: Floats, side: Floats, part: Floats3, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots,
-    address: Ints,
 ) -> None:  # fmt: skip
     """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
 
@@ -254,9 +253,9 @@ def sample_rows(
         if t[j] > left[0] and k + 1 < values.shape[0] and values[k + 1, 0] > left[0]:
             if part.shape[0] > 0:
                 if ends_of_step(values, kind, k, ends):
-                    open_step(packed, s, y, values, ends, modes, part, sizes, pivots, address)
-                work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots, address)
-            complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots, address)
+                    open_step(packed, s, y, values, ends, modes, part, sizes, pivots)
+                work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots)
+            complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots)
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])
         write_sample(packed, y, out[j], out_mode[j])

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.lapack import load_lapack
+from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.model.instant_workspace import InstantWorkspace, instant_workspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
@@ -124,10 +125,12 @@ class RowTrajectory(Trajectory):
         ``side``: a time on the side of a breakpoint on which each is; ``energies``: whether they are needed.
         """
         packed, problem = packed_of(self.problem), self.problem
+        load_lapack()
+        load_blocks("complete")
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         rows = int(np.diff(self._steps).max(initial=1)) + 1
         part = np.zeros((rows if energies else 0, 2, problem.n_c + 2))
         sample_rows(
             packed, workspace.s, workspace.y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side,
-            part, out, modes, sizes, pivots, addresses("complete"),
+            part, out, modes, sizes, pivots,
         )  # fmt: skip

@@ -41,18 +41,18 @@ class Chunks:
         self.recorder.used[:] = 0
 
     def fill(
-        self, step: Callable[[], int], t: Any, memory: float | None, progress: Callable[[float], None] | None
+        self, step: Callable[[], int], y: Any, memory: float | None, progress: Callable[[float], None] | None
     ) -> int:
         """Let ``step`` fill the recorder, again and again, until the end of the run, of memory (bytes), or a failure.
 
-        ``t`` (1,): where the run stands.  Returns what the last call did; FULL where something else ended the run.
+        ``y``: the state of the run.  Returns what the last call did; FULL where something else ended the run.
         """
         code = FULL
         while code == FULL and ended() is None:
             code = watched(step)
             self.take()
             if progress is not None:
-                progress(float(t[0]))
+                progress(float(y.t))
             if memory is not None and sum(part[0].nbytes for part in self.parts) >= memory:
                 break
         return code

@@ -7,33 +7,17 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.block_places import CORE, PLACES
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.lapack import addresses
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import Complexes, Ints
+from fricmb.integrate.problem import Complexes
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.step_matrix import Factor, port_inputs, port_outputs
 from fricmb.integrate.step.tableau import Tableau
 
-#: Blocks that know how the matrices are kept, and those that take their places for bands.
-STANDS_FOR = {"factorise": "factorise_band", "structure_correction": "correct_band"}
-
-
-def places_of(half: int, *further: str) -> Ints:
-    """Table of addresses of the blocks that a run needs with matrices kept so."""
-    names = [name for name in (*CORE, "structure_correction", *further) if half < 0 or name not in STANDS_FOR]
-    if half < 0:
-        return addresses(*names)
-    table = addresses(*names, *STANDS_FOR.values()).copy()
-    for name, stand_in in STANDS_FOR.items():
-        table[PLACES.index(name)] = table[PLACES.index(stand_in)]
-    return table
-
 
 @block
-def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState, address: Ints) -> bool:
+def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState) -> bool:
     """Fill the present slot for h from the Jacobian.  False where a matrix is singular."""
     structure = packed.structure
     start, index, place, M, K, C = (
@@ -52,11 +36,11 @@ def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortS
                 j = place[index[e]]
                 ab[j, 2 * half + place[i] - j] = M[e] + sigma * (C[e] + sigma * K[e])
         pivots = fac.pivots[which * n : (which + 1) * n]
-        if not factor_band(ab, pivots, fac.sizes, address):
+        if not factor_band(ab, pivots, fac.sizes):
             return False
         for c in range(fac.X.shape[1]):
             load_column(packed, c, sigma, fac.line)
-            solve_band(ab, pivots, fac.sizes, fac.line, address)
+            solve_band(ab, pivots, fac.sizes, fac.line)
             for i in range(n):
                 fac.X[x, c, i] = fac.line[place[i]]
     port_inputs(tab, fac)
@@ -80,7 +64,7 @@ def load_column(packed: Packed, c: int, weight: complex, line: Complexes) -> Non
 
 
 @block
-def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address: Ints) -> None:
+def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages) -> None:
     """DV = -S^-1 res over all stages."""
     T, Tinv, res, dV, line = tab.T, tab.Tinv, st.res, st.dV, fac.line
     place = packed.structure.place
@@ -95,7 +79,7 @@ def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address:
             for j in range(s):
                 value += Tinv[x, j] * res[j, a]
             line[place[a]] = value
-        solve_band(fac.Sinv[which], fac.pivots[which * n : (which + 1) * n], fac.sizes, line, address)
+        solve_band(fac.Sinv[which], fac.pivots[which * n : (which + 1) * n], fac.sizes, line)
         for a in range(n):
             for i in range(s):
                 dV[i, a] -= (T[i, x] * line[place[a]]).real

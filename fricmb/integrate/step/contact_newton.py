@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_convergence import creep, force_change, smooth_miss, speed_change
 from fricmb.integrate.step.contact_unknowns import PortState, evaluate_ports
@@ -172,15 +172,26 @@ def update_ports(ports: Ports, w: PortState, mode: Codes) -> float:
     return turn
 
 
-@block
-def solve_ports(
-    ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats, address: Ints
-) -> int:
+@declared
+def plain_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> int:
+    """:func:`solve_ports` where coefficients of friction and normal forces are constant; see ``coulomb_newton``."""
+    raise NotImplementedError
+
+
+@kernel
+def solve_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> int:
     """Newton on the port unknowns from their present values; ``tol`` (n_c + n_z,) on relative velocities and states.
 
-    The factors of the Jacobian are kept while directions hardly turn.  Returns the number of iterations, or -1 where
-    it does not converge.
+    Returns the number of iterations, or -1 where it does not converge.
     """
+    if w.plain == 1:
+        return plain_ports(ports, laws, s, w, hA, mode, tol)
+    return general_ports(ports, laws, s, w, hA, mode, tol)
+
+
+@block
+def general_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> int:
+    """:func:`solve_ports` by a Jacobian, the factors of which are kept while directions hardly turn."""
     if w.rhs.shape[0] == 0:
         return 0
     evaluate_ports(ports, laws, s, w, mode)
@@ -195,9 +206,9 @@ def solve_ports(
         port_residual(ports, w, hA, mode)
         if renew:
             port_jacobian(ports, w, hA, mode)
-            if not lu_factor(w.J, w.sizes, w.pivots, address):
+            if not lu_factor(w.J, w.sizes, w.pivots):
                 return -1
-        lu_solve(w.J, w.rhs, w.sizes, w.pivots, address)
+        lu_solve(w.J, w.rhs, w.sizes, w.pivots)
         change = speed_change(ports, w, mode, tol)
         turn = update_ports(ports, w, mode)
         for i in range(w.F.shape[0]):

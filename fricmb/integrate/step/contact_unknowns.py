@@ -18,7 +18,8 @@ class PortState(Layout):
     ``n``, ``F``, ``g`` (s, m), ``r``, ``N`` (s, n_c), ``z``, ``zd`` (s, n_z); ``Fo`` (s, m+n_v) and ``Fin`` likewise:
     all port inputs (F, then varying N), ``gbuf`` their last values; ``gb`` (s, m+n_v) their outputs at Fo;
     ``psi_z`` (n_z,) history of z; ``dF`` (s (m+n_v),) Fin - Fo;
-    ``L`` (s, n_c, rows, columns) derivatives of (F, z') with respect to (unknowns, N, z) of one contact.
+    ``L`` (s, n_c, rows, columns) derivatives of (F, z') with respect to (unknowns, N, z) of one contact;
+    ``plain`` 1 where they are solved for by ``coulomb_newton``, which constant coefficients and normal forces allow.
     """
 
     n: Floats2
@@ -40,6 +41,7 @@ class PortState(Layout):
     dF: Floats
     sizes: Pivots
     pivots: Pivots
+    plain: int
 
 
 def port_state(problem: Problem, s: int) -> PortState:
@@ -66,7 +68,7 @@ def port_state(problem: Problem, s: int) -> PortState:
     local = np.zeros((s, nc, 3 + states, 4 + states))
     G = np.zeros((s * (m + nv), s * (m + nv)))
     sizes, pivots = np.zeros(4, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
-    solver = [np.zeros((unknowns, unknowns)), np.zeros(unknowns), np.zeros(s * (m + nv)), sizes, pivots]
+    solver = [np.zeros((unknowns, unknowns)), np.zeros(unknowns), np.zeros(s * (m + nv)), sizes, pivots, 0]
     return PortState._make([*values, local, G, *solver])
 
 

@@ -16,7 +16,7 @@ from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, total
 from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
-from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats, Floats2, Ints
+from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats, Floats2
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import some_stick
 from fricmb.integrate.step.contact_unknowns import PortState
@@ -183,9 +183,7 @@ def move_plain(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> tuple[fl
 
 
 @block
-def plain_ports(
-    ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats, address: Ints
-) -> int:
+def plain_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> int:
     """Stands in for :func:`solve_ports`: Newton from the present directions; its iterations, or -1."""
     n_s = w.F.shape[0]
     size = 0
@@ -207,7 +205,7 @@ def plain_ports(
             done = 1
             break
         assemble_plain(ports, w, mode, size)
-        if solve_real(address[0], w.J.reshape(w.J.size), w.rhs, size, w.sizes, w.pivots) != 0:
+        if solve_real(w.J.reshape(w.J.size), w.rhs, size, w.sizes, w.pivots) != 0:
             return -1
         change, turn = move_plain(ports, w, mode, tol)
         if not change < np.inf:

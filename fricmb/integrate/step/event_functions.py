@@ -16,7 +16,7 @@ from fricmb.integrate.model.friction_cone import cone_margin, squared_margin, st
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
 from fricmb.integrate.step.radau_step import Accuracy, OneStep
 
@@ -27,7 +27,7 @@ BEGINS = 1e-13
 
 @block
 def find_changing_contact(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, found: Floats, address: Ints
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, found: Floats
 ) -> int:
     """Contact that changes its mode first within the step just solved, or -1; ``found`` (1,) about where, in (0, 1].
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.accelerations import complete
@@ -104,20 +104,54 @@ def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Flo
 
 
 @kernel
-def prepare_at(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, keep: bool, address: Ints) -> bool:
+def prepare_at(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, keep: bool) -> bool:
     """Factors for a step h from y, with the Jacobian there where it changes; see ``prepare``."""
     again = packed.elements.address.shape[0] > 0 or one.w.Fin.shape[1] > y.F.shape[0]
     if again:
         set_instant(packed.signals, s, y.t, y.q, y.v)
-    return prepare(packed, one.tab, s, one.fac, one.w, one.counts, h, again, keep, address)
+    return prepare(packed, one.tab, s, one.fac, one.w, one.counts, h, again, keep)
+
+
+@declared
+def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """:func:`attempt` on an exact structure; see ``collocation.attempt_step``."""
+    raise NotImplementedError
+
+
+@declared
+def exact_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """:func:`finish` on an exact structure; see ``collocation.finish_step``."""
+    raise NotImplementedError
+
+
+@kernel
+def is_exact(one: OneStep) -> bool:
+    """Whether the structure is exact."""
+    return bool(one.exact.ladder.shape[0] > 0)
+
+
+@kernel
+def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """Solve a step h from y (values in ``one.st``, ``one.w``).  False without convergence."""
+    if is_exact(one):
+        return exact_attempt(packed, s, y, one, acc, h)
+    return radau_attempt(packed, s, y, one, acc, h)
+
+
+@kernel
+def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """Put the end of the step into y, with forces and accelerations."""
+    if is_exact(one):
+        return exact_finish(packed, s, y, one, acc, h)
+    return radau_finish(packed, s, y, one, acc, h)
 
 
 @block
-def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
-    """Solve the stages of a step h from y (values in ``one.st``, ``one.w``).  False without convergence."""
+def radau_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """:func:`attempt` by the stages of Radau IIA."""
     n = y.q.shape[0]
     st, w, tab = one.st, one.w, one.tab
-    if not prepare_at(packed, s, y, one, h, h == ladder(h, ONE_STEP_RUNGS), address):
+    if not prepare_at(packed, s, y, one, h, h == ladder(h, ONE_STEP_RUNGS)):
         return False
     for i in range(n):
         st.psi_v[i] = y.v[i]
@@ -129,10 +163,10 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
         for j in range(tab.c.shape[0]):
             st.hA[i, j] = h * tab.A[i, j]
     newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
-    found = start_on_last(packed, y, tab, st, w, one.last_t, one.last_h, h) and solve(packed, s, y, one, address)
+    found = start_on_last(packed, y, tab, st, w, one.last_t, one.last_h, h) and solve(packed, s, y, one)
     if not found:
         start_at_rest(packed, y, tab, st, w, h)
-        found = solve(packed, s, y, one, address)
+        found = solve(packed, s, y, one)
     one.last_t = y.t
     one.last_h = h if found else 0.0
     if found and w.Fin.shape[1] > y.F.shape[0]:
@@ -145,10 +179,10 @@ def attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h
 
 
 @kernel
-def solve(packed: Packed, s: Scratch, y: State, one: OneStep, address: Ints) -> bool:
+def solve(packed: Packed, s: Scratch, y: State, one: OneStep) -> bool:
     """Solve the stages from the values that stand in them."""
     one.counts[2] += one.tab.c.shape[0]
-    return solve_stages(packed, one.tab, s, one.fac, one.st, one.w, y.mode, one.tol, one.scale, address) > 0
+    return solve_stages(packed, one.tab, s, one.fac, one.st, one.w, y.mode, one.tol, one.scale) > 0
 
 
 @kernel
@@ -169,8 +203,8 @@ def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
 
 
 @block
-def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints) -> bool:
-    """Put the end of the step into y, with forces and accelerations."""
+def radau_finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """:func:`finish` by the stages of Radau IIA."""
     st, w, tab = one.st, one.w, one.tab
     n_s = tab.c.shape[0]
     y.t = y.t + h
@@ -186,7 +220,7 @@ def finish(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h:
         y.z[a] = w.z[n_s - 1, a]
     for a in range(y.n.shape[0]):
         y.n[a] = w.n[n_s - 1, a]
-    return complete(packed, s, y, w.sizes, w.pivots, address)
+    return complete(packed, s, y, w.sizes, w.pivots)
 
 
 @kernel

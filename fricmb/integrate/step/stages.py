@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_instant, structure_force
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Problem
 from fricmb.integrate.step.contact_convergence import share_noise
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.contact_unknowns import PortState
@@ -94,9 +94,24 @@ def stage_residual(packed: Packed, s: Scratch, st: Stages, w: PortState, mode: C
             st.res[i, a] = value
 
 
+@declared
+def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages) -> None:
+    """:func:`structure_correction` of a narrow structure; see ``band_matrix``."""
+    raise NotImplementedError
+
+
+@kernel
+def structure_correction(packed: Packed, tab: Tableau, fac: Factor, st: Stages) -> None:
+    """DV = -S^-1 res over all stages."""
+    if packed.structure.half < 0:
+        correct_dense(packed, tab, fac, st)
+    else:
+        correct_band(packed, tab, fac, st)
+
+
 @block
-def structure_correction(packed: Packed, tab: Tableau, fac: Factor, st: Stages, address: Ints) -> None:
-    """DV = -S^-1 res over all stages, by the inverses."""
+def correct_dense(packed: Packed, tab: Tableau, fac: Factor, st: Stages) -> None:
+    """:func:`structure_correction` by the inverses."""
     n = st.V.shape[1]
     s = st.V.shape[0]
     T, Tinv, res, y, dV = tab.T, tab.Tinv, st.res, st.y, st.dV
@@ -154,7 +169,6 @@ def solve_stages(
     mode: Codes,
     tol: Floats,
     scale: Floats,
-    address: Ints,
 ) -> int:
     """Solve for V and the port unknowns from their present values (tol (n_c,), scale (n,): accuracy of velocities).
 
@@ -176,7 +190,7 @@ def solve_stages(
     w.G[:] = fac.G[fac.slot]
     for iteration in range(12):
         stage_residual(packed, s, st, w, mode)
-        structure_correction(packed, tab, fac, st, address)
+        structure_correction(packed, tab, fac, st)
         for i in range(n_s):
             for c in range(m):
                 Fo[i, c] = w.F[i, c]
@@ -190,7 +204,7 @@ def solve_stages(
                         gb[i, m + c] += fac.Nv[c, a] * dV[i, a]
                         for j in range(n_s):
                             gb[i, m + c] += st.hA[i, j] * fac.Nq[c, a] * dV[j, a]
-        if solve_ports(ports, packed.laws, s, w, st.hA, mode, tol, address) < 0:
+        if solve_ports(ports, packed.laws, s, w, st.hA, mode, tol) < 0:
             return -1
         change = 0.0
         for j in range(n_s):

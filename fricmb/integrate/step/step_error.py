@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.model.structure import Structure
-from fricmb.integrate.problem import LAW_SMOOTH, STICK, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, STICK
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, state_noise, widest
+from fricmb.integrate.step.radau_step import Accuracy, OneStep, is_exact, state_noise, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 
@@ -68,11 +68,23 @@ def state_error(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float)
     return worst
 
 
+@declared
+def exact_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """:func:`step_error` on an exact structure; see ``collocation.finish_step``."""
+    raise NotImplementedError
+
+
+@kernel
+def step_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Error of the step just solved in units of the tolerance."""
+    if is_exact(one):
+        return exact_error(packed, s, y, one, acc, h)
+    return radau_error(packed, s, y, one, acc, h)
+
+
 @block
-def step_error(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float, address: Ints
-) -> float:
-    """Largest scaled error: the last Legendre coefficients of velocity, position, states, against tolerance."""
+def radau_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """:func:`step_error` by the last Legendre coefficients of velocity, position, states over the stages."""
     st, tab = one.st, one.tab
     n_s = tab.c.shape[0]
     worst = 0.0

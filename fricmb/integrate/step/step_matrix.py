@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
-from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_complex
 from fricmb.integrate.compile.room import Layout
@@ -80,7 +80,7 @@ def changes(problem: Problem) -> bool:
 @kernel
 def prepare(
     packed: Packed, tab: Tableau, s: Scratch, fac: Factor, w: PortState, counts: Ints, h: float, again: bool,
-    keep: bool, address: Ints,
+    keep: bool,
 ) -> bool:  # fmt: skip
     """Make the factor for step h the present one; False where the matrix is singular.
 
@@ -104,7 +104,7 @@ def prepare(
         fac.filled = k
     fac.slot = k
     counts[4] += 1
-    made[k] = h if factorise(packed, tab, h, fac, w, address) else 0.0
+    made[k] = h if factorise(packed, tab, h, fac, w) else 0.0
     return bool(made[k] == h)
 
 
@@ -125,9 +125,23 @@ def forget(fac: Factor) -> None:
     fac.filled = 0
 
 
-@block
-def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState, address: Ints) -> bool:
+@declared
+def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState) -> bool:
+    """:func:`factorise` of a narrow structure; see ``band_matrix``."""
+    raise NotImplementedError
+
+
+@kernel
+def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState) -> bool:
     """Fill the present slot for h from the Jacobian.  False where the matrix is singular."""
+    if packed.structure.half < 0:
+        return factorise_dense(packed, tab, h, fac, w)
+    return factorise_band(packed, tab, h, fac, w)
+
+
+@block
+def factorise_dense(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState) -> bool:
+    """:func:`factorise` by inverses."""
     start, index, M = packed.structure.first, packed.structure.column, packed.structure.M
     K, C, S, X = fac.K, fac.C, fac.S, fac.X
     W, Wn, var = packed.ports.W, packed.ports.Wn, packed.ports.var
@@ -146,7 +160,7 @@ def factorise(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState,
             for e in range(start[i], start[i + 1]):
                 # transposed: LAPACK reads by columns
                 S[index[e], i] = M[e] + sigma * (C[e] + sigma * K[e])
-        if n > 0 and solve_complex(address[1], S, inverse, w.sizes, w.pivots) != 0:
+        if n > 0 and solve_complex(S, inverse, w.sizes, w.pivots) != 0:
             return False
         # right-hand sides were columns for LAPACK, rows for us: transpose back
         for i in range(n):

@@ -7,7 +7,7 @@ import math
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
-from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints
+from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.taylor.account import lose_sliding, pay, pay_touched
 from fricmb.integrate.taylor.correction import add_correction, correct, plain_force_change, plain_source
 from fricmb.integrate.taylor.event_heap import push_due
@@ -75,17 +75,17 @@ def weigh_groups(net: Net, tau: float, h: float) -> None:
 
 
 @kernel
-def search_touched(net: Net, count: int, changed: int, tau: float, places: Ints) -> None:
+def search_touched(net: Net, count: int, changed: int, tau: float) -> None:
     """When the modes of the changed contact and of those end that the correction may bring to their end."""
-    push_due(net, changed, taylor_search(net, changed, tau, places))
+    push_due(net, changed, taylor_search(net, changed, tau))
     for a in range(count):
         other = net.owner[net.local[a]]
         if other >= 0 and other != changed and net.slack[other] < 0.0:
-            push_due(net, other, taylor_search(net, other, tau, places))
+            push_due(net, other, taylor_search(net, other, tau))
     for slot in range(net.n_touched):
         other = net.groups.here[slot]
         if other != changed and net.slack[other] < 0.0:
-            push_due(net, other, taylor_search(net, other, tau, places))
+            push_due(net, other, taylor_search(net, other, tau))
 
 
 @kernel
@@ -164,7 +164,7 @@ def change_at_end(net: Net, c: int, tau: float) -> None:
 
 @block
 @long_loops
-def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
+def taylor_change(net: Net, c: int, tau: float) -> int:
     """Contact c changes its mode at tau; returns 0, or 1 where the correction would touch too many dofs."""
     if has_planes(net):
         change_at_end(net, c, tau)
@@ -176,7 +176,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
     kind = turn(net, c, tau, h)
     if kind < 0:
         # it only touched 0 and slips on
-        push_due(net, c, taylor_search(net, c, tau, places))
+        push_due(net, c, taylor_search(net, c, tau))
         return 0
     if plain:
         plain_source(net, c, tau, was, before)
@@ -201,7 +201,7 @@ def taylor_change(net: Net, c: int, tau: float, places: Ints) -> int:
         forget(net, count)
         return 0
     apply_correction(net, count, c, tau, h)
-    search_touched(net, count, c, tau, places)
+    search_touched(net, count, c, tau)
     forget(net, count)
     if kind == EVENT_SLIP and not plain:
         ask_again(net, c, tau, t)

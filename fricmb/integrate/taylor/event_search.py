@@ -11,7 +11,7 @@ import math
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import STICK, Floats, Ints
+from fricmb.integrate.problem import STICK, Floats
 from fricmb.integrate.step.crossing import evaluate, lowest_between, root_between
 from fricmb.integrate.taylor.layout import LASTS, SHIFTED, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
@@ -171,7 +171,7 @@ def end_of_hold(net: Net, c: int, low: float) -> float:
 
 
 @block
-def taylor_search(net: Net, c: int, low: float, places: Ints) -> float:
+def taylor_search(net: Net, c: int, low: float) -> float:
     """When, from ``low`` on, the present mode of contact c ends in this step (s), or inf."""
     h = net.step
     net.n_searches += 1

@@ -64,11 +64,11 @@ def all_series(net: Net, h: float) -> bool:
     """Polynomials for a step h, by as many passes as they take; whether anything accelerates."""
     net.made = h
     if not has_planes(net):
-        return taylor_series(net, h, net.places)
+        return taylor_series(net, h)
     forget_directions(net)
-    busy = taylor_series(net, h, net.places)
+    busy = taylor_series(net, h)
     for _ in range(PASSES - 1 if largest_off(net) >= 0.0 else 0):
-        busy = taylor_series(net, h, net.places)
+        busy = taylor_series(net, h)
         if largest_off(net) <= ENOUGH * net.tol * net.fastest:
             break
     return busy

@@ -50,7 +50,7 @@ class Net(Layout):
     Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (3, n).
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
-    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end. ``places``: table of blocks.
+    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.
     ``groups``: what contacts need that are not plain.
     """
 
@@ -158,7 +158,6 @@ class Net(Layout):
     out_mode: Codes2
     out_x: Floats2
     stops: Floats
-    places: Ints
     groups: Groups
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.kept import once_per
@@ -124,6 +124,7 @@ def _fit() -> Floats:
 
 def net_of(problem: Problem, degree: int) -> Net:
     """The arrays of a run with polynomials of this degree, all but what is kept of it; made once."""
+    load_blocks(*BLOCKS)
     return once_per(problem, ("taylor", degree), lambda: _net(problem, degree))
 
 
@@ -144,7 +145,7 @@ def _net(problem: Problem, P: int) -> Net:
         "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
         "flat": z((3, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
         "place": np.full(n, -1, dtype=i), "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)),
-        "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)), "stops": z(1), "places": addresses(*BLOCKS),
+        "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)), "stops": z(1),
         "groups": groups,
     }  # fmt: skip
     return room(Net(**{name: solid(arrays[name]) for name in Net._fields}))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
-from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.integrate.problem import SLIP, Floats
 from fricmb.integrate.taylor.curve_check import curve_part
 from fricmb.integrate.taylor.friction_curve import friction_row, slip_law
 from fricmb.integrate.taylor.group_forces import factor_group, is_held, solve_group, stuck_contact
@@ -187,7 +187,7 @@ def curves_hold(net: Net) -> float:
 
 @block
 @long_loops
-def taylor_series(net: Net, h: float, places: Ints) -> bool:
+def taylor_series(net: Net, h: float) -> bool:
     """Fill Q, R and the groups' forces for a step h from the state; returns whether anything accelerates."""
     n = net.q.shape[0]
     free = net.free

@@ -129,7 +129,7 @@ def release_groups(net: Net) -> None:
     for gi in range(count):
         largest = max(largest, net.groups.group_start[gi + 1] - net.groups.group_start[gi])
     for turn in range(4 * largest + 8 if count > 0 else 0):
-        taylor_series(net, net.step, net.places)
+        taylor_series(net, net.step)
         changed = False
         for gi in range(count):
             if release_worst(net, gi, turn < 2 * largest + 4):
@@ -154,7 +154,7 @@ def settle(net: Net, given: bool) -> None:
             net.mark[c] = displacement(net, c, net.q[net.first_dof[c]], 0.0)
     signal_series(net, net.time, h)
     look_at_speeds(net, given, before_it)
-    taylor_series(net, h, net.places)
+    taylor_series(net, h)
     release_plain(net)
     release_groups(net)
     for c in range(net.mode.shape[0]):

@@ -45,7 +45,7 @@ def find_ends(net: Net) -> None:
             continue
         net.since[c] = 0.0 if net.since[c] == AT_END else -1.0
         if net.slack[c] <= 0.0:
-            push_due(net, c, taylor_search(net, c, 0.0, net.places))
+            push_due(net, c, taylor_search(net, c, 0.0))
 
 
 @kernel
@@ -93,7 +93,7 @@ def go_through(net: Net) -> int:
         net.n_here += 1
         c = net.heap_c[0]
         pop_due(net)
-        if taylor_change(net, c, end, net.places) == 1:
+        if taylor_change(net, c, end) == 1:
             return WIDE
 
 

@@ -113,7 +113,7 @@ def drive(run: Run) -> int:
         h = next_length(run)
         run.fault = SOUND
         if run.fixed_step > 0.0:
-            if not take_step(run, HERE, THERE, t, h, run.places):
+            if not take_step(run, HERE, THERE, t, h):
                 run.n_unsettled += 1
             if not is_finite(run) or run.fault == NO_NUMBER:
                 return NOT_FINITE
@@ -122,9 +122,9 @@ def drive(run: Run) -> int:
             accept(run, THERE, t + h)
             arrive(run, t + h)
             continue
-        settled = take_step(run, HERE, WHOLE, t, h, run.places)
-        settled = take_step(run, HERE, MIDDLE, t, 0.5 * h, run.places) and settled
-        settled = take_step(run, MIDDLE, THERE, t + 0.5 * h, 0.5 * h, run.places) and settled
+        settled = take_step(run, HERE, WHOLE, t, h)
+        settled = take_step(run, HERE, MIDDLE, t, 0.5 * h) and settled
+        settled = take_step(run, MIDDLE, THERE, t + 0.5 * h, 0.5 * h) and settled
         if not is_finite(run) or run.fault == NO_NUMBER:
             if h <= run.shortest:
                 return NOT_FINITE

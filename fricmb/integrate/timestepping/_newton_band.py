@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece
 from fricmb.integrate.timestepping._band import add_contacts, assemble, factorise, solve, times_matrix
@@ -76,7 +76,7 @@ def add_forces(run: Run, h: float, P: Floats, r: Floats) -> None:
 
 @block
 @long_loops
-def newton_band(run: Run, h: float, F: Floats, g: Floats, places: Ints) -> bool:
+def newton_band(run: Run, h: float, F: Floats, g: Floats) -> bool:
     """Minimise the merit over dv."""
     n = run.dv.shape[0]
     r, dv, step, base = run.turn, run.dv, run.trial, run.base

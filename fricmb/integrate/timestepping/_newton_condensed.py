@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.block_places import PLACES
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.compile.lapack import solve_real
-from fricmb.integrate.problem import Floats, Floats2, Ints
+from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import all_flat, hold_skipped, keep_piece, project, same_piece
 from fricmb.integrate.timestepping._descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
 from fricmb.integrate.timestepping._run import Run
-
-DGESV = PLACES.index("dgesv")
 
 
 @kernel
@@ -32,7 +29,7 @@ def condensed_merit(run: Run, F: Floats, D: Floats2, phi: Floats, g: Floats) -> 
 
 @block
 @long_loops
-def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -> bool:
+def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats) -> bool:
     """Minimise the merit over phi."""
     m = run.phi.shape[0]
     phi, step, base = run.phi, run.move, run.base
@@ -55,7 +52,7 @@ def newton_condensed(run: Run, D: Floats2, F: Floats, g: Floats, places: Ints) -
                 run.rhs[a] = run.P[a] - phi[a]
         keep_piece(run)
         flat = all_flat(run)
-        solve_real(places[DGESV], run.J, run.rhs, m, run.sizes, run.pivots)
+        solve_real(run.J, run.rhs, m, run.sizes, run.pivots)
         size = 0.0
         scale = 0.0
         for a in range(m):

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.lapack import load_lapack
+from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import room, room_type
 from fricmb.integrate.csr import on_one_pattern
 from fricmb.integrate.kept import once_per
@@ -127,6 +128,8 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> Run:
     if n * (2.0 * band + 1.0) > LARGEST:
         raise MemoryError(f"timestepping: a band of half width {band} for {n} degrees of freedom is too wide")
     k = m if condensed else 0
+    load_lapack()
+    load_blocks("newton_condensed" if condensed else "newton_band", *BLOCKS)
     z, i = np.zeros, np.int64
     arrays = {
         **dict.fromkeys(room_type(Run).numbers, 0), **statics, **_states(n, m, nc, n_u),
@@ -139,7 +142,7 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> Run:
         "Y": z((slots if k else 0, k, n)), "D": z((slots if k else 0, k, k)), "J": z(k * k),
         "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "s": scratch_of(problem),
         "part": z(n, i), "part_of": z(nc, i), "largest": z((1, 3)), "events": z(1, i),
-        **no_rows(n, m, nc, capacity), "places": addresses("newton_condensed" if condensed else "newton_band", *BLOCKS),
+        **no_rows(n, m, nc, capacity),
     }  # fmt: skip
     return room(Run(**{name: _solid(arrays[name]) for name in Run._fields}))
 

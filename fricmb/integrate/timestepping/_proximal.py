@@ -22,7 +22,7 @@ matrix 1 + R P' D.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import residual
 from fricmb.integrate.timestepping._newton_band import newton_band
@@ -34,10 +34,10 @@ PROXIMAL = 40
 
 
 @kernel
-def solve_contacts(run: Run, slot: int, h: float, F: Floats, g: Floats, places: Ints) -> bool:
+def solve_contacts(run: Run, slot: int, h: float, F: Floats, g: Floats) -> bool:
     """Forces F of all contacts and g at the end of the step; F holds a first guess.
 
-    The residual |F - P(F - g / soft)| is at most ``x[RESIDUAL]`` times the largest radius.
+    The residual |F - P(F - g / soft)| is at most ``run.residual`` times the largest radius.
     """
     condensed = run.condensed == 1
     largest = 0.0
@@ -50,9 +50,9 @@ def solve_contacts(run: Run, slot: int, h: float, F: Floats, g: Floats, places: 
         if stopped():
             break
         if condensed:
-            fine = newton_condensed(run, run.D[slot], F, g, places)
+            fine = newton_condensed(run, run.D[slot], F, g)
         else:
-            fine = newton_band(run, h, F, g, places)
+            fine = newton_band(run, h, F, g)
         for a in range(F.shape[0]):
             F[a] = run.P[a]
         if fine and residual(run, F, g) <= run.residual * largest:

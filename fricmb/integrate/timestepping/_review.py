@@ -14,7 +14,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size, stick_limit
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.problem import STICK, Ints
+from fricmb.integrate.problem import STICK
 from fricmb.integrate.timestepping._balls import slide_radius
 from fricmb.integrate.timestepping._break_away import break_away, pressed_in_slip, will_break
 from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FREE, HELD, PASSED
@@ -192,7 +192,7 @@ def mean_speed(run: Run, one: int, two: int, c: int) -> float:
 
 
 @block
-def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int, places: Ints) -> float:
+def review_balls(run: Run, one: int, two: int, t: float, h: float, turn: int) -> float:
     """New balls from what was found; returns their largest change relative to the largest radius."""
     worst = 0.0
     largest = 1e-300

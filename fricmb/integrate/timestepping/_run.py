@@ -53,7 +53,7 @@ class Run(Layout):
     ``n_rows`` and ``n_events`` so far; ``n_stop`` next stop; ``n_unsettled`` steps. ``condensed`` whether the contacts
     are solved so; ``varying`` whether normal forces vary.
     Rows: ``row_t``, ``row_q``, ``row_v``, ``row_F``, ``row_g``, ``row_N``, ``row_mode``, ``row_loss``, ``row_x``;
-    ``event`` (e, 3). ``places``: table of blocks.
+    ``event`` (e, 3).
     """
 
     start: Ints
@@ -200,4 +200,3 @@ class Run(Layout):
     row_loss: Floats2
     row_x: Floats2
     event: Floats2
-    places: Ints

@@ -71,7 +71,7 @@ def probe(run: Run, t: float) -> None:
     h = min(PROBE * run.step, 0.5 * (run.s.window[1] - t))
     if not h > 0.0:
         return
-    take_step(run, HERE, WHOLE, t, h, run.places)
+    take_step(run, HERE, WHOLE, t, h)
     for c in range(run.mode.shape[1]):
         if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == STICK and run.known[WHOLE, c] == 1:
             run.known[HERE, c] = 1
@@ -116,7 +116,7 @@ def begin(run: Run, given: bool) -> None:
             run.mode[HERE, c] = STICK if still else SLIP
     if not given and run.mode.shape[1] > 0:
         # what nothing can hold slips from the start
-        take_step(run, HERE, WHOLE, run.time, PROBE * run.step, run.places)
+        take_step(run, HERE, WHOLE, run.time, PROBE * run.step)
         for c in range(run.mode.shape[1]):
             if run.mode[HERE, c] == STICK and run.mode[WHOLE, c] == SLIP:
                 run.mode[HERE, c] = SLIP

@@ -16,7 +16,6 @@ from fricmb.integrate.problem import (
     OPEN,
     SLIP,
     STICK,
-    Ints,
 )
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.timestepping._balls import mark_stuck, slide_radius
@@ -41,7 +40,7 @@ ROUNDS = 16
 
 @block
 @long_loops
-def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) -> bool:
+def take_step(run: Run, one: int, two: int, t: float, h: float) -> bool:
     """Step from slot one at t to slot two at t + h; whether all that is lagged has settled."""
     n = run.load.shape[0]
     condensed = run.condensed == 1
@@ -65,7 +64,7 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
             break
         run.n_rounds += 1
         free_motion(run, one, two, h, slot)
-        if not solve_contacts(run, slot, h, run.F[two], run.g[two], places):
+        if not solve_contacts(run, slot, h, run.F[two], run.g[two]):
             break
         mark_stuck(run, run.F[two], run.g[two])
         if condensed:
@@ -75,7 +74,7 @@ def take_step(run: Run, one: int, two: int, t: float, h: float, places: Ints) ->
             add_normals(run, two, -1.0)
             change = find_normals(run, one, two, t, h)
             add_normals(run, two, 1.0)
-        change = max(change, review_balls(run, one, two, t, h, turn, places))
+        change = max(change, review_balls(run, one, two, t, h, turn))
         if change <= run.settled:
             settled = True
             break

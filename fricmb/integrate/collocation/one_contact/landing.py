@@ -18,7 +18,7 @@ from fricmb.integrate.collocation.one_contact.step import (
 )  # fmt: skip
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, Ints
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK
 from fricmb.integrate.step.crossing import evaluate, lowest_between, polynomial, root_between
 
 
@@ -170,7 +170,7 @@ def snap(run: Run, r: float, tau: float) -> None:
 
 
 @block
-def arrive(run: Run, since: float, address: Ints) -> None:
+def arrive(run: Run, since: float) -> None:
     """The contact has come to g = 0: project, settle what follows, note the transition."""
     before = run.n[0]
     to_dofs(run, 0, run.w2.shape[1], since)
@@ -184,7 +184,7 @@ def arrive(run: Run, since: float, address: Ints) -> None:
 
 
 @block
-def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float, address: Ints) -> float:
+def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float) -> float:
     """Try to end the slip with a step of ``root * h``; returns the time gone, or -(its error, at least 1) if it cannot.
 
     The step's length is corrected by r/r' until what is left is small enough to be crossed to second order.
@@ -197,9 +197,9 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
     for _ in range(8):
         resample(run, m, ratio)
         accelerations(run, 0, run.w2.shape[1], since)
-        transfer_weights(run, length, 0, stiff, run.places)
+        transfer_weights(run, length, 0, stiff)
         weigh(run, length)
-        if not solve_slip(run, 0, length, tol, run.places):
+        if not solve_slip(run, 0, length, tol):
             return -1e6
         error = step_error(run, length, tol)
         if error > 1.0:

@@ -9,11 +9,11 @@ from fricmb.integrate.collocation.one_contact.room import AT_BLOCKS, AT_LENGTH, 
 from fricmb.integrate.collocation.one_contact.slip_directions import start_direction
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import SLIP, STICK, Ints
+from fricmb.integrate.problem import SLIP, STICK
 
 
 @block
-def begin_phase(run: Run, z: int, b: int, address: Ints) -> None:
+def begin_phase(run: Run, z: int, b: int) -> None:
     """Block states of structure z at the present state, its loads, and a row of the phase."""
     n = run.pos.shape[0]
     t = run.time

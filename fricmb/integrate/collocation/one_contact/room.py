@@ -37,7 +37,7 @@ class Run(Layout):
     State between phases: ``pos`` with its low part, ``vel``, ``scale`` (n,); ``g``, ``n`` (m,); ``time`` with its
     low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``mode``.  ``used`` (3,) rows of
     steps, phases and events; ``counts`` (5,) work done (see Counters).
-    ``steps``, ``kinds``, ``phases``, ``events``: rows of what is kept.  ``places``: table of the blocks.
+    ``steps``, ``kinds``, ``phases``, ``events``: rows of what is kept.
     """
 
     w2: Floats2
@@ -133,4 +133,3 @@ class Run(Layout):
     kinds: Ints2
     phases: Floats2
     events: Floats2
-    places: Ints

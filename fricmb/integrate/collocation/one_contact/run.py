@@ -31,7 +31,7 @@ from fricmb.integrate.collocation.one_contact.step import (
 from fricmb.integrate.collocation.one_contact.stick import release_time
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK, Ints
+from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.run.stop import stopped
 
 #: Why a run came back: at its end; no space for rows; for a progress report; or what went wrong.
@@ -60,12 +60,12 @@ def rung_of(run: Run, h: float) -> int:
 
 
 @block
-def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) -> int:
+def slip_phase(run: Run, t_end: float, tol: float, stiff: float) -> int:
     """Slip until it ends, the run ends, or the reference point should move along; DONE, or what went wrong."""
     n = run.pos.shape[0]
     m = run.belt.shape[0]
     s = run.basis.shape[0]
-    begin_phase(run, 0, n, run.places)
+    begin_phase(run, 0, n)
     rates(run)
     since = 0.0
     taken = 0
@@ -84,14 +84,14 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
         if h >= left:
             h = left
             slot = 0
-            transfer_weights(run, h, 0, stiff, run.places)
+            transfer_weights(run, h, 0, stiff)
         else:
             slot = on_ladder(run, rung, stiff)
         weigh(run, h)
         for a in range(m):
             for i in range(s):
                 run.direction[a, i] = run.n[a]
-        if not solve_slip(run, slot, h, tol, run.places):
+        if not solve_slip(run, slot, h, tol):
             run.next_step = 0.5 * h
             run.counts[1] += 1
             continue
@@ -101,9 +101,9 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
         r0 = math.sqrt(r0)
         stop = first_stop(run, r0, h, tol)
         if stop < 1.5:
-            gone = land(run, h, stop, since, tol, stiff, run.places)
+            gone = land(run, h, stop, since, tol, stiff)
             if gone > 0.0:
-                arrive(run, since + gone, run.places)
+                arrive(run, since + gone)
                 return DONE
             run.counts[1] += 1
             run.next_step = max(stop * h * length_factor(-gone, s), 0.01 * h)
@@ -124,14 +124,14 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float, address: Ints) 
             fresh = False
         run.next_step = h * length_factor(error, s) * 1.0000001
         if nearly_stopped(run, since, tol, run.rhs[s - 1], h):
-            arrive(run, since, run.places)
+            arrive(run, since)
             return DONE
     to_dofs(run, 0, n, since)
     return DONE
 
 
 @block
-def stick_phase(run: Run, t_end: float, address: Ints) -> int:
+def stick_phase(run: Run, t_end: float) -> int:
     """Stick until the force reaches its cone or the run ends."""
     n = run.pos.shape[0]
     m = run.belt.shape[0]
@@ -139,7 +139,7 @@ def stick_phase(run: Run, t_end: float, address: Ints) -> int:
     contact_acceleration(run)
     for a in range(m):
         run.free[a, 0] = run.out[1, a]
-    begin_phase(run, 1, b, run.places)
+    begin_phase(run, 1, b)
     accelerations(run, 1, b, 0.0)
     for a in range(m):
         # ``free`` holds the force at the start and its rate beside the blocks' part
@@ -205,9 +205,9 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float)
         t = run.time
         low = run.time_low
         if run.mode == STICK:
-            code = stick_phase(run, t_end, run.places)
+            code = stick_phase(run, t_end)
         else:
-            code = slip_phase(run, t_end, tol, stiff, run.places)
+            code = slip_phase(run, t_end, tol, stiff)
         if code != DONE:
             return code
         for i in range(run.pos.shape[0]):

@@ -13,11 +13,11 @@ from fricmb.integrate.collocation.one_contact.slip_directions import relative_ve
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lanes import LANES, all_lanes, lanes, set_lanes, total
-from fricmb.integrate.problem import SLIP, Ints
+from fricmb.integrate.problem import SLIP
 
 
 @block
-def transfer_weights(run: Run, h: float, slot: int, stiff: float, address: Ints) -> None:
+def transfer_weights(run: Run, h: float, slot: int, stiff: float) -> None:
     """Fill a slot of the tables."""
     free_weights(run, run.modal[0] == 1, h, stiff, slot)
     port_weights(run, run.modal[0] == 1, h, 0)
@@ -40,7 +40,7 @@ def on_ladder(run: Run, rung: int, stiff: float) -> int:
             for r in range(RUNGS + 1):
                 if run.slots[r] == slot:
                     run.slots[r] = -1
-        transfer_weights(run, run.ladder[rung], slot, stiff, run.places)
+        transfer_weights(run, run.ladder[rung], slot, stiff)
         run.slots[rung] = slot
         run.counts[4] += 1
     return int(slot)
@@ -70,7 +70,7 @@ def free_answer(run: Run, slot: int, h: float) -> None:
 
 
 @block
-def solve_slip(run: Run, slot: int, h: float, tol: float, address: Ints) -> bool:
+def solve_slip(run: Run, slot: int, h: float, tol: float) -> bool:
     """Solve a slip step from the directions that stand at the nodes: directions and relative velocities there."""
     m = run.belt.shape[0]
     free_answer(run, slot, h)

@@ -18,7 +18,7 @@ from fricmb.integrate.collocation.one_contact.prepare import Model, Rows, model,
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lanes import padded
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.problem import Problem
@@ -55,6 +55,7 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
 
     Weights by step size are those of the last run on a structure of the same numbers, else none.
     """
+    load_blocks(*BLOCKS)
     size = problem.n, problem.m, s
     p = model(problem)
     content = once_per(problem, "model content", lambda: b"".join([np.asarray(held).tobytes() for held in p.values()]))
@@ -127,7 +128,7 @@ def _made(p: Model, s: int) -> Run:
     arrays |= {name: np.zeros(size, np.int64) for name, size in whole.items()}
     arrays |= {name: held.copy() if isinstance(held, np.ndarray) else held for name, held in p.items()}
     arrays |= dict.fromkeys(NUMBERS, 0) | nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
-    return room(Run(**arrays, slots=slots, unit=np.eye(s, wide), places=addresses(*BLOCKS)))
+    return room(Run(**arrays, slots=slots, unit=np.eye(s, wide)))
 
 
 def _begin_anew(run: Run, p: Model) -> None:
