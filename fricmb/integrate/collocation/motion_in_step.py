@@ -94,9 +94,7 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, terms: 
             dv = dv * (tau / h) + series[b + j, r]
         return du, dv
     first, second = series[j, :n_s], series[b + j, :n_s]
-    return under_polynomials(
-        ex.w2[0, j], ex.damp[0, j], ex.v0[j], ex.a0[j], 0.0, h, tau, first, second, terms
-    )  # fmt: skip
+    return under_polynomials(ex.w2[0, j], ex.damp[0, j], ex.v0[j], ex.a0[j], 0.0, h, tau, first, second, terms)
 
 
 @kernel

@@ -140,9 +140,7 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
         r[linear.Mi[e]] += linear.M[e] * st.acc[linear.Mj[e]]
     for a in range(m):
         r[n + a] = k.phi_rate[a]
-    friction_residual(
-        mech, k, y.mode, y.n, st.F[i], st.Z[i], st.N[i], st.g[i], st.g[i], st.zd, r, n + m, True,
-    )  # fmt: skip
+    friction_residual(mech, k, y.mode, y.n, st.F[i], st.Z[i], st.N[i], st.g[i], st.g[i], st.zd, r, n + m, True)
     for a in range(nz):
         rate = 0.0
         for j in range(s):

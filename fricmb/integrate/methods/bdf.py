@@ -81,9 +81,7 @@ class Bdf(Integrator):
             from fricmb.integrate import constrained
 
             count = self.stages or constrained.MULTISTEP_STAGES
-            return constrained.run_mechanism(
-                problem, start, t_end, tolerance, count, progress, memory, multistep=True
-            )
+            return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory, multistep=True)
         formula = radau(stages_for(problem, tolerance.rtol, self.stages))
         if np.any(problem.contacts.law == LAW_SMOOTH):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:

@@ -171,9 +171,7 @@ def open_step(
     part[0] = 0.0
     for k in range(ends[0], ends[1]):
         part[k + 1 - ends[0]] = part[k - ends[0]]
-        add_powers(
-            packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots
-        )  # fmt: skip
+        add_powers(packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots)
 
 
 @kernel

@@ -62,9 +62,7 @@ def close_in(packed: Packed, s: Scratch, k: int, x: Floats2, f: Floats2, n_f: in
 
 
 @kernel
-def jump_error(
-    packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float
-) -> float:
+def jump_error(packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float) -> float:
     """What jumps of elements' forces between y and the state at the end of a step leave of velocities, over tolerance.
 
     A jump is what the slopes at both ends of a short piece of the way do not explain.

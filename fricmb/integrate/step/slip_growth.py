@@ -36,9 +36,7 @@ def damped(packed: Packed, k: int) -> float:
 
 
 @kernel
-def drive(
-    laws: Table, row: Ints, z_start: Ints, s: Scratch, k: int, g: Floats, N: float, z: Floats, h: float
-) -> float:
+def drive(laws: Table, row: Ints, z_start: Ints, s: Scratch, k: int, g: Floats, N: float, z: Floats, h: float) -> float:
     """Part of the slope of a smooth law's force by velocity that drives, along the velocity; states follow within h."""
     row0, z0 = row[k], z_start[k]
     d, nz = row[k + 1] - row0, z_start[k + 1] - z0

@@ -197,9 +197,7 @@ def _trajectory(
     events = net.events[: net.n_events].copy()
     events[:, 1] = problem.contacts.of_row[events[:, 1].astype(int)]
     steps = int(net.n_steps)
-    counters = Counters(
-        n_steps=steps, n_rejected=int(net.n_shorter), n_rhs=steps * degree, n_jac=int(net.n_searches)
-    )
+    counters = Counters(n_steps=steps, n_rejected=int(net.n_shorter), n_rhs=steps * degree, n_jac=int(net.n_searches))
     end = Start(
         t=float(net.time), q=net.q.copy(), v=net.v.copy(), z=np.zeros(0),
         mode=net.mode[problem.contacts.row[:-1]],

@@ -160,9 +160,7 @@ def snap(run: Run, r: float, tau: float) -> None:
             lift -= run.b0[a, j] * run.mu_0_N * run.n[a]
         acceleration = run.a[j] + push
         velocity = run.v[j] + lift
-        run.u[j], run.u_low[j] = two_sum(
-            run.u[j], run.u_low[j], velocity * tau + 0.5 * acceleration * tau * tau,
-        )  # fmt: skip
+        run.u[j], run.u_low[j] = two_sum(run.u[j], run.u_low[j], velocity * tau + 0.5 * acceleration * tau * tau)
         jerk = run.k[j] - run.w2[0, j] * lift - run.damp[0, j] * acceleration
         run.v[j] += acceleration * tau + 0.5 * jerk * tau * tau
     run.time, run.time_low = two_sum(run.time, run.time_low, tau)

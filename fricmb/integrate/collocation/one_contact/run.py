@@ -165,9 +165,7 @@ def stick_phase(run: Run, t_end: float) -> int:
     keep_row(run, STICK, b, h)
     for j in range(b):
         x0, x1, x2 = fundamental(run.w2[1, j], run.damp[1, j], h)
-        run.u[j], run.u_low[j] = two_sum(
-            run.u[j], run.u_low[j], run.v[j] * h + run.a[j] * x1 + run.k[j] * x2,
-        )  # fmt: skip
+        run.u[j], run.u_low[j] = two_sum(run.u[j], run.u_low[j], run.v[j] * h + run.a[j] * x1 + run.k[j] * x2)
         run.v[j] += run.a[j] * x0 + run.k[j] * x1
     to_dofs(run, 1, b, h)
     for a in range(m):

@@ -77,9 +77,7 @@ def solve_slip(run: Run, slot: int, h: float, tol: float) -> bool:
     if m == 1:
         relative_velocity(run, slot, 1)
         return True
-    enough = min(
-        1e-6, 0.1 * tol / max(1e-300, run.change[0], run.change[1]) / (run.mu_0_N * h + 1e-300),
-    )  # fmt: skip
+    enough = min(1e-6, 0.1 * tol / max(1e-300, run.change[0], run.change[1]) / (run.mu_0_N * h + 1e-300))
     count = slip_directions(run, slot, max(enough, 1e-28))
     run.counts[2] += max(count, 1)
     run.counts[3] += max(count, 1)

@@ -155,9 +155,7 @@ class SingleRun(Trajectory):
         self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), found[:, :k]]), axis=1)
         return self._totals[:, row] + found[:, k:]
 
-    def _motion(
-        self, row: Ints, tau: Floats, t: Floats, *, with_loss: bool = False
-    ) -> tuple[MotionSamples, Floats]:
+    def _motion(self, row: Ints, tau: Floats, t: Floats, *, with_loss: bool = False) -> tuple[MotionSamples, Floats]:
         """Motion, and the loss to friction if it is wanted."""
         q, v, F, g, mode, loss = self._states(row, tau, t, with_loss=with_loss)
         found = MotionSamples(
