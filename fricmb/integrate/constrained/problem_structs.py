@@ -12,7 +12,7 @@ from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.mechanism import Mechanism
-from fricmb.integrate.model.problem_structs import Spread, Table, _table, spread_of
+from fricmb.integrate.model.problem_structs import Spread, Table, spread_of, table_of
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 
 
@@ -130,7 +130,7 @@ def _pack(problem: Problem) -> Mech:
     linear = Linear(
         M.row, M.column, M.value, K.row, K.column, K.value, C.row, C.column, C.value, B.row, B.column, B.value, m.f
     )
-    table = _table(m.joints.table)
+    table = table_of(m.joints.table)
     rows = np.diff(m.joints.row)
     n_x = np.diff(table.x_start) // 2
     joint = Joint(table, m.joints.row, n_x, m.joints.port, m.joints.one_sided, m.joints.hands_over, m.joints.dropped)
@@ -143,12 +143,12 @@ def _pack(problem: Problem) -> Mech:
         normal = np.where((port_joint >= 0) & (rows[port_joint] == 0), NORMAL_LAW, normal).astype(np.int8)
     port = Port(
         port_joint, solid(contacts.row, np.int64),
-        of_pattern(problem, "softness", lambda: softness(problem, m, port_joint)), _table(m.slip),
+        of_pattern(problem, "softness", lambda: softness(problem, m, port_joint)), table_of(m.slip),
         solid(contacts.w), solid(contacts.law, np.int8),
         solid(contacts.mu_s),
         solid(contacts.mu_0), solid(contacts.z_start, np.int64), normal,
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
-        _table(contacts.law_table), _table(contacts.normal_table),
+        table_of(contacts.law_table), table_of(contacts.normal_table),
     )  # fmt: skip
     p = m.places
     rest = of_pattern(problem, "places", lambda: _place_rows(m))
@@ -156,8 +156,8 @@ def _pack(problem: Problem) -> Mech:
     order, half = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
     size = m.n + int(rows.sum()) + problem.m + problem.n_z
     return room(Mech(
-        linear, places, joint, port, _table(problem.signals.table), _table(problem.elements.table), spread_of(problem),
-        Order(order, band_sizes(size, half)),
+        linear, places, joint, port, table_of(problem.signals.table), table_of(problem.elements.table),
+        spread_of(problem), Order(order, band_sizes(size, half)),
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m),
     ))  # fmt: skip
 

@@ -13,7 +13,7 @@ Methods for special structures know more, and write the same formula as it serve
 - ``collocation/one_contact`` (``stick``, ``phase``): one limit for the run, and |F| with its rate and a bound of its
   second derivative, so that no step passes the instant of release;
 - ``taylor`` (``event_search``, ``turning``, ``landing``, ``starting_modes``): one limit for the run;
-- ``model/friction_discs`` and ``timestepping/_balls``: projections on the set, whose radius they are given;
+- ``model/friction_discs`` and ``timestepping/friction_discs``: projections on the set, whose radius they are given;
 - ``contact/mode_decision``, ``contact/disc_projection``, ``constrained/mode_decision``: sizes beside limits that stand
   still at an instant; ``contact/event_location.passes_by``: a force without any friction beside the limit.
 """

@@ -121,7 +121,8 @@ def softness(problem: Problem) -> float:
     return once_per(problem, "softness", find)
 
 
-def _table(templates: Templates) -> Table:
+def table_of(templates: Templates) -> Table:
+    """Templates as kernels take them."""
     ints = [templates.address, templates.p_start, templates.x_start, templates.form_start, templates.form_index]
     address, p_start, x_start, form_start, form_index = (np.ascontiguousarray(x, dtype=np.int64) for x in ints)
     floats = [templates.p, templates.form_coefficient, templates.form_constant]
@@ -158,6 +159,7 @@ def _pack(problem: Problem) -> Packed:
         (contacts.normal == NORMAL_LAW).astype(np.int8), softness(problem),
     )  # fmt: skip
     return room(Packed(
-        structure, ports, _table(problem.signals.table), _table(contacts.law_table), _table(contacts.normal_table),
-        _table(problem.elements.table), spread_of(problem), np.sort(np.asarray(problem.signals.breakpoints, float)),
+        structure, ports, table_of(problem.signals.table), table_of(contacts.law_table),
+        table_of(contacts.normal_table), table_of(problem.elements.table), spread_of(problem),
+        np.sort(np.asarray(problem.signals.breakpoints, float)),
     ))  # fmt: skip

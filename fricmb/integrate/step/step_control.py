@@ -2,7 +2,8 @@
 
 Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_step.advance`` (5: ``radau``, general
 ``collocation``, ``bdf`` around transitions), ``backward_differences.GROWTH`` (3: ``bdf``), ``constrained/attempt_step``
-(3), ``collocation/one_contact/run.length_factor`` (3), ``taylor/step_loop`` (1.5), ``timestepping/_drive.adapt`` (2).
+(3), ``collocation/one_contact/run.length_factor`` (3), ``taylor/step_loop`` (1.5),
+``timestepping/time_loop.adapt`` (2).
 """
 
 from __future__ import annotations

@@ -99,7 +99,7 @@ class Taylor(Integrator):
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         degree = self.degree or degree_for(tolerance.rtol)
-        with _running:
+        with running:
             net = net_of(problem, degree)
             net = set_start(problem, net, start, t_end, tolerance, self.reach, self.crowd)
             if t_eval is not None:
@@ -112,7 +112,7 @@ class Taylor(Integrator):
 
 
 #: Arrays are kept with the problem, for one run at a time.
-_running = threading.Lock()
+running = threading.Lock()
 
 
 def set_start(

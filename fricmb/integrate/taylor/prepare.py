@@ -11,7 +11,7 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.friction_cone import stick_limits
-from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.model.problem_structs import table_of
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
@@ -61,7 +61,7 @@ def _statics(problem: Problem) -> dict[str, Any]:
     linear, n = problem.linear, problem.n
     structure = once_per(linear, "taylor structure", lambda: _structure(linear, n))
     return {
-        **structure, "signals": _table(problem.signals.table), **_contact_arrays(problem, 1.0 / structure["mass"]),
+        **structure, "signals": table_of(problem.signals.table), **_contact_arrays(problem, 1.0 / structure["mass"]),
     }  # fmt: skip
 
 

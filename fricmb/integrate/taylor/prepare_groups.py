@@ -11,7 +11,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
 from fricmb.integrate.kept import once_per
-from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.model.problem_structs import table_of
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.taylor.groups import SECOND, Groups
@@ -130,7 +130,7 @@ def _group_statics(problem: Problem) -> dict[str, Any]:
     lawful = np.full(m, -1, dtype=np.int64)
     chosen = contacts.row[:-1][contacts.law == LAW_COEFFICIENT]
     lawful[chosen] = np.arange(len(chosen))
-    owner, laws = problem.contacts.of_row, _table(contacts.law_table)
+    owner, laws = problem.contacts.of_row, table_of(contacts.law_table)
     planar = np.full(m, -1, dtype=np.int64)
     first = contacts.row[:-1][np.diff(contacts.row) == 2]
     planar[first], planar[first + 1] = np.arange(len(first)), SECOND

@@ -121,9 +121,9 @@ class TaylorRun(Trajectory):
         net = net_of(problem, self._degree)
         if len(t) == 0:
             return _samples(problem, with_arrays(net, **no_samples(problem.n, problem.m)), slice(0, 0))
-        from fricmb.integrate.taylor.integrator import _running
+        from fricmb.integrate.taylor.integrator import running
 
-        with _running:
+        with running:
             state = self._state_before(float(t[0]))
             for name in STATE:
                 if name != "stops":

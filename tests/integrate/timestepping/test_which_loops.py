@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.timestepping._loops import _left, loops_of
+from fricmb.integrate.timestepping.loops import _left, loops_of
 from fricmb.system import build
 
 LAW = fm.laws.Coulomb(mu_s=0.4, mu_k=0.3)

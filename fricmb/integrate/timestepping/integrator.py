@@ -14,14 +14,14 @@ from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.step_control import SAMPLED
-from fricmb.integrate.timestepping._doubts import kinks, short_phases
-from fricmb.integrate.timestepping._drive import DONE, FULL, NEGATIVE, NOT_FINITE, drive
-from fricmb.integrate.timestepping._layout import HERE
-from fricmb.integrate.timestepping._prepare import refusal, run_of
-from fricmb.integrate.timestepping._run import Run
-from fricmb.integrate.timestepping._scales import add_floors, with_parts
-from fricmb.integrate.timestepping._start import begin
-from fricmb.integrate.timestepping._trajectory import SteppedRun, SteppedStart
+from fricmb.integrate.timestepping.doubts import kinks, short_phases
+from fricmb.integrate.timestepping.layout import HERE
+from fricmb.integrate.timestepping.prepare import refusal, run_of
+from fricmb.integrate.timestepping.room import Run
+from fricmb.integrate.timestepping.scales import add_floors, with_parts
+from fricmb.integrate.timestepping.start import begin
+from fricmb.integrate.timestepping.time_loop import DONE, FULL, NEGATIVE, NOT_FINITE, drive
+from fricmb.integrate.timestepping.trajectory import SteppedRun, SteppedStart
 from fricmb.integrate.trajectory import Counters, Transitions
 
 FAILURES = {

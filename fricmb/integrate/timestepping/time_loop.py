@@ -7,13 +7,13 @@ import math
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.timestepping._error import doubtful, step_error
-from fricmb.integrate.timestepping._free import set_window
-from fricmb.integrate.timestepping._layout import DRIVES, HERE, MIDDLE, NO_NUMBER, SOUND, THERE, WHOLE
-from fricmb.integrate.timestepping._recorder import copy_state, keep_event, keep_row
-from fricmb.integrate.timestepping._run import Run
-from fricmb.integrate.timestepping._start import jump
-from fricmb.integrate.timestepping._step import forces_at_start, take_step
+from fricmb.integrate.timestepping.free_motion import set_window
+from fricmb.integrate.timestepping.layout import DRIVES, HERE, MIDDLE, NO_NUMBER, SOUND, THERE, WHOLE
+from fricmb.integrate.timestepping.recorder import copy_state, keep_event, keep_row
+from fricmb.integrate.timestepping.room import Run
+from fricmb.integrate.timestepping.start import jump
+from fricmb.integrate.timestepping.step import forces_at_start, take_step
+from fricmb.integrate.timestepping.step_error import doubtful, step_error
 
 #: Shortest steps to which steps are shortened until it is clear which transitions they hold.
 COARSE = 1e4

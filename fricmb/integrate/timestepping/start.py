@@ -5,12 +5,12 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
-from fricmb.integrate.timestepping._balls import slide_radius
-from fricmb.integrate.timestepping._free import set_signals, set_window
-from fricmb.integrate.timestepping._layout import HERE, MIDDLE, WHOLE
-from fricmb.integrate.timestepping._recorder import keep_event, keep_row
-from fricmb.integrate.timestepping._run import Run
-from fricmb.integrate.timestepping._step import take_step
+from fricmb.integrate.timestepping.free_motion import set_signals, set_window
+from fricmb.integrate.timestepping.friction_discs import slide_radius
+from fricmb.integrate.timestepping.layout import HERE, MIDDLE, WHOLE
+from fricmb.integrate.timestepping.recorder import keep_event, keep_row
+from fricmb.integrate.timestepping.room import Run
+from fricmb.integrate.timestepping.step import take_step
 
 #: Parts of velocities that are nothing: round-off, and what contacts at rest are solved to.
 ROUND_OFF, CREEP = 1e-12, 1e-9

@@ -1,4 +1,4 @@
-"""Names of places in the arrays of a run (see _run)."""
+"""Names of places in the arrays of a run (see room)."""
 
 # what Run.fault says: nothing; the coefficient is negative; a coefficient or normal force is no number
 SOUND, DRIVES, NO_NUMBER = range(3)

@@ -18,8 +18,7 @@ from fricmb.integrate.problem import (
     STICK,
 )
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.timestepping._balls import mark_stuck, slide_radius
-from fricmb.integrate.timestepping._free import (
+from fricmb.integrate.timestepping.free_motion import (
     add_normals,
     add_responses,
     compliances,
@@ -29,10 +28,11 @@ from fricmb.integrate.timestepping._free import (
     set_signals,
     structure_forces,
 )
-from fricmb.integrate.timestepping._layout import CAUGHT, DRIVES, HELD, HERE, PASSED, SOUND
-from fricmb.integrate.timestepping._proximal import solve_contacts
-from fricmb.integrate.timestepping._review import first_balls, review_balls
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.friction_discs import mark_stuck, slide_radius
+from fricmb.integrate.timestepping.layout import CAUGHT, DRIVES, HELD, HERE, PASSED, SOUND
+from fricmb.integrate.timestepping.proximal_newton import solve_contacts
+from fricmb.integrate.timestepping.review import first_balls, review_balls
+from fricmb.integrate.timestepping.room import Run
 
 #: Most rounds of balls and normal forces in a step.
 ROUNDS = 16

@@ -24,10 +24,10 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.timestepping._balls import residual
-from fricmb.integrate.timestepping._newton_band import newton_band
-from fricmb.integrate.timestepping._newton_condensed import newton_condensed
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.friction_discs import residual
+from fricmb.integrate.timestepping.newton_band import newton_band
+from fricmb.integrate.timestepping.newton_condensed import newton_condensed
+from fricmb.integrate.timestepping.room import Run
 
 #: Most proximal steps.
 PROXIMAL = 40

@@ -7,9 +7,9 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.timestepping._band import assemble, factorise, solve
-from fricmb.integrate.timestepping._layout import NO_NUMBER
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.band import assemble, factorise, solve
+from fricmb.integrate.timestepping.layout import NO_NUMBER
+from fricmb.integrate.timestepping.room import Run
 
 
 @kernel

@@ -1,9 +1,9 @@
-"""When steps of Newton's method are taken, and when it ends; the same in the band and condensed (see _proximal)."""
+"""When steps of Newton's method are taken, and when it ends; in the band and condensed (see proximal_newton)."""
 
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.room import Run
 
 #: Most Newton steps, and halvings of one.
 NEWTON, HALVINGS = 60, 40

@@ -13,10 +13,10 @@ from fricmb.integrate.csr import on_one_pattern
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import narrow_order
 from fricmb.integrate.model.forces import scratch_of
-from fricmb.integrate.model.problem_structs import _table
+from fricmb.integrate.model.problem_structs import table_of
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
-from fricmb.integrate.timestepping._loops import loops_of
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.loops import loops_of
+from fricmb.integrate.timestepping.room import Run
 
 #: Most contact rows that may be condensed, and numbers that a factorisation may hold.
 CONDENSABLE, LARGEST = 600, 2e8
@@ -114,8 +114,8 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
         "mu_s": contacts.mu_s, "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N),
         "var": varies.astype(np.int8),
         "acts": (contacts.normal == NORMAL_LAW).astype(np.int8), "n_start": Wn.start, "n_dof": Wn.index,
-        "n_coef": Wn.value, "N0": contacts.N0, "signals": _table(problem.signals.table),
-        "laws": _table(contacts.law_table), "normals": _table(contacts.normal_table),
+        "n_coef": Wn.value, "N0": contacts.N0, "signals": table_of(problem.signals.table),
+        "laws": table_of(contacts.law_table), "normals": table_of(contacts.normal_table),
     }  # fmt: skip
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.timestepping._layout import HERE
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.layout import HERE
+from fricmb.integrate.timestepping.room import Run
 
 
 @kernel

@@ -7,8 +7,8 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.law_values import coefficient
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, DRIVES, HELD, NO_NUMBER, SOUND
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.layout import BROKEN, CAUGHT, DRIVES, HELD, NO_NUMBER, SOUND
+from fricmb.integrate.timestepping.room import Run
 
 #: R of the proximal steps times the local compliance.
 STIFF = 1e5

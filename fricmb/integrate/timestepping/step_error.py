@@ -5,8 +5,8 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import stick_limit_slope
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK, STICK
-from fricmb.integrate.timestepping._layout import HERE, LIMIT, MIDDLE, POSITION, THERE, VELOCITY, WHOLE
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.layout import HERE, LIMIT, MIDDLE, POSITION, THERE, VELOCITY, WHOLE
+from fricmb.integrate.timestepping.room import Run
 
 
 @kernel

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.room import Run
 
 
 @kernel

@@ -7,10 +7,10 @@ import math
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size, stick_limit_slope
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.timestepping._balls import slide_radius
-from fricmb.integrate.timestepping._layout import BROKEN
-from fricmb.integrate.timestepping._loops import shares
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.friction_discs import slide_radius
+from fricmb.integrate.timestepping.layout import BROKEN
+from fricmb.integrate.timestepping.loops import shares
+from fricmb.integrate.timestepping.room import Run
 
 
 @kernel

@@ -15,11 +15,11 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size, stick_limit
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import STICK
-from fricmb.integrate.timestepping._balls import slide_radius
-from fricmb.integrate.timestepping._break_away import break_away, pressed_in_slip, will_break
-from fricmb.integrate.timestepping._layout import BROKEN, CAUGHT, FREE, HELD, PASSED
-from fricmb.integrate.timestepping._loops import count_held
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.break_away import break_away, pressed_in_slip, will_break
+from fricmb.integrate.timestepping.friction_discs import slide_radius
+from fricmb.integrate.timestepping.layout import BROKEN, CAUGHT, FREE, HELD, PASSED
+from fricmb.integrate.timestepping.loops import count_held
+from fricmb.integrate.timestepping.room import Run
 
 #: Rounds in which a contact may still change between resting, passing and going on.
 DECIDING = 6

@@ -17,7 +17,7 @@ from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, In
 
 
 class Run(Layout):
-    """A structure with contacts, and a run of it; s: slots of the state (see _layout).
+    """A structure with contacts, and a run of it; s: slots of the state (see layout).
 
     Structure: ``start``, ``column`` (n+1,), (nnz,) joint pattern of ``mass``, ``stiff``, ``visc``, ``skew`` (nnz or 0:
     antisymmetric part of K) by rows; ``at`` (nnz,): place of each entry in a band of half width ``band``, in which dof
@@ -25,7 +25,7 @@ class Run(Layout):
     ``in_b`` (B), ``in_du`` (-Cu); ``back_start``, ``back_dof``, ``back_k``, ``back_c``: rows of the drivers;
     ``drivers`` (3, n_u, n_u): K, C and, in the first column, f of the signals.
     Contacts: ``row`` (n_c+1,); ``w_start``, ``w_dof``, ``w_coef``: W by columns; ``belt`` (m,), ``wu_start``,
-    ``wu_signal``, ``wu_coef``: w and Wu; ``loop`` (n_c,), ``rank``, ``held``, ``spare`` (n_loops,): see _loops;
+    ``wu_signal``, ``wu_coef``: w and Wu; ``loop`` (n_c,), ``rank``, ``held``, ``spare`` (n_loops,): see loops;
     ``law``, ``mu_s``, ``mu_0``, ``N`` (n_c,); ``var``, ``acts`` (n_c,): varying normal force, felt by the bodies along
     ``n_start``, ``n_dof``, ``n_coef`` from ``N0``.
     State: ``q``, ``v`` (s, n); ``u``, ``du`` (s, n_u); ``g``, ``w`` (s, m); ``F``, ``ends`` (s, m): mean force of the
@@ -48,7 +48,7 @@ class Run(Layout):
     ``residual`` stated of the contacts; ``longest`` and ``shortest`` step; ``fixed_step`` or 0; ``error`` of the last
     step; ``settled`` change of the lagged terms that is none; relative velocities below ``noise`` are round-off;
     ``goes_on`` whether the run goes on from another; ``leeway`` of steps with transitions; ``fault`` whether a
-    coefficient of friction is negative where a step ends, or a number is none (see _layout).
+    coefficient of friction is negative where a step ends, or a number is none (see layout).
     Counted: ``n_steps`` accepted, ``n_rejected``; ``n_rounds``, ``n_newton`` iterations, ``n_factor`` factorisations;
     ``n_rows`` and ``n_events`` so far; ``n_stop`` next stop; ``n_unsettled`` steps. ``condensed`` whether the contacts
     are solved so; ``varying`` whether normal forces vary.

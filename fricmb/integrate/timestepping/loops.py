@@ -9,8 +9,8 @@ from scipy.sparse.csgraph import connected_components
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size
 from fricmb.integrate.problem import Floats, Ints, Problem
-from fricmb.integrate.timestepping._layout import CAUGHT, HELD
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.layout import CAUGHT, HELD
+from fricmb.integrate.timestepping.room import Run
 
 #: More rows of contacts than this are not looked at: the search costs their cube.
 MANY = 200

@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.problem import Floats, Ints
-from fricmb.integrate.timestepping._run import Run
+from fricmb.integrate.timestepping.room import Run
 
 
 def with_parts(run: Run, part: Ints | None) -> Run:
