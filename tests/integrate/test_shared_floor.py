@@ -11,7 +11,7 @@ from scipy.linalg import solve
 
 from fricmb.integrate.compile.band import band_sizes, factor_band, solve_band, spread_of_pivots
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.compile.lapack import addresses
+from fricmb.integrate.compile.lapack import load_lapack
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.methods.backward_differences import best_order
 from fricmb.integrate.model.law_values import along, magnitude, point_along
@@ -38,7 +38,7 @@ def stop_and_window(times: Stops, window: Floats, t: float) -> float:
 
 
 @entry
-def solve_real(ab: Floats, pivots: Pivots, sizes: Pivots, b: Floats, address: Ints) -> float:
+def solve_real(ab: Floats, pivots: Pivots, sizes: Pivots, b: Floats) -> float:
     """Factor and solve; spread of the pivots, -1 where the matrix is singular."""
     if not factor_band(ab, pivots, sizes):
         return -1.0
@@ -47,7 +47,7 @@ def solve_real(ab: Floats, pivots: Pivots, sizes: Pivots, b: Floats, address: In
 
 
 @entry
-def solve_complex(ab: Complexes, pivots: Pivots, sizes: Pivots, b: Complexes, address: Ints) -> bool:
+def solve_complex(ab: Complexes, pivots: Pivots, sizes: Pivots, b: Complexes) -> bool:
     """Factor and solve."""
     if not factor_band(ab, pivots, sizes):
         return False
@@ -160,11 +160,12 @@ def test_banded_systems_are_those_of_scipy(kind):
     matrix[np.abs(np.subtract.outer(np.arange(n), np.arange(n))) > half] = 0.0
     b = rng.normal(size=n).astype(kind)
     x, pivots = b.copy(), np.zeros(n, np.int32)
+    load_lapack()
     call = solve_real if kind is float else solve_complex
-    assert call(band_of(matrix, half), pivots, band_sizes(n, half), x, addresses()) > 0.0
+    assert call(band_of(matrix, half), pivots, band_sizes(n, half), x) > 0.0
     np.testing.assert_allclose(x, solve(matrix, b), rtol=1e-12, atol=1e-12)
     matrix[:, 4] = 0.0
-    assert call(band_of(matrix, half), pivots, band_sizes(n, half), x, addresses()) in (-1.0, False)
+    assert call(band_of(matrix, half), pivots, band_sizes(n, half), x) in (-1.0, False)
 
 
 def test_steps_grow_by_the_order_of_their_error():
@@ -207,21 +208,22 @@ def test_rows_that_are_not_finite_are_left_out():
     rows[4, 1] = np.nan
     arrays = {"values": np.zeros((2, 2)), "kind": np.zeros(2, np.int8), "event": np.zeros((1, 3))}
     kept = SimpleNamespace(**arrays, used=np.zeros(2, int))
-    chunks, t, seen = Chunks(kept, "values", "kind"), np.zeros(1), []
+    chunks, state, seen, told = Chunks(kept, "values", "kind"), SimpleNamespace(t=0.0), [], []
 
     def step():
         kept.values[:] = rows[len(seen) * 2 : len(seen) * 2 + 2]
         kept.event[0] = len(seen), 0, 1
         kept.used[:] = 2, 1
-        seen.append(t[0])
-        t[0] = kept.values[1, 0]
+        seen.append(state.t)
+        state.t = kept.values[1, 0]
         return DONE if len(seen) == 3 else FULL
 
-    assert chunks.fill(step, t, None, None) == DONE
+    assert chunks.fill(step, state, None, told.append) == DONE
+    assert told == [2.0, 6.0, 10.0]
     assert chunks.broken
     np.testing.assert_array_equal(np.concatenate([part[0] for part in chunks.parts]), rows[:4])
     np.testing.assert_array_equal(chunks.transitions().t, [0.0, 1.0, 2.0])
     seen.clear()
     chunks = Chunks(kept, "values", "kind")
-    assert chunks.fill(step, t, 16.0, None) == FULL  # memory for one row: one chunk and no more
+    assert chunks.fill(step, state, 16.0, None) == FULL  # memory for one row: one chunk and no more
     assert len(seen) == 1
