@@ -12,8 +12,9 @@ from numba import njit
 
 from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.exchange import with_arrays
+from fricmb.integrate.compile.layout import Layout, room_type
 from fricmb.integrate.compile.parallel_compile import load_blocks
-from fricmb.integrate.compile.room import Layout, room, room_type
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 from fricmb.integrate.run.workspace import Workspace
 

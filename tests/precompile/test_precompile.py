@@ -9,7 +9,7 @@ import pytest
 import fricmb as fm
 from fricmb.integrate.compile import cache_files
 from fricmb.integrate.compile.kernel import _entries
-from fricmb.integrate.compile.room import argument_types
+from fricmb.integrate.compile.layout import argument_types
 from fricmb.precompile import _compile, _tasks, compile_all
 from fricmb.precompile._crew import Crew, Shares
 

@@ -10,7 +10,7 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import STICK, Floats
 from fricmb.integrate.step.exact_structure import RUNGS, Exact, rung_below
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.one_step_room import OneStep
 
 
 @block

@@ -19,7 +19,7 @@ from fricmb.integrate.problem import LAW_CONSTANT, OPEN, STICK, Codes, Floats, I
 from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.coulomb_newton import dot
 from fricmb.integrate.step.exact_structure import Exact, rung_below
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.one_step_room import OneStep
 
 #: Columns of ``Exact.held_for``.
 PATTERN, RUNG = range(2)

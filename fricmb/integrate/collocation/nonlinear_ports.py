@@ -23,7 +23,7 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats3
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
-from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 
 
 @kernel

@@ -11,7 +11,7 @@ from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, 
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats, Floats2
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.one_step_room import OneStep
 
 
 @kernel

@@ -24,7 +24,7 @@ from fricmb.integrate.problem import LAW_CONSTANT, Codes2, Floats, Floats2, Ints
 from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.step.coulomb_newton import plain_ports
 from fricmb.integrate.step.exact_structure import Exact
-from fricmb.integrate.step.radau_step import OneStep, one_step_of
+from fricmb.integrate.step.one_step_room import OneStep, one_step_of
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.step_matrix import Factor
 from fricmb.integrate.step.tableau import radau

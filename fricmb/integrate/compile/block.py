@@ -21,7 +21,7 @@ from numba.extending import intrinsic
 from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.compile.content import describe_signature
 from fricmb.integrate.compile.kernel_cache import cached_on_disk
-from fricmb.integrate.compile.room import annotations_of, argument_types
+from fricmb.integrate.compile.layout import annotations_of, argument_types
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 

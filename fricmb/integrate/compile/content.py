@@ -21,7 +21,7 @@ import numpy as np
 
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
 _COMPILER = (
-    "room", "lanes", "block", "template", "kernel", "compilers", "passes", "kernel_library", "quick_typing",
+    "layout", "room", "lanes", "block", "template", "kernel", "compilers", "passes", "kernel_library", "quick_typing",
     "short_lowering", "array_view",
 )  # fmt: skip
 

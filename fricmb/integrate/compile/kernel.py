@@ -9,7 +9,7 @@ from numba import njit
 
 from fricmb.integrate.compile.compilers import LinkedCompiler, MachineCompiler
 from fricmb.integrate.compile.kernel_cache import cached_on_disk
-from fricmb.integrate.compile.room import argument_types
+from fricmb.integrate.compile.layout import argument_types
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _entries: dict[str, Any] = {}

@@ -14,11 +14,9 @@ address.  Single numbers stand in that memory themselves: kernels, and Python, r
 
 from __future__ import annotations
 
-import hashlib
-import sys
 from ctypes import addressof, c_char
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast, dataclass_transform
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 from llvmlite import ir
@@ -36,101 +34,10 @@ from numba.extending import (
     unbox,
 )
 
+from fricmb.integrate.compile.layout import WORD, RoomType, room_type
+
 _Tuple = TypeVar("_Tuple")
-_WORD = 8
 _Nothing = c_char * 0
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Self
-
-    @dataclass_transform()
-    class Layout:
-        """What is in a room, by annotations: ``float`` and ``int`` numbers, arrays (Floats2: two axes), other layouts.
-
-        A named tuple, but for those who check types: numbers of a room may be written to.
-        """
-
-        _fields: tuple[str, ...]
-
-        @classmethod
-        def _make(cls, values: Any) -> Self: ...
-        def _replace(self, **new: Any) -> Self: ...
-        def _asdict(self) -> dict[str, Any]: ...
-        def __iter__(self) -> Iterator[Any]: ...
-else:
-    Layout = NamedTuple
-
-_SCALARS = {"int": types.int64, "float": types.float64, "bool": types.boolean, "None": types.void}
-_NUMBERS = {"int": types.int64, "float": types.float64}
-_DTYPES = {"Floats": types.float64, "Complexes": types.complex128, "Ints": types.int64, "Codes": types.int8}
-
-
-def array_type(name: str) -> Any:
-    """Numba's type of the annotation (Floats2: two axes); None where it names no array."""
-    stem = name.rstrip("234")
-    if name == "Pivots":
-        return types.Array(types.int32, 1, "C")
-    if stem not in _DTYPES:
-        return None
-    return types.Array(_DTYPES[stem], int(name[len(stem) :] or 1), "C")
-
-
-class RoomType(types.Type):
-    """Numba's type of a room: names with the types of arrays, numbers and rooms in it, and where each begins."""
-
-    def __init__(self, title: str, fields: tuple[tuple[str, Any], ...]) -> None:
-        self.at: dict[str, int] = {}
-        self.of: dict[str, Any] = dict(fields)
-        #: What each field takes: dtype and number of axes of an array (0: a number), None for a room.
-        self.takes: dict[str, tuple[Any, int] | None] = {}
-        words = 0
-        for name, kind in fields:
-            axes = getattr(kind, "ndim", 0)
-            dtype = np.dtype(str(getattr(kind, "dtype", kind))) if not isinstance(kind, RoomType) else None
-            self.takes[name] = None if dtype is None else (dtype, axes)
-            self.at[name] = words * _WORD
-            words += 1 + axes
-        #: Numbers among the fields, and in which words they stand.
-        self.numbers = tuple(name for name, kind in fields if isinstance(kind, types.Number))
-        self.words = np.array([self.at[name] // _WORD for name in self.numbers], dtype=np.int64)
-        inside = ", ".join(f"{name}: {kind}" for name, kind in fields)
-        # its name is part of the name of every kernel that takes it, in every call: a digest is short
-        super().__init__(name=f"room {title} {hashlib.sha256(inside.encode()).hexdigest()[:12]}")
-
-
-@lru_cache(maxsize=64)
-def room_type(kind: Any) -> RoomType:
-    """The type of a room made from the named tuple ``kind``, read from its annotations (Floats2: two axes)."""
-    around = vars(sys.modules[kind.__module__])
-    fields = [
-        (name, _NUMBERS.get(note) or array_type(note) or _inner(around[note]))
-        for name, note in annotations_of(kind).items()
-    ]
-    return RoomType(kind.__name__, tuple(fields))
-
-
-def _inner(kind: Any) -> RoomType:
-    return room_type(kind)
-
-
-def annotations_of(annotated: Any) -> dict[str, str]:
-    """The annotations of a function or named tuple, as they are written."""
-    notes = annotated.__annotations__
-    return {name: getattr(note, "__forward_arg__", note) for name, note in notes.items()}
-
-
-def argument_types(function: Any) -> tuple[tuple[Any, ...], Any]:
-    """Numba's types of a function's arguments and of its result, read from its annotations.
-
-    Those are rooms, Floats (Floats2, ...), Ints, Codes, Pivots, int, float, bool.
-    """
-    around = function.__globals__
-    *arguments, result = (
-        _SCALARS.get(note) or array_type(note) or room_type(around[note]) for note in annotations_of(function).values()
-    )
-    return tuple(arguments), result
-
 
 def address_of(array: Any) -> int:
     """Where the numbers of an array begin; ``array.ctypes.data`` in a third of its time, which small runs notice."""
@@ -147,7 +54,7 @@ class Room:
         # numbers are found in the room all the same: properties of a class come before what an object holds
         self.__dict__.update(zip(values._fields, values, strict=True))
         self._address: int
-        self.room_type: RoomType = _inner(type(values))
+        self.room_type: RoomType = room_type(cast(Any, type(values)))
         words: list[int] = []
         self._own: list[Room] = []
         for (name, wanted), value in zip(self.room_type.takes.items(), values, strict=True):
@@ -193,7 +100,7 @@ def _room_class(kind: Any) -> type[Room]:
 
 
 def _number(kind: RoomType, name: str) -> property:
-    word, held = kind.at[name] // _WORD, str(kind.of[name])
+    word, held = kind.at[name] // WORD, str(kind.of[name])
 
     def read(self: Room) -> Any:
         return self._views[held][word].item()
@@ -243,7 +150,7 @@ def _place(builder: Any, room: Any, at: int, kind: Any) -> Any:
 
 def load_word(builder: Any, room: Any, at: int, i: int) -> Any:
     """A word of a descriptor in a room, counted from the byte ``at``."""
-    loaded = builder.load(_place(builder, room, at + i * _WORD, ir.IntType(64)))
+    loaded = builder.load(_place(builder, room, at + i * WORD, ir.IntType(64)))
     # descriptors never change while a kernel runs: loads may leave the loops
     loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
     return loaded

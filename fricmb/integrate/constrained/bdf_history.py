@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.constrained.state import State, state_of

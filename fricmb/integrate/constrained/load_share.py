@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.moving import Moving

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern

@@ -6,7 +6,8 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.problem_structs import Mech, mechanism_of
 from fricmb.integrate.constrained.radau_step import Control

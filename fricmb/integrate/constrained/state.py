@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.jacobian_layers import Layers
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
 from fricmb.integrate.problem import Codes, Floats, Pivots, Problem

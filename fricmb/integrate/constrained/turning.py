@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
-from fricmb.integrate.compile.room import Layout
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
+from fricmb.integrate.contact.mode_decision import find_open, mark_rest, settle
+from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, keep_modes, record_changes
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.model.forces import Scratch, set_time

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
-from fricmb.integrate.contact.mode_decision import Rest, find_open, mark_rest, settle
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.contact.mode_decision import find_open, mark_rest, settle
+from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.model.accelerations import share_load, slip_rate
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.friction_cone import stick_limit

@@ -6,9 +6,9 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.contact.event_location import locate, passes_by
-from fricmb.integrate.contact.mode_decision import Rest
+from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch
@@ -31,7 +31,8 @@ from fricmb.integrate.run.outcomes import (
 )
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_work, attempt, finish, is_exact, update_scales
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
+from fricmb.integrate.step.radau_step import add_work, attempt, finish, update_scales
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
 from fricmb.integrate.step.step_error import step_error
 

@@ -7,7 +7,8 @@ from functools import lru_cache
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, HANDOVER, REJECTED

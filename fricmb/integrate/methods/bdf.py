@@ -22,7 +22,7 @@ from fricmb.integrate.model.forces import Scratch, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.one_step_room import OneStep
 from fricmb.integrate.step.step_matrix import jacobians
 from fricmb.integrate.step.tableau import one_stage, radau
 from fricmb.integrate.trajectory import Trajectory

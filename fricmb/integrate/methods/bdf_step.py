@@ -36,7 +36,8 @@ from fricmb.integrate.output.recorder import STEP, Rows, record
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_LAW, HANDOVER, REJECTED
 from fricmb.integrate.step.force_jumps import jump_error
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, add_to_position, newton_tolerances, state_noise, widest
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
+from fricmb.integrate.step.radau_step import add_to_position, newton_tolerances, state_noise
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.stages import solve_stages
 from fricmb.integrate.step.step_control import BDF_RUNGS, ladder

@@ -15,7 +15,7 @@ from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import drive
 from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.one_step_room import OneStep
 from fricmb.integrate.step.tableau import Tableau, collocated
 from fricmb.integrate.trajectory import Trajectory
 

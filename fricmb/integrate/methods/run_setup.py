@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fricmb.integrate.contact.initial_modes import begin, natural_scales
-from fricmb.integrate.contact.mode_decision import fill_rest
+from fricmb.integrate.contact.rest_problem import fill_rest
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.run_workspace import RunWorkspace
 from fricmb.integrate.model.problem_structs import packed_of
@@ -19,7 +19,7 @@ from fricmb.integrate.problem import Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
 from fricmb.integrate.run.stop import ended, watched
-from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import SAMPLED, first_step
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.contact.mode_decision import Rest, rest_of
+from fricmb.integrate.contact.rest_problem import Rest, rest_of
 from fricmb.integrate.contact.transition import Before
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.methods.attempt_step import Clock
@@ -18,7 +18,7 @@ from fricmb.integrate.model.state import State, state_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.workspace import Store, lent
 from fricmb.integrate.step.exact_structure import Exact, no_exact
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, one_step_of
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep, one_step_of
 from fricmb.integrate.step.stages import stages
 from fricmb.integrate.step.step_matrix import changes, factor
 from fricmb.integrate.step.tableau import Tableau

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.contact.mode_decision import Rest
+from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.methods.attempt_step import Clock, advance, settled
 from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
@@ -17,7 +17,7 @@ from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.run.breakpoints import reached, set_window
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
 from fricmb.integrate.run.stop import stopped
-from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.step_matrix import forget
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.problem_structs import Packed, Ports, Spread, Table
 from fricmb.integrate.model.structure import Structure

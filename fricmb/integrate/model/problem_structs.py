@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure

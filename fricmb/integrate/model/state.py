@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.problem import SLIP, Codes, Floats, Problem, Start
 
 #: What can be wrong with a state: see State.fault.

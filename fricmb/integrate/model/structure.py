@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import band_order

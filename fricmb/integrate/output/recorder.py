@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, Codes, Codes2, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.room_protocols import Events

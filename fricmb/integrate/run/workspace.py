@@ -8,7 +8,8 @@ from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 
-from fricmb.integrate.compile.room import annotations_of, array_type, room
+from fricmb.integrate.compile.layout import annotations_of, array_type
+from fricmb.integrate.compile.room import room
 
 _Rooms = TypeVar("_Rooms", bound=tuple[Any, ...])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, smooth_force
 from fricmb.integrate.model.problem_structs import Ports, Table

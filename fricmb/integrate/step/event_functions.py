@@ -18,7 +18,7 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
-from fricmb.integrate.step.radau_step import Accuracy, OneStep
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 
 #: A slip speed below this part of the velocities that it is the difference of is round-off: the slip begins; so does a
 #: normal force below this part of what it reaches in the step.

@@ -11,7 +11,8 @@ import math
 from functools import lru_cache
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints, Pivots
 from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.step.tableau import Tableau, one_stage

@@ -14,7 +14,7 @@ from fricmb.integrate.model.forces import Scratch, gather, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2
-from fricmb.integrate.step.radau_step import Accuracy
+from fricmb.integrate.step.one_step_room import Accuracy
 
 #: Halvings of the way from the start to the end of a step, each time towards the larger change of the force.
 HALVINGS = 10

@@ -14,7 +14,7 @@ from fricmb.integrate.model.problem_structs import Packed, Table
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
 from fricmb.integrate.run.room_protocols import LawsWithStates
-from fricmb.integrate.step.radau_step import Accuracy, OneStep, widest
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 #: Relative round-off of forces and rates beside their polynomials.

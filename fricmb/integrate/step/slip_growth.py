@@ -14,7 +14,7 @@ from fricmb.integrate.model.problem_structs import Packed, Table
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Ints
 from fricmb.integrate.run.room_protocols import Laws
-from fricmb.integrate.step.radau_step import OneStep
+from fricmb.integrate.step.one_step_room import OneStep
 
 #: Longest step, in times by which slip grows e-fold; part of the largest slip speed in a step below which none matters.
 LONGEST, LEAST = 1.0, 1e-12

@@ -13,7 +13,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_instant, structure_force
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Problem

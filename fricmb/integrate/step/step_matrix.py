@@ -13,7 +13,7 @@ from fricmb.integrate.compile.band import band_sizes
 from fricmb.integrate.compile.block import block, declared
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lapack import solve_complex
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.model.forces import Scratch, normal_gradient, structure_jacobian
 from fricmb.integrate.model.problem_structs import Packed, packed_of
 from fricmb.integrate.problem import Complexes, Complexes2, Complexes3, Floats, Floats2, Floats3, Ints, Pivots, Problem

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2
 
 

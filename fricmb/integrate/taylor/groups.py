@@ -10,7 +10,7 @@ with A the accelerations under all other forces.
 
 from __future__ import annotations
 
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Floats, Floats2, Floats3, Ints
 

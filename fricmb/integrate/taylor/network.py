@@ -16,7 +16,7 @@ of one in two directions have its mode, and in ``sigma`` the direction of its sl
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import Layout, room_type
+from fricmb.integrate.compile.layout import Layout, room_type
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints
 from fricmb.integrate.taylor.groups import Groups

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.compile.lapack import load_lapack
+from fricmb.integrate.compile.layout import room_type
 from fricmb.integrate.compile.parallel_compile import load_blocks
-from fricmb.integrate.compile.room import room, room_type
+from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import on_one_pattern
 from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import narrow_order

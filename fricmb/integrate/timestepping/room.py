@@ -10,7 +10,7 @@ With n dofs, n_c contacts of m rows and a step h from (q0, v0) to (q1, v1), bars
 
 from __future__ import annotations
 
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots

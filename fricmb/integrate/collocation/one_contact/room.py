@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.compile.room import Layout
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
 from fricmb.integrate.step.tableau import Tableau
 
