@@ -61,7 +61,7 @@ def loaded_from(builder: Any, name: str, kind: Any) -> Any:
 def block(function: _Function) -> _Function:
     """Compile ``function`` on its own and let kernels call it through its cell.
 
-    Argument types are read from the annotations (:func:`fricmb.integrate.compile.room.argument_types`).
+    Argument types are read from the annotations (:func:`fricmb.integrate.compile.layout.argument_types`).
     """
     if config.DISABLE_JIT:
         return function

@@ -184,7 +184,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
     move(mech, k, y.t, y.q, y.v)
     last = np.inf
     # where everything comes to rest, round-off is that of what has been
-    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne[1])
+    size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne_before)
     for iteration in range(ITERATIONS):
         if stopped():
             return False
@@ -228,7 +228,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
         return False
     share_load(mech, k, y.mode, y.N, y.F, 1.0)
     # of what has been found: iterates on the way there may be anything
-    k.borne[0] = max(k.borne[1], largest(y.lam), largest(y.F), largest_load(mech, y))
+    k.borne = max(k.borne_before, largest(y.lam), largest(y.F), largest_load(mech, y))
     instant_residual(mech, k, w, y)
     powers(mech, k, y.F, y.g, y.N, y.rate)
     return True

@@ -35,18 +35,18 @@ def grow(c: Control, out: Watch, k: Moving, y: State) -> None:
 
     Forces of modes that were tried and do not hold may be a thousand times larger: no measure of what is light.
     """
-    k.borne[1] = max(k.borne[0], k.borne[1])
+    k.borne_before = max(k.borne, k.borne_before)
     for i in range(y.v.shape[0]):
         c.v[i] = max(c.v[i], abs(y.v[i]))
     for i in range(y.z.shape[0]):
         c.z[i] = max(c.z[i], abs(y.z[i]))
     for i in range(y.q.shape[0]):
-        out.size[2] = max(out.size[2], abs(y.q[i]))
+        out.top_position = max(out.top_position, abs(y.q[i]))
     for i in range(y.F.shape[0]):
-        out.size[0] = max(out.size[0], abs(y.g[i]))
-        out.size[1] = max(out.size[1], abs(y.F[i]))
+        out.top_slip = max(out.top_slip, abs(y.g[i]))
+        out.top_force = max(out.top_force, abs(y.F[i]))
     for i in range(y.lam.shape[0]):
-        out.size[1] = max(out.size[1], abs(y.lam[i]))
+        out.top_force = max(out.top_force, abs(y.lam[i]))
 
 
 @kernel
@@ -98,7 +98,7 @@ def radau_step(
             copy_state(end, y)
             near_singular(mech, k, w, y, out, reached)
             return FAIL_SINGULAR
-        out.sigma[3] = 0.0
+        out.sigma_h = 0.0
         c.made = 0.0
         made = try_step(mech, k, y, st, c, h)
     if not made:

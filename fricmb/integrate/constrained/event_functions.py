@@ -51,12 +51,12 @@ def triggers(
         if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
             continue
         if mode[c] == STICK:
-            out.trigger[2 * c] = spare(mech, k, c, F, N, k.borne[0])
+            out.trigger[2 * c] = spare(mech, k, c, F, N, k.borne)
         else:
             # away from rest slip has a direction of its own, and a force that passes through 0 none but round-off's
             away = plane(mech, c) and k.form[c] == 0
             speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
-            out.trigger[2 * c] = speed + out.size[0] * lack(N[c], k.borne[0])
+            out.trigger[2 * c] = speed + out.top_slip * lack(N[c], k.borne)
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if is_open(mech, j):
@@ -85,10 +85,10 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
     """Round-off of trigger j: of a slip velocity, a distance or a force."""
     n_c = y.mode.shape[0]
     if is_slip(j, y):
-        return float(1e-13 * out.size[0])
+        return float(1e-13 * out.top_slip)
     if is_open(mech, j - 2 * n_c):
-        return float(1e-13 * out.size[2])
-    return float(1e-13 * out.size[1])
+        return float(1e-13 * out.top_position)
+    return float(1e-13 * out.top_force)
 
 
 @block
@@ -134,9 +134,9 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
         return not is_open(mech, j - 2 * n_c)
     if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
         return bool(mech.port.normal[j // 2] == NORMAL_LAW)
-    loaded = lack(y.N[j // 2], k.borne[0]) == 0.0
+    loaded = lack(y.N[j // 2], k.borne) == 0.0
     for i in range(st.tab.c.shape[0]):
-        loaded = loaded and lack(st.N[i, j // 2], k.borne[0]) == 0.0
+        loaded = loaded and lack(st.N[i, j // 2], k.borne) == 0.0
     return bool(loaded)
 
 
@@ -151,7 +151,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         jumps = shared and j < 2 * y.mode.shape[0] and y.mode[j // 2] == STICK and may_share(mech, j // 2)
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
-        hair = 10.0 * grain(mech, out, j, y) if is_slip(j, y) else ROUGH * out.size[1]
+        hair = 10.0 * grain(mech, out, j, y) if is_slip(j, y) else ROUGH * out.top_force
         for i in range(st.tab.c.shape[0]):
             out.values[i] = out.inner[i + 1, j] + hair
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment

@@ -26,7 +26,7 @@ NEAR = 0.02
 
 def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     """The reason for a code of failure."""
-    if code in (FAIL_MODES, FAIL_MARGIN) and k.search[1] > 0.0:
+    if code in (FAIL_MODES, FAIL_MARGIN) and k.unsolved > 0:
         return _none_found(problem, k, y, out)
     names, joints = problem.contact_names, mechanism_of(problem).joints
     port = int(np.argmin(out.margin)) if problem.n_c else -1
@@ -61,7 +61,7 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
         return f"contact of {name!r} is made again, and impacts are not computed"
     if code == FAIL_SINGULAR:
         names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t), y.q, y.v))
-        risen = (float(out.sigma[1]) / max(float(out.sigma[0]), 1e-300)) ** 2
+        risen = (out.sigma_start / max(out.sigma, 1e-300)) ** 2
         return (
             f"singular position: the constraints of {names_now} depend on one another (the condition of G M^-1 G^T has"
             f" risen by {risen:.1e} since the start)"
@@ -73,7 +73,7 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
 
 def _none_found(problem: Problem, k: Any, y: Any, out: Any) -> str:
     """What a decision has found of combinations of stick and slip that have no solution, not even by shares."""
-    share, combinations = float(k.search[0]), int(k.search[1])
+    share, combinations = k.furthest, k.unsolved
     at_rest = _at_rest(problem, y, out)
     if at_rest:
         return (
@@ -101,7 +101,7 @@ def _at_rest(problem: Problem, y: Any, out: Any) -> str:
     """What is at rest, in brackets."""
     row = problem.contacts.row
     g = np.asarray(y.g)
-    slow = [c for c in range(problem.n_c) if np.linalg.norm(g[row[c] : row[c + 1]]) <= 1e-9 * float(out.size[0])]
+    slow = [c for c in range(problem.n_c) if np.linalg.norm(g[row[c] : row[c + 1]]) <= 1e-9 * out.top_slip]
     return f" (at rest: {', '.join(repr(problem.contact_names[c]) for c in slow)})" if slow else ""
 
 

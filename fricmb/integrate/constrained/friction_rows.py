@@ -39,7 +39,7 @@ def friction_residual(
             a0, a1 = port.z_start[c], port.z_start[c + 1]
             smooth_force(port.laws, c, k.s, g, first, d, load, z, a0, a1 - a0)
             for a in range(d):
-                r[r0 + first + a] = F[first + a] - (0.0 if mode[c] == OPEN else k.share[0] * k.s.out[a])
+                r[r0 + first + a] = F[first + a] - (0.0 if mode[c] == OPEN else k.share * k.s.out[a])
             for i in range(a1 - a0):
                 zd[a0 + i] = k.s.out[d + i]
         elif mode[c] == STICK:
@@ -107,7 +107,7 @@ def add_smooth(
         for j in range(width):
             # add_slip and add_load call templates: evaluated anew for every entry
             smooth_force(port.laws, c, k.s, g, first, d, load, z, a0, nz)
-            slope = k.s.out[d + nz + i * width + j] * (k.share[0] if i < d else 1.0)
+            slope = k.s.out[d + nz + i * width + j] * (k.share if i < d else 1.0)
             if slope == 0.0:
                 continue
             if j < d and full:

@@ -28,18 +28,18 @@ def react_by_shares(mech: Mech, k: Moving, w: Instant, y: State) -> float:
             return 0.0
     for part in (y.a, y.lam, y.F):
         part[:] = 0.0
-    k.share[0] = 0.0
+    k.share = 0.0
     reached, step = 0.0, 0.25
     if react(mech, k, w, y, False):
         for _ in range(TRIES):
             if reached == 1.0 or step < CLOSE:
                 break
             accelerations, reactions, forces = y.a.copy(), y.lam.copy(), y.F.copy()
-            k.share[0] = min(reached + step, 1.0)
+            k.share = min(reached + step, 1.0)
             if react(mech, k, w, y, False):
-                reached = k.share[0]
+                reached = k.share
                 continue
             y.a[:], y.lam[:], y.F[:] = accelerations, reactions, forces
             step *= 0.5
-    k.share[0] = 1.0
+    k.share = 1.0
     return float(reached)

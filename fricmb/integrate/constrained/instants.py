@@ -51,7 +51,7 @@ def instants(
         follow(mech, k, y, small)
         if not react(mech, k, w, y, False):
             failed += 1
-        k.borne[1] = max(k.borne[0], k.borne[1])
+        k.borne_before = max(k.borne, k.borne_before)
         for j in range(m):
             lam[i, j] = y.lam[j]
         for j in range(y.a.shape[0]):

@@ -87,7 +87,7 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
             side = law_side(mech, k, c, y.g, y.N)
             for i in range(st.tab.c.shape[0]):
                 now = law_side(mech, k, c, st.g[i], st.N[i])
-                if abs(side) <= LEFT * out.size[1]:
+                if abs(side) <= LEFT * out.top_force:
                     side = now
                 elif side * now < 0.0 and y.mode[c] == SLIP:
                     out.kinked[c] = BEFORE if side > 0.0 else BEHIND
@@ -101,7 +101,7 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
                 here = 0.0
                 for r in range(joint.row[j], joint.row[j + 1]):
                     here += out.kink[r] * y.lam[r]
-                if i > 0 or here > LEFT * out.size[1]:
+                if i > 0 or here > LEFT * out.top_force:
                     out.kinked[c] = 1
                     break
                 read_slopes(mech, k, j, st.lam[i], out.side)

@@ -39,11 +39,11 @@ def moves_alike(w: Instant, y: State, scale: float) -> bool:
 
 @kernel
 def solved_by_shares(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
-    """Whether friction that grows from nothing comes to all of it; counted in ``k.search`` where it does not."""
+    """Whether friction that grows from nothing comes to all of it; counted in ``k.unsolved`` where it does not."""
     reached = react_by_shares(mech, k, w, y)
     if reached < 1.0:
-        k.search[0] = max(k.search[0], reached)
-        k.search[1] += 1.0
+        k.furthest = max(k.furthest, reached)
+        k.unsolved += 1
     return reached == 1.0
 
 
@@ -53,9 +53,9 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
 
     Combinations that give the same accelerations are one solution: of joints that hold more than there is to hold,
     forces alone are not determined.  ``patient``: where Newton's method does not converge, friction is let grow; counts
-    of these tries are left in ``k.search``.
+    of these tries are left in ``k.furthest``, ``k.unsolved``.
     """
-    k.search[:] = 0.0
+    k.furthest, k.unsolved = 0.0, 0
     if count > ENUMERATED:
         return NO_SOLUTION
     n_c = y.mode.shape[0]
@@ -96,5 +96,5 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
     set_out(mech, y)
     if found == 0:
         return NO_SOLUTION
-    k.search[:] = 0.0
+    k.furthest, k.unsolved = 0.0, 0
     return FOUND if found == 1 else SEVERAL

@@ -35,16 +35,16 @@ def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
     if y.mode[c] == STICK:
         limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
         force = magnitude(mech.port.row, c, y.F)
-        over = -spare(mech, k, c, y.F, y.N, k.borne[0])
+        over = -spare(mech, k, c, y.F, y.N, k.borne)
         return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
-    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne[0])
+    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne)
     return against if against > (CREEP_IN_LOOPS if mech.port.soft[c] > 0.0 else CREEP) else 0.0
 
 
 @kernel
 def still(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> bool:
     """Whether others hold port c, which would slip but cannot without them: then it sticks."""
-    if y.mode[c] != SLIP or k.looped[c] == 0 or lack(y.N[c], k.borne[0]) > 0.0:
+    if y.mode[c] != SLIP or k.looped[c] == 0 or lack(y.N[c], k.borne) > 0.0:
         return False
     return bool(slip_speed(mech.port.row, c, y.n, y.F, y.ga) < CREEP_IN_LOOPS * a_scale)
 
@@ -89,11 +89,11 @@ def ease(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
     for c in range(y.mode.shape[0]):
         some = some or y.mode[c] == SETTING_OUT
     for part in range(1, STEPS_OUT if some else 1):
-        k.part[0] = part / STEPS_OUT
+        k.part = part / STEPS_OUT
         if not react(mech, k, w, y, False):
-            k.part[0] = 1.0
+            k.part = 1.0
             return False
-    k.part[0] = 1.0
+    k.part = 1.0
     return bool(react(mech, k, w, y, False))
 
 

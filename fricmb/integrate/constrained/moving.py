@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from fricmb.integrate.compile.layout import Layout
@@ -18,10 +20,11 @@ class Moving(Layout):
     (n_y,) second derivatives of the extended coordinates that velocities bring (those of signals: ``s.ddu``); ``x``,
     ``out`` of joints; ``fy``, ``fu`` forces on extended coordinates and signals; ``phi``, ``phi_rate`` constraints and
     their rates; ``form`` (n_c,) 1 where stages find the direction of slip from the force (see ``friction_rows``);
-    ``held`` (n_c,) forces by which ports that set out were held, ``part`` (1,) the part of the way from there on;
-    ``share`` (1,) of friction that acts, less than 1 only on the way there (``friction_share``); ``search`` (2,) of a
-    decision that has found nothing: the largest share reached, and how many combinations have no solution;
-    ``borne`` (2,) the largest force so far: that of the present trial counted in, and of states that were reached;
+    ``held`` (n_c,) forces by which ports that set out were held, ``part`` the part of the way from there on;
+    ``share`` of friction that acts, less than 1 only on the way there (``friction_share``); of a decision that found
+    nothing ``furthest``, the largest share reached, and ``unsolved``, how many combinations have no solution; the
+    largest force so far, that of the present trial counted in, ``borne``, and of states that were reached,
+    ``borne_before``;
     ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
     matrices for slip of 0, which leaves forces along directions that joints block open;
     ``way`` (m_p,) the motion in which contacts in loops give way, ``looped`` (n_c,) 1 of those that cannot slip alone.
@@ -40,16 +43,18 @@ class Moving(Layout):
     phi_rate: Floats
     form: Codes
     held: Floats
-    part: Floats
-    share: Floats
-    search: Floats
-    borne: Floats
+    part: float
+    share: float
+    furthest: float
+    unsolved: int
+    borne: float
+    borne_before: float
     slight: Floats
     way: Floats
     looped: Codes
 
 
-class Lengths(Layout):
+class Lengths(NamedTuple):
     """Of the space for places and their rates, and for what goes into joints and places and comes out of them."""
 
     grad: int
@@ -87,6 +92,6 @@ def moving_of(problem: Problem) -> Moving:
         scratch_of(problem), np.zeros(size.grad + 1), np.zeros(size.grad + 1), np.zeros(size.hess + 1), np.zeros(m.n_y),
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
-        np.zeros(problem.n_c), np.ones(1), np.ones(1), np.zeros(2), np.zeros(2), np.zeros(problem.n_c),
+        np.zeros(problem.n_c), 1.0, 1.0, 0.0, 0, 0.0, 0.0, np.zeros(problem.n_c),
         np.zeros(problem.m), np.zeros(problem.n_c, np.int8),
     )  # fmt: skip

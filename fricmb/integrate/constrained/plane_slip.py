@@ -57,17 +57,17 @@ def plane_residual(
 @kernel
 def eased(k: Moving, c: int, force: float) -> float:
     """Friction of a port that sets out, on the way from what held it to ``force``."""
-    if k.part[0] == 1.0 or k.held[c] <= 0.0 or force <= 0.0:
+    if k.part == 1.0 or k.held[c] <= 0.0 or force <= 0.0:
         return force
-    return float(force * (k.held[c] / force) ** (1.0 - k.part[0]))
+    return float(force * (k.held[c] / force) ** (1.0 - k.part))
 
 
 @kernel
 def eased_slope(k: Moving, c: int, force: float) -> float:
     """Derivative of :func:`eased` by ``force``: the load may fall steeply on the way."""
-    if k.part[0] == 1.0 or k.held[c] <= 0.0 or force <= 0.0:
+    if k.part == 1.0 or k.held[c] <= 0.0 or force <= 0.0:
         return 1.0
-    return float(k.part[0] * eased(k, c, force) / force)
+    return float(k.part * eased(k, c, force) / force)
 
 
 @kernel

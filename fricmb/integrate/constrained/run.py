@@ -108,12 +108,12 @@ def _set_up(
 def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, reach: float) -> None:
     """What counts as 1, and the first step, from what is found at the start."""
     y, out, c = workspace.y, workspace.out, workspace.control
-    out.size[0] = max(float(out.size[0]), reach)
+    out.top_slip = max(out.top_slip, reach)
     load = _load(mechanism_of(problem), y)
     if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
         to_come = _speed_to_come(problem, start, t_end, load, c.mass)
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
-        out.size[0] = max(float(out.size[0]), to_come)
+        out.top_slip = max(out.top_slip, to_come)
     c.h = first_step(y.v, y.a, t_end - start.t, PART)
 
 

@@ -60,20 +60,20 @@ def least_singular(mech: Mech, w: Instant, out: Watch, turns: int) -> float:
 @kernel
 def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: float) -> bool:
     """Whether the constraints are as good as dependent at y, which has just been completed by a step h."""
-    out.sigma[2] = out.sigma[0]
-    out.sigma[3] = h
+    out.sigma_before = out.sigma
+    out.sigma_h = h
     # without friction the factors of the projection are those of the instant
     if y.F.shape[0] > 0 and not instant_matrix(mech, k, w, y, NONE):
         return True
-    out.sigma[0] = least_singular(mech, w, out, 1)
-    return bool(out.sigma[0] < SINGULAR * out.sigma[1])
+    out.sigma = least_singular(mech, w, out, 1)
+    return bool(out.sigma < SINGULAR * out.sigma_start)
 
 
 @kernel
 def nears_singular(out: Watch, h: float) -> bool:
     """Whether a step h might meet a singular position, the least singular value falling on."""
-    fall = out.sigma[2] - out.sigma[0]
-    return bool(out.sigma[3] > 0.0 and fall > 0.0 and out.sigma[0] * out.sigma[3] <= 4.0 * fall * h)
+    fall = out.sigma_before - out.sigma
+    return bool(out.sigma_h > 0.0 and fall > 0.0 and out.sigma * out.sigma_h <= 4.0 * fall * h)
 
 
 @kernel
@@ -84,7 +84,7 @@ def dips(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, ou
         move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
         if not instant_matrix(mech, k, w, end, NONE):
             return True
-        if least_singular(mech, w, out, 1) < 0.5 * out.sigma[0]:
+        if least_singular(mech, w, out, 1) < 0.5 * out.sigma:
             return True
     return False
 
@@ -99,16 +99,16 @@ def step_to_singular(
         a = low + 0.381966 * (high - low)
         b = low + 0.618034 * (high - low)
         first = sigma_after(mech, k, w, y, end, st, c, out, a)
-        if first <= REACHED * out.sigma[1]:
+        if first <= REACHED * out.sigma_start:
             return a
         second = sigma_after(mech, k, w, y, end, st, c, out, b)
-        if second <= REACHED * out.sigma[1]:
+        if second <= REACHED * out.sigma_start:
             return b
         if first < second or first > 1e299:
             high = b
         else:
             low = a
-        if high - low < 1e-2 * h and min(first, second) > 0.2 * out.sigma[0]:
+        if high - low < 1e-2 * h and min(first, second) > 0.2 * out.sigma:
             break
     return 0.0
 

@@ -35,7 +35,7 @@ def carried(mech: Mech, c: int, N: float) -> float:
 def friction_coefficient(mech: Mech, k: Moving, c: int, speed: float, load: float) -> tuple[float, float, float]:
     """mu, dmu/dr, dmu/dN of port c, as far as friction acts (``friction_share``)."""
     mu, by_speed, by_load = coefficient(mech.port, mech.port.laws, c, k.s, speed, load)
-    return k.share[0] * mu, k.share[0] * by_speed, k.share[0] * by_load
+    return k.share * mu, k.share * by_speed, k.share * by_load
 
 
 @kernel

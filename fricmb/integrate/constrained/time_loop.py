@@ -51,7 +51,7 @@ def begin(
         return FAIL_SINGULAR
     if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
         return FAIL_SINGULAR
-    out.sigma[1] = least_singular(mech, w, out, TURNS)
+    out.sigma_start = least_singular(mech, w, out, TURNS)
     mark_rest(mech, y, small, part)
     if given:
         for i in range(part.shape[0]):
@@ -68,7 +68,7 @@ def begin(
     grow(c, out, k, y)
     if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
-    out.sigma[0] = out.sigma[1]
+    out.sigma = out.sigma_start
     n_c = y.mode.shape[0]
     mark_bends(mech, k, out)
     for _ in range(mech.joint.port.shape[0]):

@@ -46,15 +46,15 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
             y.F[a] = 0.0
     move(mech, k, y.t, y.q, y.v)
     instant_matrix(mech, k, w, y, NONE)
-    out.sigma[0] = out.sigma[1] = least_singular(mech, w, out, TURNS)
-    out.sigma[3] = 0.0
+    out.sigma = out.sigma_start = least_singular(mech, w, out, TURNS)
+    out.sigma_h = 0.0
     return DONE
 
 
 @kernel
 def bears(k: Moving, y: State, i: int) -> bool:
     """Whether the load of port i is more than a trifle beside the largest force."""
-    return bool(lack(y.N[i], k.borne[0]) == 0.0)
+    return bool(lack(y.N[i], k.borne) == 0.0)
 
 
 @kernel
@@ -117,19 +117,19 @@ def change_modes(
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
-    turn_with_slip(mech, k, y, out.size[0], j // 2 if j < 2 * n_c else -1)
+    turn_with_slip(mech, k, y, out.top_slip, j // 2 if j < 2 * n_c else -1)
     copy_state(y, before)
     if j >= 2 * n_c:
         code = let_go(mech, k, w, y, out, j - 2 * n_c)
         if code != DONE:
             return code
     set_window(c, k.s.window, y.t)
-    if j < 0 and not meet_jump(mech, k, w, y, out.size[0]):
+    if j < 0 and not meet_jump(mech, k, w, y, out.top_slip):
         return FAIL_PROJECT
     for i in range(n_c):
         part[i] = RESTED if y.mode[i] == STICK else SLIPS_ON
         # without load the direction of slip decides nothing: found anew it would be that of round-off
-        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.size[0] and bears(k, y, i):
+        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.top_slip and bears(k, y, i):
             part[i] = ARRIVES
     forced = -1
     if 0 <= j < 2 * n_c:
@@ -138,16 +138,16 @@ def change_modes(
             y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
             if y.mode[port] == SLIP:
                 point_along(row, port, y.g, 1.0, y.n)
-                part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.size[0] else SLIPS_ON
+                part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.top_slip else SLIPS_ON
         elif y.mode[port] == STICK:
             forced = -1 if give_way(mech, k, y, part, LETS_GO) else port
-        elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.size[0]:
+        elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.top_slip:
             part[port] = ARRIVES
         else:
             # one that had no load to speak of has gone on through rest
             part[port] = SLIPS_ON
             y.n[row[port]] = -y.n[row[port]]
-    join_rest(mech, k, y, part, 1e-9 * out.size[0], ARRIVES)
+    join_rest(mech, k, y, part, 1e-9 * out.top_slip, ARRIVES)
     code = decide(mech, k, w, y, part, forced)
     if code != FOUND:
         margins(mech, k, w, y, out, True)

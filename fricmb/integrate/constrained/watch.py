@@ -17,13 +17,13 @@ class Watch(Layout):
 
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` the least
     principal minor of the same for several of them (``contacts``, ``A``, ``B``, ``sizes``, ``pivots`` space for it).
-    ``sigma`` (4,): least singular value of G M^-1/2 now, at the start, a step before, and that step's length; ``weak``
-    (m,) its direction.
+    ``sigma``: least singular value of G M^-1/2 now, at the start ``sigma_start``, a step before ``sigma_before``, and
+    that step's length ``sigma_h``; ``weak`` (m,) its direction.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
     stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
     of open joints, ``opened`` how many there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,):
-    see ``load_kinks``; ``size`` (3,) running maxima of slip velocity, force and position.
+    see ``load_kinks``; ``top_slip``, ``top_force``, ``top_position`` running maxima.
     """
 
     margin: Floats
@@ -33,7 +33,10 @@ class Watch(Layout):
     B: Floats
     sizes: Pivots
     pivots: Pivots
-    sigma: Floats
+    sigma: float
+    sigma_start: float
+    sigma_before: float
+    sigma_h: float
     weak: Floats
     trigger: Floats
     inner: Floats2
@@ -47,7 +50,9 @@ class Watch(Layout):
     kinked: Ints
     kink: Floats
     side: Floats
-    size: Floats
+    top_slip: float
+    top_force: float
+    top_position: float
     lam: Floats
 
 
@@ -58,10 +63,10 @@ def watch_of(problem: Problem, stages: int) -> Watch:
     return Watch(
         np.ones(problem.n_c), 1.0, np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4, np.int32), np.zeros(MANY, np.int32),
-        np.zeros(4), np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
+        0.0, 0.0, 0.0, 0.0, np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
         np.ones((stages + 1, count)), np.ones(count), 1.0, np.zeros(stages),
         np.zeros(stages + 1), np.zeros(len(m.joints.port)),
         0, np.zeros(len(m.joints.port), np.int64),
-        np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), np.zeros(3),
+        np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), 0.0, 0.0, 0.0,
         np.zeros(m.n_rows + 1),
     )  # fmt: skip
