@@ -1,4 +1,4 @@
-"""Taylor steps as ``method="auto"`` takes them; a module of its own, since most runs load neither."""
+"""Taylor steps as ``method="auto"`` takes them; a module of its own: most runs need not load it."""
 
 from __future__ import annotations
 

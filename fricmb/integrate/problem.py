@@ -165,8 +165,9 @@ class Contacts(Kept):
     law_table : Templates
         One entry a contact (address 0 for LAW_CONSTANT); the linear forms are unused.
     mu_s, mu_0 : (n_c,)
-        Break-away coefficient and limit of the slip coefficient for r -> 0 (``mu_k`` of a constant law).  ``mu_s`` < 0:
-        break-away is that limit under the present normal force, of this size at the start.
+        Break-away coefficient and limit of the slip coefficient for r -> 0 (``mu_k`` of a constant law).  The sign
+        of ``mu_s`` is a flag: below 0 the contact breaks away at ``mu_0`` under the present normal force, and |mu_s| is
+        what that is at the start.
     piecewise : (n_c,) bool
         Whether a law is a table or compiled by itself: its slope may jump, or what it is made of.
     z_start : (n_c+1,) int64

@@ -103,7 +103,7 @@ def advance(
     else:
         # steps of a ladder come again, and their factors with them
         h = ladder(min(h, 0.5 * left) if h > 0.5 * left else h, ONE_STEP_RUNGS)
-    # the shortest rung of the ladder of exact structure is no end of steps: what is asked for is
+    # h may be a longer step than was asked for, the shortest rung of a ladder; the run fails by what was asked for
     if not min(h, clock.h) > 8.0 * EPS * abs(t) + 1e-280:
         return end_round_off(packed, s, y, r, old, out, clock)
     error = np.inf
@@ -178,9 +178,9 @@ def pile_up(clock: Clock, t: float, n_c: int) -> bool:
 def end_round_off(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows, clock: Clock) -> int:
     """Where no step can be taken: end the slips that are as good as round-off and settle, if there are any.
 
-    Slips that land together (two points of a pad that comes to rest) leave each other a speed of some roundings of
-    the bodies' own, too small to step on and too large for round-off of one velocity, or a time to land that is
-    nothing beside the step.
+    Of contacts that come to rest together, such as two points of a pad, one is left slipping a little.  Its speed is a
+    few roundings of the velocities of the bodies: too small for a step to end it, and more than the round-off of one
+    velocity.  Or it would come to rest within a time that is nothing beside the step.
     """
     kept = r.small.copy()
     found = False

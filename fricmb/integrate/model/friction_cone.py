@@ -5,8 +5,8 @@ r"""The friction cone: what a contact can hold while it sticks.
 Its two sides are ``friction_size`` and ``stick_limit``; all that decides between stick and slip asks for them, or for
 one of the forms below. A cone of another shape begins here: with another size (an ellipse whose axes are those of the
 rows is done without it, by ``Elliptic.axis_scale`` and the scale of the rows in ``system/_contacts``), or with a
-limit that is given the force as well, for a law that depends on its direction. Slip then needs what goes with it: its
-force along the normal of the set, in ``step/contact_unknowns`` and ``constrained/friction_rows``.
+limit that is given the force as well, for a law that depends on its direction. Slip has to follow: its velocity is
+along the normal of the set of forces, which ``step/contact_unknowns`` and ``constrained/friction_rows`` say for a cone.
 
 Methods for special structures know more, and write the same formula as it serves them:
 
@@ -32,7 +32,7 @@ from fricmb.integrate.run.room_protocols import Laws
 
 @kernel
 def break_away(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
-    """Coefficient up to which a contact sticks: declared, or (``mu_s`` < 0) the limit of the coefficient under N."""
+    """Coefficient up to which a contact sticks: declared, or (``mu_s`` < 0) that of slip at r -> 0, under N."""
     if ports.mu_s[k] >= 0.0:
         return float(ports.mu_s[k])
     return float(coefficient(ports, laws, k, s, 0.0, N)[0])
@@ -54,7 +54,7 @@ def stick_limit_slope(ports: Laws, laws: Table, k: int, s: Scratch, N: float) ->
 
 
 def stick_limits(contacts: Contacts) -> Floats:
-    """The same of all contacts (n_c,) whose normal force is constant."""
+    """The forces up to which all contacts (n_c,) stick, where their normal forces are constant."""
     return np.asarray(np.abs(contacts.mu_s) * contacts.N)
 
 

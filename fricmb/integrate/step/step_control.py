@@ -2,7 +2,10 @@
 
 Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_step.advance`` (5: ``radau``, general
 ``collocation``, ``bdf`` around transitions), ``backward_differences.GROWTH`` (3: ``bdf``), ``constrained/attempt_step``
-(3), ``collocation/one_contact/run.length_factor`` (3), ``taylor/step_loop`` (1.5),
+(3).  ``contact/event_location`` asks for the factor where a step up to a transition is too inaccurate.
+
+Three methods write the formula as their error goes, and do not change with the one here:
+``collocation/one_contact/run.length_factor`` (growth up to 3), ``taylor/step_start`` (1.5),
 ``timestepping/time_loop.adapt`` (2).
 """
 

@@ -1,4 +1,4 @@
-"""Friction of contacts in two directions as it is told: by its powers of s, or by the velocities these lead to."""
+"""What a run reports as friction of contacts in two directions: its powers of s, or what the velocities give."""
 
 from __future__ import annotations
 
