@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.csr import Csr, LazyMatrices
-from fricmb.integrate.kept import Kept, once_per
+from fricmb.integrate.once_per import Kept, once_per
 
 if TYPE_CHECKING:
     from fricmb.integrate.mechanism import Mechanism

@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import LETTERS, Part, PartEnd
+from fricmb.values._same import is_same
 
 
 def check_letters(owner: Part, argument: str, axes: Any) -> str:
@@ -178,6 +179,13 @@ class Driven(PartEnd):
     def movable(self) -> bool:
         """Not by forces."""
         return False
+
+    def moves_like(self, other: object) -> bool:
+        """With the same name and, in the same numbers, the same motion."""
+        fields = ("name", "velocity", "position", "axes")
+        return type(other) is type(self) is Driven and all(
+            is_same(getattr(self, name), getattr(other, name)) for name in fields
+        )
 
     def motion(self, letter: str) -> LinearForm:
         """The prescribed motion; 0 along an axis that is not named."""

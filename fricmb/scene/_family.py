@@ -1,4 +1,4 @@
-"""What scenes of one family share: those that ``replace`` and ``with_parameters`` made of one another."""
+"""What scenes of one family share: those that ``replace`` and ``with_parameters`` made of one another, or look so."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MANY = 500
 def of_same_parts(
     scene: Scene, key: Hashable, parts: Sequence[Part], make: Callable[[], _T], *, but: frozenset[str] = frozenset()
 ) -> _T:
-    """What ``make`` makes of some parts, or made of the very same ones for another scene of the family.
+    """What ``make`` makes of some parts, or made of equal ones for another scene of the family.
 
     Scenes that differ in one value differ in one part, so that a sweep over a stiffness needs its contacts made once,
     and one over a friction coefficient its structure.
@@ -32,7 +32,7 @@ def of_same_parts(
     key : hashable
         What is made, and all that it depends on beside the parts; of each key the last is kept.
     parts : sequence of Part
-        All that it is made of; what is kept is found again where these hold the same objects in the same order.
+        All that it is made of; what is kept is found again where these hold the same values in the same order.
     but : set of str
         Fields of bodies that it does not depend on.
     make : callable
@@ -50,7 +50,7 @@ def of_same_parts(
 
 
 def _is_same(one: Part, other: Part, but: frozenset[str]) -> bool:
-    """Whether two parts hold the same objects, in bodies those fields left out."""
+    """Whether two parts hold the same values, in bodies those fields left out."""
     if one is other:
         return True
     differs = one.differs_in(other)

@@ -13,6 +13,7 @@ from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._forms import LinearForm
 from fricmb.values import Declaration, is_expression
 from fricmb.values._declaration import field_names, values_of
+from fricmb.values._same import is_same
 
 LETTERS = ("x", "y", "z")
 
@@ -98,13 +99,13 @@ class Part(Declaration):
         return copy
 
     def differs_in(self, other: Part) -> set[str] | None:
-        """Fields that are not the same objects, ends that move alike left out; None for a part of another type."""
+        """Fields that hold something else, ends that move alike left out; None for a part of another type."""
         if type(self) is not type(other):
             return None
         kind: Any = type(self)
         read = _field_values(kind)
         values = zip(field_names(kind), read(self), read(other), strict=True)
-        return {name for name, a, b in values if not (a is b or _alike(self, a, b))}
+        return {name for name, a, b in values if not (is_same(a, b) or _alike(self, a, b))}
 
 
 def _alike(part: Part, one: Any, other: Any) -> bool:

@@ -15,6 +15,7 @@ from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._check import check_scene
 from fricmb.scene._contact import Contact
 from fricmb.scene._element import Element
+from fricmb.scene._family_of import family_of
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._matrix import MatrixElement
@@ -68,13 +69,14 @@ class Scene:
     _motions: dict[str, LinearForm] | None
     #: What other layers keep with this very scene; left out of pickles and comparisons.
     _cache: dict[Any, Any]
-    #: The same, shared by all scenes that replace() and with_parameters() made of one another.
+    #: The same, shared by all scenes that replace() and with_parameters() made of one another, and by scenes made apart
+    #: that look so (``_family_of``).
     _shared: dict[Any, Any]
 
     def __init__(self, name: str, parts: Iterable[Part], *, units: Units = DIMENSIONS) -> None:
-        self._fill(name, parts, units, {})
+        self._fill(name, parts, units, None)
 
-    def _fill(self, name: Any, parts: Any, units: Any, shared: dict[Any, Any]) -> None:
+    def _fill(self, name: Any, parts: Any, units: Any, shared: dict[Any, Any] | None) -> None:
         if not isinstance(name, str) or not name:
             raise SceneError(f"Scene: name must be a non-empty string, got {name!r}")
         if isinstance(parts, Part | str) or not isinstance(parts, Iterable):
@@ -90,9 +92,11 @@ class Scene:
         put(self, "dof_names", tuple([name for body in bodies for name in body.dof_names]))
         put(self, "_motions", None)
         put(self, "_cache", {})
-        put(self, "_shared", shared)
+        put(self, "_shared", {} if shared is None else shared)
         with no_collection(len(self.parts)):
             check_scene(self)
+        if shared is None:  # what was found wrong above joins no family
+            put(self, "_shared", family_of(name, self.parts))
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"Scene {self.name!r} cannot be changed; use replace() or with_parameters()")

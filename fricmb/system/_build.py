@@ -13,6 +13,7 @@ from fricmb.integrate.problem import Contacts, Floats, Linear, Problem, Start
 from fricmb.integrate.problem import Signals as SignalArrays
 from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
 from fricmb.scene._family import NUMBERS, STARTS
+from fricmb.scene._family_of import SMALL
 from fricmb.scene._lines import lines_of
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
@@ -130,7 +131,10 @@ def _contacts(scene: Any, motions: _motions.Motions, chosen: Chosen) -> tuple[Co
 
 
 def _problem_in_use(structure: Structure, touching: tuple[ContactArrays, Contacts]) -> Problem | None:
-    """That of another scene which nothing tells from this one but where it starts, while somebody has it."""
+    """That of another scene which nothing tells from this one but where it starts, while somebody has it.
+
+    A family of small scenes has its last one.
+    """
     linear, _ = structure.arrays(0)
     found = linear.kept.get("problem", lambda: None)()
     return found if found is not None and found.contacts is touching[1] else None
@@ -168,6 +172,8 @@ def _system(
     problem = _problem_in_use(structure, touching) if not timed else None
     if problem is None:
         problem = _problem(dofs, structure, touching, signals, known)
+        if len(scene.parts) <= SMALL:
+            scene._shared["problem"] = problem
     q, v = scene.initial_values(dofs)
     system = System(
         problem=problem,

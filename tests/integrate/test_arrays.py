@@ -23,8 +23,8 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Linear, Problem, Signals, Start, Templates
 from fricmb.integrate.run.workspace import Workspace
+from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.radau_step import attempt, finish
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_error import step_error
 from fricmb.integrate.step.tableau import radau

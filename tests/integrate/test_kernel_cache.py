@@ -105,6 +105,23 @@ def test_an_attribute_is_no_global_of_the_same_name():
     assert "factor = float 3.0" in "\n".join(lines({}))
 
 
+def test_a_kernel_that_moved_to_another_module_is_another_one():
+    """What is kept names modules: a version that has other ones could not read it."""
+    from fricmb.integrate.compile.content import _Reader
+    from fricmb.integrate.compile.kernel import kernel
+
+    def lines(module):
+        around = {}
+        exec("def double(x):\n    return 2.0 * x\n", around)
+        around["double"].__module__ = module
+        reader = _Reader()
+        reader.read(kernel(around["double"]))
+        return reader.lines
+
+    assert lines("fricmb.here") == lines("fricmb.here")
+    assert lines("fricmb.here") != lines("fricmb.there")
+
+
 def test_a_run_by_bdf_compiles_nothing_the_second_time():
     program = (
         "import fricmb as fm, sys; fm.simulate(fm.models.belt_oscillator(), t_end=1.0, method='bdf');"

@@ -11,6 +11,7 @@ import sympy
 import fricmb as fm
 from fricmb.scene import LinearForm, check_ends, direction, expression_uses
 from fricmb.values import symbolic
+from fricmb.values._same import is_same
 
 NAN, INF = float("nan"), float("inf")
 
@@ -275,3 +276,31 @@ def test_wrong_declarations_say_what_is_wrong(make, words):
         make()
     for word in words:
         assert word in str(error.value)
+
+
+def test_values_are_the_same_where_whatever_is_made_of_them_is():
+    law = fm.laws.Stribeck(mu_s=1.0, mu_k=0.5, v_s=0.1)
+    twins = [
+        (1.5, 1.5), ("x", "x"), ((1.0, (2.0,)), (1.0, (2.0,))), ({"x": 1.0}, {"x": 1.0}),
+        (law, fm.laws.Stribeck(mu_s=1.0, mu_k=0.5, v_s=0.1)),
+    ]  # fmt: skip
+    assert all(is_same(a, b) for a, b in twins)
+    body = fm.Body("a", mass=1.0)
+    others = [
+        (0.0, -0.0), (1.0, 1), ((1.0,), (1.0, 2.0)), ({"x": 1.0, "y": 2.0}, {"y": 2.0, "x": 1.0}),
+        ({"x": 1.0}, {"x": 2.0}),
+        (law, fm.laws.Stribeck(mu_s=1.0, mu_k=0.5, v_s=0.2)), (law, fm.laws.Coulomb(mu_s=1.0, mu_k=0.5)),
+        (body, fm.Body("a", mass=1.0)), (np.zeros(2), np.zeros(2)), (lambda x: x, lambda x: x),
+    ]  # fmt: skip
+    assert not any(is_same(a, b) for a, b in others)
+
+
+def test_a_driven_end_moves_like_one_of_the_same_name_and_motion():
+    def belt(**velocity):
+        return fm.Driven("belt", velocity=velocity)
+
+    assert belt(x=1.0).moves_like(belt(x=1.0))
+    assert not belt(x=1.0).moves_like(belt(x=2.0))
+    assert not belt(x=1.0).moves_like(belt(y=1.0))
+    assert not belt(x=1.0).moves_like(fm.Driven("rail", velocity={"x": 1.0}))
+    assert not belt(x=fm.t).moves_like(belt(x=2 * fm.t))

@@ -13,6 +13,7 @@ from fricmb.integrate.model import problem_structs, structure
 from fricmb.integrate.run import workspace
 from fricmb.plan import _same, make_plan
 from fricmb.plan._make import _make
+from fricmb.scene._family_of import forget_families
 from fricmb.system import _spectrum
 
 M = fm.models
@@ -59,6 +60,7 @@ def changes(scene, seed, count):
 
 def forget():
     """Nothing is left of runs before."""
+    forget_families()
     for store in (one_contact._store, workspace._store, pattern._store, _same._common, _same._known):
         store.clear()
     for function in (
@@ -88,6 +90,8 @@ def test_other_values_give_what_a_scene_made_anew_gives(name):
     told = 0
     for values, changed in changes(scene, 1, 14):
         found = outcome(lambda v=values: fm.simulate(scene, t_end=t_end, parameters=v))
+        beside = pickle.loads(pickle.dumps(changed))  # of the same family as that of the values before
+        assert found == outcome(lambda s=beside: fm.simulate(s, t_end=t_end)), values
         forget()
         anew = pickle.loads(pickle.dumps(changed))
         assert found == outcome(lambda s=anew: fm.simulate(s, t_end=t_end)), values

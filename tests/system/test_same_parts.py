@@ -10,6 +10,7 @@ import sympy
 
 import fricmb as fm
 from fricmb.scene._family import MANY, of_same_parts
+from fricmb.scene._family_of import FAMILIES, SMALL, _families, forget_families
 from fricmb.system import build
 
 M = fm.models
@@ -78,6 +79,7 @@ def test_signals_of_what_is_shared_are_there():
     build(scene)
     for values in ({"k.stiffness": 3.0}, {"rub.law.mu_k": 0.2}, {"rub.normal_force": 2.0}):
         changed = scene.with_parameters(values)
+        forget_families()
         anew = fm.Scene(changed.name, changed.parts)
         found, wanted = build(changed).problem, build(anew).problem
         assert found.n_u == wanted.n_u == 3
@@ -144,15 +146,57 @@ def test_large_scenes_keep_nothing():
     assert build(scene.with_parameters({f"{name}.stiffness": 3.0})).problem.contacts is not first
 
 
-def test_what_is_kept_keeps_no_scene_alive():
+def test_a_family_keeps_its_last_problem_and_no_other():
     scene = M.brake4dof()
     other = scene.with_parameters({"pad.mass": 2.0})
     build(other)
     kept = weakref.ref(build(other).problem)
     del other
     gc.collect()
+    assert build(scene.with_parameters({"pad.mass": 2.0})).problem is kept()
+    assert build(scene.with_parameters({"pad.mass": 3.0})).problem is not kept()
+    gc.collect()
     assert kept() is None
-    assert build(scene.with_parameters({"pad.mass": 2.0})).problem.n == 4
+
+
+def test_a_scene_that_a_function_makes_anew_takes_what_it_has_in_common_with_the_last_one():
+    forget_families()
+    first = build(M.brake4dof()).problem
+    assert build(M.brake4dof()).problem is first
+    harder = build(M.brake4dof(mu_k_N=16.0)).problem
+    assert harder.linear is first.linear
+    assert harder.contacts is not first.contacts
+    heavier = build(M.brake4dof(mu_k_N=16.0, mass_ratio=900.0)).problem
+    assert heavier.contacts is harder.contacts
+    assert heavier.linear is not harder.linear
+    other_belt = build(M.belt_oscillator(belt=0.3)).problem
+    assert build(M.belt_oscillator(belt=0.2)).problem.signals is not other_belt.signals
+
+
+def test_scenes_of_other_names_types_or_order_are_of_other_families():
+    a, b = fm.Body("a", mass=1.0), fm.Body("b", mass=1.0)
+    spring, damper = fm.Spring("s", a, b, axis="x", stiffness=1.0), fm.Damper("s", a, b, axis="x", damping=1.0)
+    scene = fm.Scene("one", [a, b, spring])
+    assert fm.Scene("one", [a, b, spring])._shared is scene._shared
+    for other in (fm.Scene("two", [a, b, spring]), fm.Scene("one", [a, b, damper]), fm.Scene("one", [b, a, spring])):
+        assert other._shared is not scene._shared
+    many = [fm.Body(f"b{i}", mass=1.0) for i in range(SMALL + 1)]
+    assert fm.Scene("many", many)._shared is not fm.Scene("many", many)._shared
+
+
+def test_families_are_forgotten_when_there_are_many():
+    scene = M.brake4dof()
+    for i in range(FAMILIES):
+        fm.Scene(f"scene {i}", [fm.Body("a", mass=1.0)])
+    assert M.brake4dof()._shared is not scene._shared
+
+
+def test_a_wrong_scene_joins_no_family():
+    a = fm.Body("a", mass=1.0)
+    forget_families()
+    with pytest.raises(fm.SceneError):
+        fm.Scene("wrong", [a, a])
+    assert not _families
 
 
 def test_one_problem_serves_all_starts_while_somebody_has_it():

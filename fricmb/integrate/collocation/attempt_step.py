@@ -22,8 +22,8 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK
 from fricmb.integrate.step.contact_newton import solve_ports
+from fricmb.integrate.step.one_step import newton_tolerances
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
-from fricmb.integrate.step.radau_step import newton_tolerances
 from fricmb.integrate.step.stage_predictor import contacts_from_start
 
 

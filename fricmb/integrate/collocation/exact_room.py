@@ -13,7 +13,7 @@ from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.kept import once_per
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Problem, Templates
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 

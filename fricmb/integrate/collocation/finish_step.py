@@ -21,8 +21,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
+from fricmb.integrate.step.one_step import update_port_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
-from fricmb.integrate.step.radau_step import update_port_scales
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.step_error import state_error
 

@@ -24,8 +24,8 @@ from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Flo
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import evaluate, polynomial
 from fricmb.integrate.step.event_functions import margin
+from fricmb.integrate.step.one_step import finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.radau_step import finish
 from fricmb.integrate.step.step_error import state_error
 
 #: Growth of a polynomial's error behind the last node, by the part of the step: s (s + 1) / 2 for its last coefficient.

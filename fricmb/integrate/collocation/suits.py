@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fricmb.integrate.collocation.exact_room import free_blocks
-from fricmb.integrate.kept import once_per
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
 
 #: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant

@@ -2,7 +2,7 @@
 
 Numba's own stamp is the time and size of the caller's file, so an edit of a kernel that is *called*, or an upgrade that
 keeps a file, would go on running old machine code.  Here the stamp follows the code: functions by their bytecode (so
-comments, names of files and docstrings do not count), kernels that they call, constants, named tuples, and for a block
+comments and docstrings do not count), kernels that they call, constants, named tuples, and for a block
 that is called by name the layouts it takes, but not its inside: that is compiled on its own.
 """
 
@@ -117,7 +117,9 @@ class _Reader:
             return f"block {called()}"
         compiled = getattr(thing, "py_func", None)
         if compiled is not None:
-            return f"kernel {sorted(thing.targetoptions.items())!r} {self._value(compiled)}"
+            # what is kept names the module: of two versions with other modules each finds its own
+            options = sorted(thing.targetoptions.items())
+            return f"kernel of {compiled.__module__} {options!r} {self._value(compiled)}"
         defined = getattr(thing, "_defn", None)
         if defined is not None:
             return f"intrinsic {self._value(defined)}"

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fricmb.integrate.kept import once_per
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 
 _T = TypeVar("_T")

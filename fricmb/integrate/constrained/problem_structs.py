@@ -11,9 +11,9 @@ from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.problem_structs import Spread, Table, spread_of, table_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 
 

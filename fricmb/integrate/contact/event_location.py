@@ -21,8 +21,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.stop import stopped
 from fricmb.integrate.step.event_functions import find_changing_contact, margin
+from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
-from fricmb.integrate.step.radau_step import attempt, finish
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 from fricmb.integrate.step.step_error import step_error
 

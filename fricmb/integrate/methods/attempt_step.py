@@ -31,8 +31,8 @@ from fricmb.integrate.run.outcomes import (
 )
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
+from fricmb.integrate.step.one_step import add_work, attempt, finish, update_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
-from fricmb.integrate.step.radau_step import add_work, attempt, finish, update_scales
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
 from fricmb.integrate.step.step_error import step_error
 

@@ -21,8 +21,8 @@ from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
 from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.one_step import newton_tolerances, prepare_at
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.radau_step import newton_tolerances, prepare_at
 from fricmb.integrate.step.stage_predictor import contacts_from_start
 from fricmb.integrate.step.stages import solve_stages
 

@@ -47,7 +47,7 @@ def growth_table() -> Floats:
     return table
 
 
-class Guard(NamedTuple):
+class BdfGuard(NamedTuple):
     """What keeps BDF from growing on lightly damped oscillations, and from overlooking a transition.
 
     ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` spectrum of the scene.
@@ -60,16 +60,16 @@ class Guard(NamedTuple):
     over: Floats
 
 
-def guard_of(problem: Problem, spectrum: tuple[Floats, Floats]) -> Guard:
+def guard_of(problem: Problem, spectrum: tuple[Floats, Floats]) -> BdfGuard:
     """Of a scene with frequencies and decay rates of the structure, ``spectrum``."""
     omega, decay = (np.ascontiguousarray(x, dtype=float) for x in spectrum)
-    return room(Guard(growth_table(), omega, decay, np.zeros(problem.n_c + 1)))
+    return room(BdfGuard(growth_table(), omega, decay, np.zeros(problem.n_c + 1)))
 
 
 @lru_cache(maxsize=1)
-def no_guard() -> Guard:
+def no_guard() -> BdfGuard:
     """Of a run in which no step is one of BDF."""
-    return room(Guard(np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros(0)))
+    return room(BdfGuard(np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros(0)))
 
 
 #: Structures of more degrees of freedom are not diagonalised for this.
@@ -96,7 +96,7 @@ def spectrum(problem: Problem, structure: Structure, K: Floats, C: Floats) -> tu
 
 
 @kernel
-def admissible(guard: Guard, k: int, h: float, left: float) -> bool:
+def admissible(guard: BdfGuard, k: int, h: float, left: float) -> bool:
     """Whether round-off in every oscillation stays small under order k at step h for the rest of the run."""
     if k < 3:
         return True

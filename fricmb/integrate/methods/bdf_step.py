@@ -26,7 +26,7 @@ from fricmb.integrate.methods.backward_differences import (
     reject,
     rescale,
 )
-from fricmb.integrate.methods.bdf_stability import MAX_ORDER, Guard, admissible
+from fricmb.integrate.methods.bdf_stability import MAX_ORDER, BdfGuard, admissible
 from fricmb.integrate.methods.bdf_transitions import meets_transition
 from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch
@@ -36,8 +36,8 @@ from fricmb.integrate.output.recorder import STEP, Rows, record
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_LAW, HANDOVER, REJECTED
 from fricmb.integrate.step.force_jumps import jump_error
+from fricmb.integrate.step.one_step import add_to_position, newton_tolerances, state_noise
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
-from fricmb.integrate.step.radau_step import add_to_position, newton_tolerances, state_noise
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.stages import solve_stages
 from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
@@ -126,7 +126,7 @@ def accept(y: State, end: State, past: Differences) -> None:
 
 @kernel
 def select_order(
-    packed: Packed, y: State, one: OneStep, acc: Accuracy, past: Differences, guard: Guard, error: float, left: float
+    packed: Packed, y: State, one: OneStep, acc: Accuracy, past: Differences, guard: BdfGuard, error: float, left: float
 ) -> None:
     """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder."""
     k = past.order
@@ -149,7 +149,7 @@ def select_order(
 
 @block
 def bdf_step(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, past: Differences, guard: Guard,
+    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, past: Differences, guard: BdfGuard,
     out: Rows, left: float,
 ) -> int:  # fmt: skip
     """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), or HANDOVER."""

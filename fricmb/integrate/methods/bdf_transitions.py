@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.methods.bdf_stability import Guard
+from fricmb.integrate.methods.bdf_stability import BdfGuard
 from fricmb.integrate.model.accelerations import slip_rate
 from fricmb.integrate.model.forces import Scratch, normal_force
 from fricmb.integrate.model.friction_cone import cone_margin, stick_limit
@@ -25,7 +25,7 @@ def excess(packed: Packed, s: Scratch, y: State, k: int) -> float:
 
 
 @kernel
-def note_loads(packed: Packed, s: Scratch, start: State, y: State, guard: Guard) -> None:
+def note_loads(packed: Packed, s: Scratch, start: State, y: State, guard: BdfGuard) -> None:
     """Keep how fast stuck forces near their limits in the one-step step from ``start`` to y, after which BDF begins."""
     h = y.t - start.t
     for k in range(y.mode.shape[0]):
@@ -36,7 +36,7 @@ def note_loads(packed: Packed, s: Scratch, start: State, y: State, guard: Guard)
 
 
 @kernel
-def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: Guard) -> bool:
+def meets_transition(packed: Packed, s: Scratch, y: State, end: State, guard: BdfGuard) -> bool:
     """Whether some contact changes its mode between y and ``end``, at its end or between (by cubic interpolation)."""
     h = end.t - y.t
     meets = False

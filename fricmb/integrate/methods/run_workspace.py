@@ -10,11 +10,11 @@ import numpy as np
 
 from fricmb.integrate.contact.rest_problem import Rest, rest_of
 from fricmb.integrate.contact.transition import Before
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.methods.attempt_step import Clock
 from fricmb.integrate.model.forces import Scratch, scratch_of
 from fricmb.integrate.model.instant_workspace import sizes_of
 from fricmb.integrate.model.state import State, state_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.workspace import Store, lent
 from fricmb.integrate.step.exact_structure import Exact, no_exact

@@ -7,7 +7,7 @@ from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.methods.attempt_step import Clock, advance, settled
 from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
-from fricmb.integrate.methods.bdf_stability import Guard
+from fricmb.integrate.methods.bdf_stability import BdfGuard
 from fricmb.integrate.methods.bdf_step import bdf_step, start_history
 from fricmb.integrate.methods.bdf_transitions import calm, note_loads
 from fricmb.integrate.model.forces import Scratch
@@ -45,7 +45,7 @@ def crowded(out: Rows, n_s: int, nc: int) -> bool:
 @entry
 def drive(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
-    past: Differences, guard: Guard, r: Rest, old: Before, out: Rows, clock: Clock,
+    past: Differences, guard: BdfGuard, r: Rest, old: Before, out: Rows, clock: Clock,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until the space for rows is used up.
 

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.forces import Scratch, longest_call, scratch_of
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.model.state import State, state_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.workspace import lent
 

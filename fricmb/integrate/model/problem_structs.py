@@ -7,8 +7,8 @@ import numpy as np
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import (
     NORMAL_CONSTANT,
     NORMAL_LAW,

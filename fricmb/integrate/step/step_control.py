@@ -4,9 +4,8 @@ Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_ste
 ``collocation``, ``bdf`` around transitions), ``backward_differences.GROWTH`` (3: ``bdf``), ``constrained/attempt_step``
 (3).  ``contact/event_location`` asks for the factor where a step up to a transition is too inaccurate.
 
-Three methods write the formula as their error goes, and do not change with the one here:
-``collocation/one_contact/run.length_factor`` (growth up to 3), ``taylor/step_start`` (1.5),
-``timestepping/time_loop.adapt`` (2).
+The other methods ask the same formula: ``collocation/one_contact/run.length_factor`` (growth up to 3),
+``taylor/step_start`` (1.5), ``timestepping/time_loop.adapt`` (2).
 """
 
 from __future__ import annotations

@@ -15,8 +15,8 @@ from fricmb.integrate.step.contact_unknowns import PortState
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
+from fricmb.integrate.step.one_step import state_noise
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact, widest
-from fricmb.integrate.step.radau_step import state_noise
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 

@@ -9,9 +9,9 @@ import numpy as np
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import table_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone

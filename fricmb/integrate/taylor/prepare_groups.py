@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.problem_structs import table_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.taylor.groups import SECOND, Groups

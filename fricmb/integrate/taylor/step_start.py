@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.step.step_control import step_factor
 from fricmb.integrate.taylor.fresh import all_series, lose_fresh
 from fricmb.integrate.taylor.idle import idle_step
 from fricmb.integrate.taylor.landing import land_all, take_off
@@ -50,7 +51,7 @@ def follow_signals(net: Net, t: float, h: float) -> float:
             break
         last = error
         # where a function has no value its error is no number
-        h *= max(0.3, 0.9 * (fine / error) ** 0.125) if error < math.inf else 0.3
+        h *= max(0.3, step_factor(error / fine, 8.0, 0.9)) if error < math.inf else 0.3
         if not error < math.inf and h <= EPS * max(abs(t), net.longest):
             return 0.0
     return h
@@ -104,7 +105,7 @@ def choose_step(net: Net) -> bool:
         net.n_shorter += 1
         h *= 0.1
     order = net.Q.shape[0] - 2.0
-    factor = min(1.5, 0.95 * (error + 1e-30) ** (-1.0 / order))
+    factor = min(1.5, step_factor(error, order, 0.95))
     if error > 1.0 or net.allowed < 1.0:
         net.n_shorter += 1
         rescale(net, min(factor, net.allowed))

@@ -11,10 +11,10 @@ from fricmb.integrate.compile.layout import room_type
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import on_one_pattern
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.band_ordering import narrow_order
 from fricmb.integrate.model.forces import scratch_of
 from fricmb.integrate.model.problem_structs import table_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, NORMAL_LAW, Ints, Problem
 from fricmb.integrate.timestepping.loops import loops_of
 from fricmb.integrate.timestepping.room import Run

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.step_control import ladder, step_factor
 from fricmb.integrate.timestepping.free_motion import set_window
 from fricmb.integrate.timestepping.layout import DRIVES, HERE, MIDDLE, NO_NUMBER, SOUND, THERE, WHOLE
 from fricmb.integrate.timestepping.recorder import copy_state, keep_event, keep_row
@@ -17,6 +16,8 @@ from fricmb.integrate.timestepping.step_error import doubtful, step_error
 
 #: Shortest steps to which steps are shortened until it is clear which transitions they hold.
 COARSE = 1e4
+#: Rungs of the ladder between a step and its double: halves of steps are steps, too.
+RUNGS = 2
 #: Why a run came back.
 DONE, FULL, NOT_FINITE, NEGATIVE = range(4)
 
@@ -48,17 +49,11 @@ def accept(run: Run, slot: int, t: float) -> None:
 
 
 @kernel
-def on_ladder(h: float) -> float:
-    """The next smaller power of the square root of 2: halves of steps are steps, too."""
-    return float(2.0 ** (math.floor(2.0 * math.log2(h) + 1e-9) / 2.0))
-
-
-@kernel
 def next_length(run: Run) -> float:
     """Length of the next step: to the next stop at most."""
     left = run.stops[run.n_stop] - run.time
     fixed = run.fixed_step
-    h = fixed if fixed > 0.0 else on_ladder(min(run.step, run.longest))
+    h = fixed if fixed > 0.0 else ladder(min(run.step, run.longest), RUNGS)
     if h >= left * (1.0 - 1e-9):
         return float(left)
     if fixed == 0.0 and h > 0.5 * left:
@@ -73,9 +68,9 @@ def adapt(run: Run, h: float, error: float, settled: bool) -> bool:
         run.step = 0.25 * h
         fine = h <= run.shortest
     else:
-        factor = 0.9 * (error + 1e-12) ** (-1.0 / 3.0)
+        factor = step_factor(error, 3.0, 0.9)
         if error > 1.0:
-            factor = min(0.9 * error ** (-0.5), 0.5)
+            factor = min(step_factor(error, 2.0, 0.9), 0.5)
         run.step = h * min(2.0, max(0.1, factor))
         fine = error <= 1.0 or h <= run.shortest
     run.step = max(run.step, run.shortest)

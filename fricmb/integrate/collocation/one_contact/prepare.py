@@ -15,8 +15,8 @@ from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.model.friction_cone import stick_limits
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.workspace import empty_arrays

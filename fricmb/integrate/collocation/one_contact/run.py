@@ -33,6 +33,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
 #: Why a run came back: at its end; no space for rows; for a progress report; or what went wrong.
 DONE, FULL, PAUSE, UNDERFLOW, ENDLESS, NOT_FINITE = range(6)
@@ -47,7 +48,7 @@ BLOCKS = ("transfer_weights", "solve_slip", "land", "arrive", "begin_phase", "st
 @kernel
 def length_factor(error: float, s: int) -> float:
     """By what a step may grow or has to shrink."""
-    return float(min(3.0, max(0.05, 0.85 * (error + 1e-30) ** (-1.0 / s))))
+    return float(min(3.0, max(0.05, step_factor(error, s, ONE_STEP_SAFETY))))
 
 
 @kernel

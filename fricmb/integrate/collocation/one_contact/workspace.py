@@ -20,7 +20,7 @@ from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.kept import once_per
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.stop import ended
 
