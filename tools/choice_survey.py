@@ -70,6 +70,19 @@ def beam(n: int, contacts: int = 1, damping: float = 1e-4) -> fm.Scene:
     return fm.Scene("beam", [*bodies, drive, *parts])
 
 
+def tied(n: int, tie: float, damping: float = 0.0) -> fm.Scene:
+    """Masses in a row, on a soft spring, tied to each other by stiff ones; the last one rubs."""
+    bodies = [fm.Body(f"b{i}", mass=1.0, position={"x": 0.1 * (1 + i)}) for i in range(n)]
+    drive = fm.Driven("belt", velocity={"x": 0.5})
+    parts: list[Any] = [fm.Spring("g", bodies[0], axis="x", stiffness=1.0)]
+    for i in range(n - 1):
+        pair = bodies[i], bodies[i + 1]
+        parts.append(fm.Spring(f"s{i}", *pair, axis="x", stiffness=tie))
+        parts.append(fm.Damper(f"d{i}", *pair, axis="x", damping=2.0 * damping * math.sqrt(tie)))
+    law = laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.2)
+    return fm.Scene("tied", [*bodies, drive, *parts, fm.Contact("c", bodies[-1], drive, law=law, normal_force=1.0)])
+
+
 def belt(law: fm.FrictionLaw) -> fm.Scene:
     """The mass on a belt under any law."""
     scene: fm.Scene = models.belt_oscillator(law=law)
@@ -82,6 +95,7 @@ def scenes() -> dict[str, tuple[Callable[[], fm.Scene], float]]:
         "brake, case 1": (partial(models.brake4dof, "1"), 700.0),
         "brake, case 2": (partial(models.brake4dof, "2"), 700.0),
         "brake, case 5": (partial(models.brake4dof, "5"), 700.0),
+        "brake, Stribeck": (partial(models.brake4dof, "2", law=laws.Stribeck(mu_s=1.2, mu_k=0.8, v_s=1.0)), 100.0),
         "belt": (models.belt_oscillator, 200.0),
         "belt, Stribeck": (partial(belt, laws.Stribeck(mu_s=1.5, mu_k=1.0, v_s=0.05, exponent=1.0)), 200.0),
         "belt, viscous": (partial(belt, laws.CoulombViscous(mu_s=1.5, mu_k=1.0, viscous=0.1)), 60.0),
@@ -98,6 +112,12 @@ def scenes() -> dict[str, tuple[Callable[[], fm.Scene], float]]:
     found |= {f"sliding in the plane, {n}": (partial(in_the_plane, n, 0.3, 0.5), 20.0) for n in (1, 2, 4, 6, 8)}
     found |= {f"sticking in the plane, {n}": (partial(in_the_plane, n, 0.05, 0.9), 60.0) for n in (1, 2, 3, 4, 6)}
     found |= {f"beam, {n}": (partial(beam, n), 20.0) for n in (5, 20, 60, 150)}
+    found |= {
+        f"tied, {n}, {tie:g}, {damping}": (partial(tied, n, tie, damping), 10.0)
+        for n, tie, damping in (
+            (2, 1e2, 0.0), (2, 1e4, 0.0), (2, 1e4, 0.3), (4, 1e3, 0.0), (12, 1e2, 0.0), (12, 1e4, 0.0),
+        )
+    }
     found |= {
         "beam, 60, 4 contacts": (partial(beam, 60, 4), 20.0),
         "beam, 60, damped": (partial(beam, 60, 1, 0.05), 20.0),

@@ -6,15 +6,17 @@ import math
 
 import numpy as np
 
+from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.one_contact.prepare import is_single
+from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.collocation.suits import against, port_rows, too_far_apart
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
-from fricmb.integrate.kept import once_per
 from fricmb.integrate.methods.bdf import Bdf
 from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_SMOOTH, Problem
 from fricmb.integrate.suits_taylor import against_taylor, fastest
 
@@ -39,14 +41,18 @@ LOOSE = 1e-4
 #: Degrees of freedom to a contact up to which Taylor steps are faster than exact structure where contacts are coupled
 #: or friction depends on slip speed: on two to fifty contacts under Stribeck laws, and on stacks, bdf took 1.3 to 2
 #: times as long as Taylor steps with two contacts, 2 to 4 times with four, 10 times with sixteen, 25 with fifty;
-#: collocation 1.3 to 2.2 times with two and three, and with one on a single mass.
+#: collocation 1.3 to 2.2 times with two and three.
 DEEP = 5
-#: Where there are more, Taylor steps, whose work goes with n times the highest frequency, are faster again from LONG
-#: degrees of freedom on and up to SPREAD n between the highest and the lowest frequency (exact structure: n squared):
-#: beams of 60 and 150 masses under a Stribeck law took collocation 1.7 to 2.9 and bdf 3.4 to 8 times as long; with 20
-#: masses both took as long, with 60 and frequencies 4000 apart Taylor steps lost.  Plates of 120 and 600 modes on three
-#: pads: bdf took 1.8 to 3.7 times as long.  One contact on few masses: up to CLOSE.
-LONG, SPREAD, CLOSE = 30, 8.0, 3.0
+#: Beyond, and with one contact, the highest frequency sets the steps of both, which cost n in the one and n squared in
+#: the other; what does not ring the other passes over.  Taylor steps are faster up to CLOSE n between the highest and
+#: the lowest frequency, n up to FULL, and SPREAD n (docs/decisions/0081-taylor-steps-for-one-contact.md).
+CLOSE, FULL, SPREAD = 32.0, 30, 8.0
+#: Damping ratio below which fast modes go on ringing and move what friction depends on: so many times farther apart
+#: exact structure, whose polynomials must follow them as well, needs longer to the same error.
+CLEAR, UNDAMPED = 0.005, 32.0
+#: Part of the contact's mobility that a mode must have for the contact to feel it: a heavy rotor that hangs on a soft
+#: spring makes no spread of frequencies.
+FELT = 0.01
 #: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
 FEW = 4
 #: Damping ratio of a mode that is calm before a slower one has moved, and how many times as fast it is where explicit
@@ -109,7 +115,7 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
     shallow = problem.n < DEEP * problem.n_c
     if against_taylor(problem) is not None:
         return None
-    if problem.n_c == 1 and not (_close(problem) if shallow else _long(problem)):
+    if problem.n_c == 1 and not _are_close(problem):
         return None
     from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
     from fricmb.integrate.taylor.prepare_groups import coupled_or_rate_dependent
@@ -122,27 +128,36 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
         return many, f"{contacts} under constant friction, none sharing a body: Taylor steps, local corrections"
     if shallow:
         return many, f"{contacts} with friction of slip speed, or sharing bodies: Taylor steps, local corrections"
-    if _long(problem):
+    if _are_close(problem):
         return many, f"{contacts} on {problem.n} degrees of freedom, frequencies not far apart: Taylor steps"
     return None
 
 
-def _close(problem: Problem) -> bool:
-    """Whether all modes ring in the same octaves."""
-    return _spread(problem) <= CLOSE
-
-
-def _long(problem: Problem) -> bool:
-    """Whether modes are so many, and so close, that explicit steps are fewer than what exact structure costs."""
-    return problem.n >= LONG and _spread(problem) <= SPREAD * problem.n
-
-
-def _spread(problem: Problem) -> float:
-    """Highest frequency over the lowest that is not 0; infinite where they are not known."""
-    slow = problem.omega[problem.omega > 0.0].min(initial=math.inf)
+def _are_close(problem: Problem) -> bool:
+    """Whether frequencies are so close that explicit steps cost less than what exact structure does."""
+    most = max(SPREAD * problem.n, CLOSE * min(problem.n, FULL))
+    rings = problem.omega[problem.omega > 0.0]
     if problem.omega.size < problem.n:
-        return math.inf
-    return float(fastest(problem) / slow) if slow < math.inf else 1.0
+        return False  # they are not known
+    fast = fastest(problem)
+    if problem.n < FULL and problem.zeta[problem.omega > 0.5 * problem.omega.max()].min(initial=1.0) < CLEAR:
+        most *= UNDAMPED
+    if fast <= most * rings.min(initial=fast):
+        return True
+    return problem.n_c == 1 and problem.n < FULL and fast <= most * _slowest_felt(problem)
+
+
+def _slowest_felt(problem: Problem) -> float:
+    """The lowest frequency, not 0, of the modes that one contact feels; 0 where they are not known."""
+    try:
+        modes = free_blocks(problem)
+    except NoBlocks:
+        return 0.0
+    if not modes.modal:
+        return 0.0
+    share = np.sum((modes.force_1 @ problem.contacts.W) ** 2, axis=1)
+    felt = (share > FELT * share.sum()) & (modes.w2 > 0.0)
+    return float(np.sqrt(modes.w2[felt].min(initial=math.inf)))
 
 
 def _held_by_calm_modes(problem: Problem) -> bool:
