@@ -23,10 +23,16 @@ from fricmb.plot import BLUE, DARK, ORANGE
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "images"
 #: What the pictures of the front page compare, and how: fricmb's default in colour, other programs in grey.
-PEERS = {"scipy LSODA": "LSODA (scipy)", "CVODE": "CVODE (SUNDIALS)", "Exudyn": "Exudyn", "scipy BDF": "BDF (scipy)"}
+PEERS = {
+    "numbalsoda lsoda": "LSODA (numbalsoda)", "scipy LSODA": "LSODA (scipy)", "CVODE": "CVODE (SUNDIALS)",
+    "Exudyn": "Exudyn", "scipy BDF": "BDF (scipy)",
+}  # fmt: skip
 #: Where a name stands beside the last point of its line, in points, and which way it runs.
 LEFT = "left"
-BESIDE = {"scipy LSODA": (8, -4, LEFT), "CVODE": (8, 2, LEFT), "Exudyn": (8, -5, LEFT), "scipy BDF": (8, -2, LEFT)}
+BESIDE = {
+    "numbalsoda lsoda": (8, -5, LEFT), "scipy LSODA": (8, -13, LEFT), "CVODE": (4, 8, LEFT), "Exudyn": (-4, 9, LEFT),
+    "scipy BDF": (8, -2, LEFT),
+}  # fmt: skip
 BELT = 0.1
 #: Two periods of the motion, so that the picture runs round.
 FRAMES, PER_SECOND, START, T_END = 80, 15, 13.0, 2 * 13.53638378328955
@@ -102,7 +108,7 @@ def comparison(path: Path) -> None:
         front = time <= np.minimum.accumulate(time)  # a setting that is slower and no better is left out
         own = method == "auto"
         style = {"color": ORANGE, "linewidth": 2.5} if own else {"color": "0.5", "linewidth": 1.2}
-        marker = "o" if own else "s^vd"[list(PEERS).index(method)]
+        marker = "o" if own else "Ps^vd"[list(PEERS).index(method)]
         ax.loglog(error[front], time[front], marker=marker, markersize=5, **style)
         at = int(np.argmin(error[front]))
         right, up, side = BESIDE.get(method, (0, 9, "right"))
