@@ -32,6 +32,8 @@ from fricmb.integrate.step.step_error import state_error
 GROWTH = 36.0
 #: Error of a velocity, by its own scale, that is round-off; part of the tolerance that a transition may take.
 ROUND_OFF, PART = 1e-13, 1e-2
+#: How far a polynomial through the nodes may miss the start of the step, by its last coefficients.
+TAIL = 4.0
 #: Round-off of a polynomial by its powers, relative to how much it changes.
 GRAIN = 1e-11
 #: Part of a first guess by which the second one differs, to see which way to go.
@@ -116,22 +118,29 @@ def may_stay(packed: Packed, y: State, end: State, one: OneStep, acc: Accuracy, 
     """Whether tau is so near to the end of the step h, or forces so smooth, that the step need not be solved anew.
 
     Forces at ``end``, the state there, must be those of the polynomials: slip that ends passes through what a law has
-    near rest.
+    near rest.  So must those at the start: where all nodes lie behind the end of slip, laws are constant at them.
     """
-    ex = one.exact
+    ex, ports = one.exact, packed.ports
     beyond = abs(tau - h) / h
     error = input_error(one) + state_error(packed, y, one, acc, h)
     error += stiff_error(y, one, acc, h, ex.safety * acc.rtol)
     off = 0.0
     for a in range(y.F.shape[0]):
         off = max(off, ex.weight[a] * abs(end.F[a] - between_nodes(ex.monomial, one.w.F[:, a], tau / h)))
+    missed = 0.0
+    for k in range(y.mode.shape[0]):
+        if y.mode[k] == SLIP and ports.law[k] != LAW_SMOOTH:
+            for a in range(ports.row[k], ports.row[k + 1]):
+                miss = abs(y.F[a] - between_nodes(ex.monomial, one.w.F[:, a], 0.0)) - 1e-15 * abs(y.F[a])
+                missed = max(missed, ex.weight[a] * miss - TAIL * error)
     noise = 0.0
     last = ex.P.shape[1] - 1
     for c in range(ex.P.shape[0]):
         for x in range(last):
             noise = max(noise, ex.weight[c] * abs(ex.P[c, x] - ex.P[c, last]))
     allowed = ROUND_OFF + (PART * acc.rtol if exact_as_its_tolerance(packed, y, k) else 0.0)
-    return bool(min(1.0, GROWTH * beyond) * error + beyond * (off + GRAIN * noise) <= allowed)
+    left = min(1.0, GROWTH * beyond) * error + beyond * (off + GRAIN * noise) + tau / h * missed
+    return bool(left <= allowed)
 
 
 @block

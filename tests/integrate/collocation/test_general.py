@@ -82,6 +82,15 @@ def test_tolerance_means_error(name, rtol):
     assert late <= 1000.0 * rtol
 
 
+@pytest.mark.parametrize("rtol", [1e-9, 3e-11, 5e-12])
+def test_slip_that_ends_before_the_first_node_of_a_step(rtol):
+    # all nodes lie behind the end, where laws are constant: their polynomial knows nothing of the slip before it
+    ref = reference.load("p4_vdr0.1")
+    sol = fm.simulate(two_blocks(), t_end=float(ref["t"][-1]), rtol=rtol, method=GENERAL)
+    times = reference.event_times(sol.events)
+    assert times == pytest.approx(ref["t_event"], abs=0.1 * rtol + 5e-11)
+
+
 @pytest.mark.slow
 def test_twenty_blocks_within_the_growth_of_errors():
     ref = reference.load("p6")
