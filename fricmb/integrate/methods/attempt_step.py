@@ -33,7 +33,7 @@ from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
 from fricmb.integrate.step.one_step import add_work, attempt, finish, update_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
-from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, step_factor
+from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, next_step, step_factor
 from fricmb.integrate.step.step_error import step_error
 
 #: Slip speed, relative to the velocities behind it, that is taken for none where no step can be taken.
@@ -46,7 +46,8 @@ class Clock(Layout):
     """Step control: ``h`` next step, ``usual`` step to start with after a transition, ``span`` (2,) bounds.
 
     ``longest`` step of all; ``stops`` breakpoints; transitions in a row at one instant, ``at_once``, and since the time
-    ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.
+    ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.  ``growth``: see
+    ``step_control.next_step``.
     """
 
     h: float
@@ -59,6 +60,7 @@ class Clock(Layout):
     found: Floats
     mark: float
     retry: Floats
+    growth: float
 
 
 @kernel
@@ -109,6 +111,8 @@ def advance(
     error = np.inf
     if attempt(packed, s, y, one, acc, h):
         error = step_error(packed, s, y, one, acc, h)
+    if not error <= 1.0 and not is_exact(one):
+        clock.growth = 1.0
     if not error < np.inf:
         return reject(clock, one, 0.25 * h)
     copy_state(y, end)
@@ -128,7 +132,7 @@ def advance(
         clock.at_once = 0
         if h < left:
             clock.usual = max(h, 0.8 * clock.usual)
-        clock.h = wanted
+        clock.h = next_step(clock, h, wanted)
         return ACCEPTED
     if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):
         return reject(clock, one, wanted)
@@ -158,6 +162,7 @@ def advance(
         return FAIL_CHATTER
     copy_state(end, y)
     clock.h = clock.usual
+    clock.growth = np.inf
     one.last_h = 0.0
     return settled(transition(packed, s, y, contact, lifted, r, old, out))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, transition
@@ -60,6 +62,7 @@ def drive(
             code = arrive(packed, s, y, r, old, out, clock, stop)
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
+            clock.growth = np.inf
             past.on = 0
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)

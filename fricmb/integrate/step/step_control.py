@@ -10,6 +10,8 @@ The other methods ask the same formula: ``collocation/one_contact/run.length_fac
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
@@ -42,6 +44,25 @@ def step_factor(error: float, order: float, safety: float) -> float:
     ``safety error^(-1/order)`` (Hairer, Noersett, Wanner, Solving ODEs I, II.4); bounds are the caller's.
     """
     return float(safety * max(error, 1e-16) ** (-1.0 / order))
+
+
+class Pace(Protocol):
+    """``growth``: by what a step may grow behind an accepted one."""
+
+    growth: float
+
+
+@kernel
+def next_step(c: Pace, h: float, wanted: float) -> float:
+    """The step after an accepted one of length ``h`` whose error alone would let it be ``wanted``.
+
+    What a step has failed at lies ahead of the next ones, too: after a failure, where ``growth`` is set to 1, it
+    becomes half as large again with every step taken.  (Else each step that is accurate is followed by one that is far
+    too long; where equations that do not converge say so, that one costs several times as much.)
+    """
+    allowed = h * c.growth
+    c.growth *= 1.5
+    return float(min(wanted, allowed))
 
 
 @kernel
