@@ -10,9 +10,15 @@ from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, remember, try_step
+from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, is_round_off, remember, try_step
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
-from fricmb.integrate.constrained.singular_position import dips, near_singular, nears_singular, step_to_singular
+from fricmb.integrate.constrained.singular_position import (
+    SUSPECTED,
+    has_come_near,
+    longest_towards,
+    may_have_passed,
+    near_singular,
+)
 from fricmb.integrate.constrained.slip_growth import growth
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
@@ -20,13 +26,9 @@ from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes
-from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
-
-#: Shortest step, as a part of the span.
-SMALLEST = 1e-14
 
 
 @kernel
@@ -81,27 +83,16 @@ def radau_step(
     s = st.tab.c.shape[0]
     t = y.t
     left = stop - t
-    h = min(c.h, c.longest)
+    h = min(c.h, c.longest, longest_towards(out))
     if h >= left:
         h = left
     elif h > 0.5 * left:
         h = 0.5 * left
-    if h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t):
+    if is_round_off(c, h, t):
         margins(mech, k, w, y, out, False)
-        return FAIL_STEP
+        return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
     c.made = 0.0
-    made = try_step(mech, k, y, st, c, h)
-    if nears_singular(out, h) and (not made or dips(mech, k, w, y, end, st, out, h)):
-        reached = step_to_singular(mech, k, w, y, end, st, c, out, h)
-        if reached > 0.0:
-            record_step(mech, rec, y, end, st, c, reached)
-            copy_state(end, y)
-            near_singular(mech, k, w, y, out, reached)
-            return FAIL_SINGULAR
-        out.sigma_h = 0.0
-        c.made = 0.0
-        made = try_step(mech, k, y, st, c, h)
-    if not made:
+    if not try_step(mech, k, y, st, c, h):
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         return reject(c, 0.4 * h)
@@ -114,6 +105,8 @@ def radau_step(
         return reject(c, h * max(0.2, factor))
     if not end_step(mech, k, w, y, end, st, c, h):
         return reject(c, 0.4 * h)
+    if may_have_passed(mech, k, w, end, out, h):
+        return reject(c, 0.5 * h)
     if margins(mech, k, w, end, out, False) <= 0.0:
         h = last_unique(mech, k, w, y, end, st, c, out, h)
         if h > 0.0:

@@ -20,7 +20,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle, state_noise
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
-from fricmb.integrate.constrained.singular_position import near_singular, nears_singular
+from fricmb.integrate.constrained.singular_position import near_singular, way_left
 from fricmb.integrate.constrained.slip_growth import growth
 from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
@@ -46,6 +46,8 @@ from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
 
 #: Newton stops at this part of the error that a step may make.
 NEWTON = 0.03
+#: Shortest step, as a part of that of the one-step method: shorter ones fail by the round-off of positions over h.
+LEAST = 1e-6
 #: Rate of convergence at which the Jacobian is made anew.
 SLOW = 0.2
 
@@ -186,7 +188,9 @@ def multistep(
     A step at whose end, or inside which, a mode changes or friction is no longer unique is left to the one-step method.
     """
     h, order = past.h, past.order
-    if h > left or past.rejections > (3 if past.since > 0 else 8) or nears_singular(out, h):
+    if h < LEAST * formula.usual:
+        return HANDOVER
+    if h > left or past.rejections > (3 if past.since > 0 else 8) or way_left(out) <= 4.0 * h:
         return HANDOVER
     predict(past)
     if not solve_formula(mech, k, y, end, c, past, formula):

@@ -11,7 +11,7 @@ BLOCKS = (
     "add_pairs", "add_joints", "add_structure", "add_contacts", "add_slip", "add_load", "add_friction",
     "friction_residual", "instant_residual", "instant_matrix", "react", "powers", "linearise", "factor_stages",
     "stage_residual", "newton_change", "iterate_stages", "try_step", "project_positions", "project_velocities",
-    "end_step", "decide", "enumerate_modes", "margins", "change_modes", "violated", "sigma_after", "record_step",
+    "end_step", "decide", "enumerate_modes", "margins", "change_modes", "violated", "record_step",
     "copy_state", "radau_step", "lightness", "add_stick", "law_defect", "share_load",
 )  # fmt: skip
 

@@ -18,8 +18,12 @@ from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_s
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
+from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.stage_predictor import lagrange
 from fricmb.integrate.step.tableau import by_line
+
+#: Shortest step, as a part of the span.
+SMALLEST = 1e-14
 
 
 class Control(Layout):
@@ -63,6 +67,12 @@ def control_of(problem: Problem, st: Stages) -> Control:
         0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
         np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z),
     )  # fmt: skip
+
+
+@kernel
+def is_round_off(c: Control, h: float, t: float) -> bool:
+    """Whether a step h from t is as good as none."""
+    return bool(h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t))
 
 
 @kernel

@@ -1,31 +1,27 @@
-"""Positions in which constraints depend on one another: how near one is, and steps that meet or pass one."""
+"""Positions in which constraints depend on one another: how near one is, and how far a step may go towards it."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
-from fricmb.integrate.constrained.forces import move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, step_to
-from fricmb.integrate.constrained.recorder import copy_state
-from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
 
 #: Inverse iterations where nothing is known of the direction.
 TURNS = 20
-
-
-#: A least singular value this small beside what it was: the constraints are as good as dependent.
-SINGULAR = 1e-9
-
-
-#: A least singular value that a step can bring down to this part of what it was at the start: a singular position.
-REACHED = 3e-6
+#: A least singular value that falls and has come down to this part of what it was at the start: a singular position.
+#: (Reactions grow with the inverse of its square: nearer still, no step can be solved to a tolerance.)
+REACHED = 2.5e-5
+#: The same, where steps have become as short as round-off on the way there.
+SUSPECTED = 1e-3
+#: The same, where steps become shorter than the way to it; their part of that way.
+NEAR, APPROACH = 0.6, 0.7
+#: Part by which it changes before its rate is counted anew: what is less may be round-off, in short steps.
+NOTED = 1e-3
 
 
 @kernel
@@ -58,67 +54,50 @@ def least_singular(mech: Mech, w: Instant, out: Watch, turns: int) -> float:
 
 
 @kernel
-def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: float) -> bool:
-    """Whether the constraints are as good as dependent at y, which has just been completed by a step h."""
-    out.sigma_before = out.sigma
-    out.sigma_h = h
+def has_come_near(out: Watch, part: float) -> bool:
+    """Whether the least singular value is on its way to 0, and below a part of what it was at the start."""
+    return bool(out.sigma < part * out.sigma_start and out.sigma_rate < 0.0)
+
+
+@kernel
+def sigma_at(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> float:
+    """Least singular value at a state that has just been completed; 0 where the matrix is singular."""
     # without friction the factors of the projection are those of the instant
     if y.F.shape[0] > 0 and not instant_matrix(mech, k, w, y, NONE):
-        return True
-    out.sigma = least_singular(mech, w, out, 1)
-    return bool(out.sigma < SINGULAR * out.sigma_start)
+        return 0.0
+    return least_singular(mech, w, out, 1)
 
 
 @kernel
-def nears_singular(out: Watch, h: float) -> bool:
-    """Whether a step h might meet a singular position, the least singular value falling on."""
-    fall = out.sigma_before - out.sigma
-    return bool(out.sigma_h > 0.0 and fall > 0.0 and out.sigma * out.sigma_h <= 4.0 * fall * h)
+def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: float) -> bool:
+    """Whether the constraints are as good as dependent at y, which has just been completed by a step h."""
+    out.sigma = sigma_at(mech, k, w, y, out)
+    out.sigma_h += h
+    change = out.sigma - out.sigma_before
+    if abs(change) > NOTED * out.sigma_before:
+        out.sigma_rate = change / out.sigma_h
+        out.sigma_before = out.sigma
+        out.sigma_h = 0.0
+    return out.sigma == 0.0 or has_come_near(out, REACHED)
 
 
 @kernel
-def dips(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, out: Watch, h: float) -> bool:
-    """Whether the least singular value falls to less than half at a stage of the step just solved."""
-    copy_state(y, end)
-    for i in range(st.tab.c.shape[0]):
-        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
-        if not instant_matrix(mech, k, w, end, NONE):
-            return True
-        if least_singular(mech, w, out, 1) < 0.5 * out.sigma:
-            return True
-    return False
+def way_left(out: Watch) -> float:
+    """Time until the least singular value is 0 if it falls on as it did."""
+    return -out.sigma / out.sigma_rate if out.sigma_rate < 0.0 else np.inf
 
 
 @kernel
-def step_to_singular(
-    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float
-) -> float:
-    """Length of a step of at most h to a singular position, left in ``end``; 0: there is none.  Golden section."""
-    low, high = 0.0, h
-    for _ in range(50):
-        a = low + 0.381966 * (high - low)
-        b = low + 0.618034 * (high - low)
-        first = sigma_after(mech, k, w, y, end, st, c, out, a)
-        if first <= REACHED * out.sigma_start:
-            return a
-        second = sigma_after(mech, k, w, y, end, st, c, out, b)
-        if second <= REACHED * out.sigma_start:
-            return b
-        if first < second or first > 1e299:
-            high = b
-        else:
-            low = a
-        if high - low < 1e-2 * h and min(first, second) > 0.2 * out.sigma:
-            break
-    return 0.0
+def longest_towards(out: Watch) -> float:
+    """Longest step on the way to a singular position that is near: one far beyond it would not see it."""
+    return APPROACH * way_left(out) if out.sigma < NEAR * out.sigma_start else np.inf
 
 
-@block
-def sigma_after(
-    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch,
-    h: float,
-) -> float:  # fmt: skip
-    """Least singular value of the constraints after a step h, left in ``end``; a large one where none can be made."""
-    if not step_to(mech, k, w, y, end, st, c, h) or not instant_matrix(mech, k, w, end, NONE):
-        return 1e300
-    return float(least_singular(mech, w, out, 1))
+@kernel
+def may_have_passed(mech: Mech, k: Moving, w: Instant, end: State, out: Watch, h: float) -> bool:
+    """Whether a step h, which has just been completed, may have gone through a singular position.
+
+    The least singular value fell before it and is larger behind it.  Where the step is a small part of the way that
+    was left, that is a turn.
+    """
+    return bool(h > 0.3 * way_left(out) and sigma_at(mech, k, w, end, out) > out.sigma)

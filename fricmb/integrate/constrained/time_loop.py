@@ -68,7 +68,8 @@ def begin(
     grow(c, out, k, y)
     if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
-    out.sigma = out.sigma_start
+    out.sigma = out.sigma_before = out.sigma_start
+    out.sigma_h = out.sigma_rate = 0.0
     n_c = y.mode.shape[0]
     mark_bends(mech, k, out)
     for _ in range(mech.joint.port.shape[0]):

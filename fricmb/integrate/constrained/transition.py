@@ -46,8 +46,8 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
             y.F[a] = 0.0
     move(mech, k, y.t, y.q, y.v)
     instant_matrix(mech, k, w, y, NONE)
-    out.sigma = out.sigma_start = least_singular(mech, w, out, TURNS)
-    out.sigma_h = 0.0
+    out.sigma = out.sigma_before = out.sigma_start = least_singular(mech, w, out, TURNS)
+    out.sigma_h = out.sigma_rate = 0.0
     return DONE
 
 

@@ -17,8 +17,8 @@ class Watch(Layout):
 
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` the least
     principal minor of the same for several of them (``contacts``, ``A``, ``B``, ``sizes``, ``pivots`` space for it).
-    ``sigma``: least singular value of G M^-1/2 now, at the start ``sigma_start``, a step before ``sigma_before``, and
-    that step's length ``sigma_h``; ``weak`` (m,) its direction.
+    ``sigma``: least singular value of G M^-1/2 now, at the start ``sigma_start``, and ``sigma_before`` when its rate
+    ``sigma_rate`` was last counted, a time ``sigma_h`` ago; ``weak`` (m,) its direction.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
     stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
@@ -37,6 +37,7 @@ class Watch(Layout):
     sigma_start: float
     sigma_before: float
     sigma_h: float
+    sigma_rate: float
     weak: Floats
     trigger: Floats
     inner: Floats2
@@ -63,7 +64,7 @@ def watch_of(problem: Problem, stages: int) -> Watch:
     return Watch(
         np.ones(problem.n_c), 1.0, np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4, np.int32), np.zeros(MANY, np.int32),
-        0.0, 0.0, 0.0, 0.0, np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
+        0.0, 0.0, 0.0, 0.0, 0.0, np.random.default_rng(1).standard_normal(m.n_rows), np.ones(count),
         np.ones((stages + 1, count)), np.ones(count), 1.0, np.zeros(stages),
         np.zeros(stages + 1), np.zeros(len(m.joints.port)),
         0, np.zeros(len(m.joints.port), np.int64),
