@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.event_functions import violated
@@ -10,7 +12,7 @@ from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, end_step, error_of, is_round_off, remember, try_step
+from fricmb.integrate.constrained.radau_step import Control, asked, end_step, error_of, remember, try_step
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import (
     SUSPECTED,
@@ -26,9 +28,19 @@ from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes
+from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
 from fricmb.integrate.step.slip_growth import too_long
-from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
+from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, next_step, step_factor
+
+#: Shortest step, as a part of the span.
+SMALLEST = 1e-14
+
+
+@kernel
+def is_round_off(c: Control, h: float, t: float) -> bool:
+    """Whether a step h from t is as good as none."""
+    return bool(h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t))
 
 
 @kernel
@@ -92,11 +104,13 @@ def radau_step(
         margins(mech, k, w, y, out, False)
         return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
     c.made = 0.0
+    # a failure, unless the end is reached
+    growth_before, c.growth = c.growth, 1.0
     if not try_step(mech, k, y, st, c, h):
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         return reject(c, 0.4 * h)
-    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h) / c.rtol)
+    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h) / asked(c))
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
         return reject(c, 0.4 * h)
@@ -105,6 +119,7 @@ def radau_step(
         return reject(c, h * max(0.2, factor))
     if not end_step(mech, k, w, y, end, st, c, h):
         return reject(c, 0.4 * h)
+    c.growth = growth_before
     if may_have_passed(mech, k, w, end, out, h):
         return reject(c, 0.5 * h)
     if margins(mech, k, w, end, out, False) <= 0.0:
@@ -119,6 +134,7 @@ def radau_step(
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
             return reject(c, 0.3 * c.h)
+        may_have_passed(mech, k, w, end, out, h)
     record_step(mech, rec, y, end, st, c, h)
     if h == left:
         end.t = stop
@@ -127,8 +143,9 @@ def radau_step(
     copy_state(end, y)
     grow(c, out, k, y)
     if worst < 0 and (h < left or factor < 1.0):
-        c.h = h * min(3.0, max(0.3, factor))
-    if near_singular(mech, k, w, y, out, h):
+        c.wanted = h * min(3.0, max(0.3, factor))
+        c.h = next_step(c, h, c.wanted)
+    if near_singular(c, out, h):
         return FAIL_SINGULAR
     if worst >= 2 * y.mode.shape[0] + mech.joint.port.shape[0]:
         # a load that has a kink: nothing changes but the polynomials
@@ -137,6 +154,7 @@ def radau_step(
         return ACCEPTED
     if worst >= 0:
         rec.after[rec.used[0] - 1] = 1
+        c.growth = np.inf
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
         return CHANGED if code == DONE else code
     return ACCEPTED

@@ -20,7 +20,7 @@ class Formula(Layout):
     """What a BDF step of a mechanism needs beside the differences of y = [q, v, z, powers, lam, F, N, g].
 
     ``base`` holds psi: the step is one stage of length h/gamma from there, ``one``; ``made`` step of the factors,
-    0: none that serve.  ``usual`` what the one-step method steps; ``origin``, ``reach`` (n,) where the run began
+    0: none that serve.  ``usual`` what the one-step method would step; ``origin``, ``reach`` (n,) where the run began
     and the largest distance from there.
     """
 

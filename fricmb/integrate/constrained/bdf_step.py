@@ -20,7 +20,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle, state_noise
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
-from fricmb.integrate.constrained.singular_position import near_singular, way_left
+from fricmb.integrate.constrained.singular_position import may_have_passed, near_singular, way_left
 from fricmb.integrate.constrained.slip_growth import growth
 from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
@@ -65,7 +65,7 @@ def take(values: Floats, y: State, rate: Floats) -> None:
 @kernel
 def share_of(c: Control, past: Differences) -> float:
     """What of the error this step may make: in proportion to its length, but for the few short steps of a start."""
-    return float(max(c.rtol * min(1.0, max(past.h * past.unit, 0.01)), 4e-15))
+    return float(max(c.rtol * min(1.0, max(past.h * past.unit, 0.01)), c.blur, 4e-15))
 
 
 @kernel
@@ -185,12 +185,12 @@ def multistep(
 ) -> int:  # fmt: skip
     """One BDF step from y: ACCEPTED (y is its end), REJECTED (the history is rescaled), HANDOVER, or FAIL_SINGULAR.
 
-    A step at whose end, or inside which, a mode changes or friction is no longer unique is left to the one-step method.
+    A step at whose end, or inside which, a mode changes, friction is no longer unique or constraints depend on one
+    another is left to the one-step method.
     """
     h, order = past.h, past.order
-    if h < LEAST * formula.usual:
-        return HANDOVER
-    if h > left or past.rejections > (3 if past.since > 0 else 8) or way_left(out) <= 4.0 * h:
+    in_vain = past.rejections > (3 if past.since > 0 else 8)
+    if in_vain or not LEAST * formula.usual <= h <= left or way_left(out) <= 4.0 * h:
         return HANDOVER
     predict(past)
     if not solve_formula(mech, k, y, end, c, past, formula):
@@ -216,8 +216,9 @@ def multistep(
     update(past, formula)
     inside(st, c, past)
     find_kinks(mech, k, y, st, out)
+    passed = may_have_passed(mech, k, w, end, out, h)
     unique = margins(mech, k, w, end, out, False) > 0.0
-    if not unique or violated(mech, k, out, y, end, st) >= 0:
+    if passed or not unique or violated(mech, k, out, y, end, st) >= 0:
         return HANDOVER
     for i in range(y.work.shape[0]):
         for l in range(st.tab.c.shape[0]):
@@ -227,7 +228,7 @@ def multistep(
     c.counts[0] += 1
     c.last_h = 0.0
     grow(c, out, k, y)
-    if near_singular(mech, k, w, y, out, h):
+    if near_singular(c, out, h):
         return FAIL_SINGULAR
     select_order(y, c, past, formula, error)
     return ACCEPTED

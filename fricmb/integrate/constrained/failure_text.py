@@ -61,10 +61,10 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
         return f"contact of {name!r} is made again, and impacts are not computed"
     if code == FAIL_SINGULAR:
         names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t), y.q, y.v))
-        risen = (out.sigma_start / max(out.sigma, 1e-300)) ** 2
+        risen = (out.sigma_top / max(out.sigma, 1e-300)) ** 2
         return (
             f"singular position: the constraints of {names_now} depend on one another (the condition of G M^-1 G^T has"
-            f" risen by {risen:.1e} since the start)"
+            f" risen by {risen:.1e} since it was smallest)"
         )
     if code == FAIL_PROJECT:
         return "velocities could not be brought onto the constraints of what sticks"

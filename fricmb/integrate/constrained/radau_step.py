@@ -18,25 +18,24 @@ from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_s
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
-from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.stage_predictor import lagrange
 from fricmb.integrate.step.tableau import by_line
-
-#: Shortest step, as a part of the span.
-SMALLEST = 1e-14
 
 
 class Control(Layout):
     """Step control.
 
-    ``rtol``; running maxima ``q``, ``v``, ``z`` with floors ``floor_v``; ``h`` next step, ``last_h`` the step before;
-    ``old`` (s+1, n + m + n_c + nz) its values at ``nodes`` (s+1,) 0, c for prediction, by ``weight`` (s, s+1) at
-    ``ahead`` (s,); ``counts`` work done; ``longest`` step of all; ``span`` (2,) and ``stops`` times to step to;
-    ``mass`` (n,) diagonal of M; ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia``
-    (n,), ``rates`` (s, n_z) space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter.
+    ``rtol``, and where it cannot be had ``blur``, what can (see ``singular_position``); running maxima ``q``,
+    ``v``, ``z`` with floors ``floor_v``; ``h`` next step, ``last_h`` the step before; ``old`` (s+1, n + m + n_c +
+    nz) its values at ``nodes`` (s+1,) 0, c for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts``
+    work done; ``longest`` step of all; ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M;
+    ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z)
+    space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
+    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be.
     """
 
     rtol: float
+    blur: float
     v: Floats
     z: Floats
     floor_v: Floats
@@ -56,23 +55,25 @@ class Control(Layout):
     inertia: Floats
     rates: Floats2
     noise_z: Floats
+    growth: float
+    wanted: float
 
 
 def control_of(problem: Problem, st: Stages) -> Control:
     """Arrays for step control."""
     s, size, n, stops = len(st.tab.c), len(st.x), problem.n, problem.signals.breakpoints.size
     return Control(
-        0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
+        0.0, 0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z),
+        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z), np.inf, 0.0,
     )  # fmt: skip
 
 
 @kernel
-def is_round_off(c: Control, h: float, t: float) -> bool:
-    """Whether a step h from t is as good as none."""
-    return bool(h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t))
+def asked(c: Control) -> float:
+    """Part of what counts as 1 that a step may err by."""
+    return max(c.rtol, c.blur)
 
 
 @kernel
@@ -166,7 +167,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    used = iterate_stages(mech, k, y, st, h, max(KAPPA * c.rtol, 1e-14))
+    used = iterate_stages(mech, k, y, st, h, max(KAPPA * asked(c), 1e-14))
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
@@ -184,7 +185,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
             high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
             last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
     ratio = min(1.0, last / before) if before > 0.0 else 1.0
-    return float(last * ratio / c.rtol)
+    return float(last * ratio / asked(c))
 
 
 @kernel

@@ -36,8 +36,8 @@ MULTISTEP_STAGES = 5
 
 
 def stages_for(rtol: float) -> int:
-    """Stages of the formula for a tolerance."""
-    return 3 if rtol > 1e-5 else 5 if rtol > 1e-11 else 7
+    """Stages of the formula for a tolerance: five take as long as three at 1e-4 (measured), and err a tenth as much."""
+    return 3 if rtol > 1e-3 else 5 if rtol > 1e-11 else 7
 
 
 def run_mechanism(

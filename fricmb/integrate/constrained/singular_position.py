@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.compile.band import factor_band
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.breakpoints import EPS
 
 #: Inverse iterations where nothing is known of the direction.
 TURNS = 20
-#: A least singular value that falls and has come down to this part of what it was at the start: a singular position.
+#: A least singular value that falls and has come down to this part of the largest so far: a singular position.
 #: (Reactions grow with the inverse of its square: nearer still, no step can be solved to a tolerance.)
 REACHED = 2.5e-5
 #: The same, where steps have become as short as round-off on the way there.
 SUSPECTED = 1e-3
 #: The same, where steps become shorter than the way to it; their part of that way.
 NEAR, APPROACH = 0.6, 0.7
+#: Round-off of velocities where it is largest; reactions, and with them velocities, have more of it with the square of
+#: its inverse, and no step is more accurate.
+ROUND_OFF = 20.0 * EPS
 #: Part by which it changes before its rate is counted anew: what is less may be round-off, in short steps.
 NOTED = 1e-3
 
@@ -28,57 +35,101 @@ NOTED = 1e-3
 def least_singular(mech: Mech, w: Instant, out: Watch, turns: int) -> float:
     """Least singular value of ``G M^-1/2`` by inverse iteration; the matrix without friction is factored.
 
-    One turn follows its direction from step to step.  It is proportional to the distance from a singular position.
+    One turn follows its direction from step to step, from ``weak`` to ``weak_end``.  It is proportional to the distance
+    from a singular position.
     """
     m = out.weak.shape[0]
     if m == 0:
         return 1.0
-    n = mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - m
+    n = first_multiplier(mech)
+    for i in range(m):
+        out.weak_end[i] = 0.0 if mech.joint.dropped[i] != 0 else out.weak[i]
     length = 0.0
     for _ in range(turns):
-        length = 0.0
-        for i in range(m):
-            if mech.joint.dropped[i] != 0:
-                out.weak[i] = 0.0
-            length += out.weak[i] * out.weak[i]
+        length = np.sqrt(max(squared(out.weak_end), 1e-300))
         for i in range(w.r.shape[0]):
             w.r[i] = 0.0
         for i in range(m):
-            w.r[n + i] = out.weak[i] / np.sqrt(max(length, 1e-300))
+            w.r[n + i] = out.weak_end[i] / length
         solve_instant(mech, w)
-        length = 0.0
         for i in range(m):
-            out.weak[i] = w.r[n + i]
-            length += out.weak[i] * out.weak[i]
+            out.weak_end[i] = 0.0 if mech.joint.dropped[i] != 0 else w.r[n + i]
+        length = squared(out.weak_end)
     return float(length**-0.25) if length > 0.0 else 1.0
 
 
 @kernel
+def first_multiplier(mech: Mech) -> int:
+    """Index of the first multiplier among the unknowns."""
+    return int(mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - mech.joint.row[-1])
+
+
+@kernel
+def squared(x: Floats) -> float:
+    """Sum of squares."""
+    total = 0.0
+    for i in range(x.shape[0]):
+        total += x[i] * x[i]
+    return total
+
+
+@kernel
 def has_come_near(out: Watch, part: float) -> bool:
-    """Whether the least singular value is on its way to 0, and below a part of what it was at the start."""
-    return bool(out.sigma < part * out.sigma_start and out.sigma_rate < 0.0)
+    """Whether the least singular value is on its way to 0, and below a part of the largest so far."""
+    return bool(out.sigma < part * out.sigma_top and out.sigma_rate < 0.0)
 
 
 @kernel
-def sigma_at(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> float:
-    """Least singular value at a state that has just been completed; 0 where the matrix is singular."""
-    # without friction the factors of the projection are those of the instant
-    if y.F.shape[0] > 0 and not instant_matrix(mech, k, w, y, NONE):
-        return 0.0
-    return least_singular(mech, w, out, 1)
+def start_watch(mech: Mech, w: Instant, out: Watch) -> None:
+    """Least singular value where a run, or one with other joints, begins; its matrix without friction is factored."""
+    out.sigma_end = least_singular(mech, w, out, TURNS)
+    out.sigma_top = out.sigma_before = out.sigma_end
+    out.sigma_h = out.sigma_rate = 0.0
+    copy_columns(mech, w.L.A1, out.reactions_end, True)
+    go_on(out)
 
 
 @kernel
-def near_singular(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, h: float) -> bool:
-    """Whether the constraints are as good as dependent at y, which has just been completed by a step h."""
-    out.sigma = sigma_at(mech, k, w, y, out)
-    out.sigma_h += h
-    change = out.sigma - out.sigma_before
-    if abs(change) > NOTED * out.sigma_before:
-        out.sigma_rate = change / out.sigma_h
-        out.sigma_before = out.sigma
-        out.sigma_h = 0.0
-    return out.sigma == 0.0 or has_come_near(out, REACHED)
+def go_on(out: Watch) -> None:
+    """What has been found for the end of a step is where the next one starts."""
+    out.sigma = out.sigma_end
+    for i in range(out.weak.shape[0]):
+        out.weak[i] = out.weak_end[i]
+    for i in range(out.reactions.shape[0]):
+        out.reactions[i] = out.reactions_end[i]
+
+
+@kernel
+def copy_columns(mech: Mech, A: Floats, columns: Floats, out: bool) -> None:
+    """Columns of the multipliers out of a banded matrix, or into it."""
+    n, length = first_multiplier(mech), mech.order.sizes[3]
+    for i in range(mech.joint.row[-1]):
+        first = mech.order.place[n + i] * length
+        for j in range(length):
+            if out:
+                columns[i * length + j] = A[first + j]
+            else:
+                A[first + j] = columns[i * length + j]
+
+
+@kernel
+def has_turned(mech: Mech, w: Instant, out: Watch) -> bool:
+    """Whether G M^-1 G' has a negative determinant, with G of the instant on the left, of the last state on the right.
+
+    With both of one position it is positive; a singular value that goes through 0 in between changes its sign.  It is
+    the determinant of the matrix of the instant, which the layers ``w.L`` hold, with the reactions of the last state.
+    """
+    order = mech.order
+    for i in range(w.ab.shape[0]):
+        w.ab[i] = w.L.A0[i] + w.L.A1[i]
+    copy_columns(mech, w.ab, out.reactions, False)
+    if not factor_band(w.ab, w.pivots, order.sizes):
+        return False
+    negative = False
+    for j in range(order.place.shape[0]):
+        swapped = w.pivots[j] != j + 1
+        negative = negative != (swapped != (w.ab[j * order.sizes[3] + order.sizes[1] + order.sizes[2]] < 0.0))
+    return negative
 
 
 @kernel
@@ -88,16 +139,41 @@ def way_left(out: Watch) -> float:
 
 
 @kernel
-def longest_towards(out: Watch) -> float:
-    """Longest step on the way to a singular position that is near: one far beyond it would not see it."""
-    return APPROACH * way_left(out) if out.sigma < NEAR * out.sigma_start else np.inf
+def may_have_passed(mech: Mech, k: Moving, w: Instant, end: State, out: Watch, h: float) -> bool:
+    """Whether a singular position may lie between the last state and the ``end`` of a step h that is just complete.
+
+    Or the step has not gone through, but come back to where the least singular value is larger; where it is a small
+    part of the way that was left, that is a turn of the motion.
+    """
+    out.sigma_end = 0.0
+    # without friction the factors of the projection are those of the instant
+    if end.F.shape[0] > 0 and not instant_matrix(mech, k, w, end, NONE):
+        return False
+    out.sigma_end = least_singular(mech, w, out, 1)
+    copy_columns(mech, w.L.A1, out.reactions_end, True)
+    came_back = out.sigma_end > out.sigma and h > 0.3 * way_left(out) and out.sigma < NEAR * out.sigma_top
+    return came_back or has_turned(mech, w, out)
 
 
 @kernel
-def may_have_passed(mech: Mech, k: Moving, w: Instant, end: State, out: Watch, h: float) -> bool:
-    """Whether a step h, which has just been completed, may have gone through a singular position.
+def near_singular(c: Control, out: Watch, h: float) -> bool:
+    """Whether the constraints are as good as dependent at the end of a step h (after ``may_have_passed``)."""
+    go_on(out)
+    out.sigma_h += h
+    out.sigma_top = max(out.sigma_top, out.sigma)
+    change = out.sigma - out.sigma_before
+    if abs(change) > NOTED * out.sigma_before:
+        out.sigma_rate = change / out.sigma_h
+        out.sigma_before = out.sigma
+        out.sigma_h = 0.0
+    elif out.sigma_h > 0.0:
+        # had it gone on as it did, more would have been noted by now
+        out.sigma_rate = max(out.sigma_rate, -NOTED * out.sigma_before / out.sigma_h)
+    c.blur = ROUND_OFF * (out.sigma_top / max(out.sigma, 1e-290)) ** 2
+    return out.sigma == 0.0 or has_come_near(out, REACHED)
 
-    The least singular value fell before it and is larger behind it.  Where the step is a small part of the way that
-    was left, that is a turn.
-    """
-    return bool(h > 0.3 * way_left(out) and sigma_at(mech, k, w, end, out) > out.sigma)
+
+@kernel
+def longest_towards(out: Watch) -> float:
+    """Longest step on the way to a singular position that is near: one far beyond it would not see it."""
+    return APPROACH * way_left(out) if out.sigma < NEAR * out.sigma_top else np.inf

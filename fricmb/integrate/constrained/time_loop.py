@@ -18,7 +18,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, crowded
-from fricmb.integrate.constrained.singular_position import TURNS, least_singular
+from fricmb.integrate.constrained.singular_position import start_watch
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import let_go
@@ -51,7 +51,7 @@ def begin(
         return FAIL_SINGULAR
     if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
         return FAIL_SINGULAR
-    out.sigma_start = least_singular(mech, w, out, TURNS)
+    start_watch(mech, w, out)
     mark_rest(mech, y, small, part)
     if given:
         for i in range(part.shape[0]):
@@ -68,8 +68,6 @@ def begin(
     grow(c, out, k, y)
     if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
-    out.sigma = out.sigma_before = out.sigma_start
-    out.sigma_h = out.sigma_rate = 0.0
     n_c = y.mode.shape[0]
     mark_bends(mech, k, out)
     for _ in range(mech.joint.port.shape[0]):
@@ -122,7 +120,7 @@ def drive(
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop)
             h = y.t - t
             if may_begin(past, code) and h > 0.0:
-                formula.usual = h
+                formula.usual = max(h, c.wanted)
                 start_past(y, past, formula, min(0.1 * h, past.good if past.good > 0.0 else h))
         if code > FULL:
             return code

@@ -15,7 +15,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, copy_state
-from fricmb.integrate.constrained.singular_position import TURNS, least_singular
+from fricmb.integrate.constrained.singular_position import start_watch
 from fricmb.integrate.constrained.slip_rows import lack, plane
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
@@ -46,8 +46,7 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
             y.F[a] = 0.0
     move(mech, k, y.t, y.q, y.v)
     instant_matrix(mech, k, w, y, NONE)
-    out.sigma = out.sigma_before = out.sigma_start = least_singular(mech, w, out, TURNS)
-    out.sigma_h = out.sigma_rate = 0.0
+    start_watch(mech, w, out)
     return DONE
 
 

@@ -47,7 +47,7 @@ def step_factor(error: float, order: float, safety: float) -> float:
 
 
 class Pace(Protocol):
-    """``growth``: by what a step may grow behind an accepted one."""
+    """``growth``: by what a step may grow behind an accepted one; infinite where nothing has failed."""
 
     growth: float
 
@@ -57,8 +57,10 @@ def next_step(c: Pace, h: float, wanted: float) -> float:
     """The step after an accepted one of length ``h`` whose error alone would let it be ``wanted``.
 
     What a step has failed at lies ahead of the next ones, too: after a failure, where ``growth`` is set to 1, it
-    becomes half as large again with every step taken.  (Else each step that is accurate is followed by one that is far
-    too long; where equations that do not converge say so, that one costs several times as much.)
+    becomes half as large again with every step taken; behind a transition it is free again.  Steps on an exact
+    structure keep ``growth`` infinite: one that fails there costs no more than one that does not.  (Else each step that
+    is accurate is followed by one that is far too long; where equations that do not converge say so, that one costs
+    several times as much.)
     """
     allowed = h * c.growth
     c.growth *= 1.5

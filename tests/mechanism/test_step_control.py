@@ -1,0 +1,35 @@
+"""Steps of mechanisms at tolerances that no other test asks for: errors stay below them, and attempts are few."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+
+#: Scene, length of the run, and attempts that the dearest run may take.
+SCENES = {
+    "slider_crank": (1.0, 400),
+    "andrews": (0.03, 300),
+    "dry_pendulum": (10.0, 350),
+    "four_bar": (2.0, 400),
+    "car_axis": (3.0, 800),
+    "sprag_slip": (2.0, 400),
+    "rising_top": (0.5, 400),
+    "rolling_coin": (2.0, 300),
+    "dry_ball_joint": (2.0, 200),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("name", SCENES)
+def test_errors_and_attempts_at_every_tolerance(name, method):
+    """A rule of steps that takes a turn of the motion for a danger shows in attempts, and only here and there."""
+    t_end, most = SCENES[name]
+    scene, t = getattr(fm.models, name)(), np.linspace(0.0, t_end, 50)
+    exact = fm.simulate(scene, t_end=t_end, rtol=1e-12, method="radau", t_eval=t).q
+    size = np.maximum(np.abs(exact).max(axis=1), 1e-6)
+    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
+        sol = fm.simulate(scene, t_end=t_end, rtol=rtol, method=method, t_eval=t)
+        error = (np.abs(sol.q - exact).max(axis=1) / size).max()
+        assert error < 20.0 * rtol, (rtol, error)
+        assert sol.stats.n_steps + sol.stats.n_rejected < most, (rtol, sol.stats)
