@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -15,6 +18,8 @@ from fricmb.cli._output import replace_together
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    Pictures = dict[Path, Callable[[], Figure]]
 
 
 #: All that a run may draw.
@@ -77,33 +82,69 @@ def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
     import matplotlib as mpl
 
     mpl.use("Agg")
-    import matplotlib.pyplot as plt
+    import matplotlib.pyplot  # noqa: F401  for both processes, where there are two
 
     plots = sol.plot
-    pictures: dict[str, Callable[[], Figure]] = {
-        "velocities": plots.velocities,
-        "phase": partial(plots.phase, _liveliest(sol)),
-        "energy": plots.energy,
+    pictures: Pictures = {
+        folder / f"velocities.{kind}": plots.velocities,
+        folder / f"phase.{kind}": partial(plots.phase, _liveliest(sol)),
+        folder / f"energy.{kind}": plots.energy,
     }
     if sol.contact_names:
-        pictures["transitions"] = plots.transitions
-        pictures["force"] = partial(plots.force, sol.contact_names[0])
-    for name, draw in pictures.items():
-        figure = draw()
-        _save(figure, folder / f"{name}.{kind}")
-        plt.close(figure)
-    return [f"{name}.{kind}" for name in pictures]
+        pictures[folder / f"transitions.{kind}"] = plots.transitions
+        pictures[folder / f"force.{kind}"] = partial(plots.force, sol.contact_names[0])
+    _draw_by_two(pictures)
+    return [path.name for path in pictures]
+
+
+def _draw_by_two(pictures: Pictures) -> None:
+    """Draw pictures, beside a second process where one can be had as it stands: drawing takes longest of all.
+
+    Each takes the next that is left.  What the other did not bring about is drawn here, so that an error is told as any
+    other is.
+    """
+    if sys.platform == "linux" and (os.cpu_count() or 1) > 1:
+        context = multiprocessing.get_context("fork")
+        taken = context.Value("i", 0)
+        helper = context.Process(target=_draw_in_turn, args=(pictures, taken), daemon=True)
+        helper.start()
+        _draw_in_turn(pictures, taken)
+        helper.join()
+    for path, picture in pictures.items():
+        if not path.exists():
+            _draw(path, picture)
+
+
+def _draw_in_turn(pictures: Pictures, taken: Any) -> None:
+    """Take one picture after the other until all are taken."""
+    for i, (path, picture) in enumerate(pictures.items()):
+        with taken.get_lock():
+            mine = taken.value == i
+            taken.value += mine
+        if mine:
+            _draw(path, picture)
+
+
+def _draw(path: Path, picture: Callable[[], Figure]) -> None:
+    """Draw and write one picture."""
+    import matplotlib.pyplot as plt
+
+    figure = picture()
+    _save(figure, path)
+    plt.close(figure)
 
 
 def _save(figure: Figure, path: Path) -> None:
-    """Write a figure, drawn once: savefig draws one that has still to be laid out twice."""
+    """Write a figure, whole or not at all, drawn once: savefig draws one that has still to be laid out twice."""
     figure.set_dpi(130)
     layout = figure.get_layout_engine()
     if layout is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
     options: dict[str, Any] = {"pil_kwargs": {"compress_level": 2}} if path.suffix == ".png" else {}
-    figure.savefig(path, dpi=130, **options)
+    part = path.with_name(f"part-{path.name}")
+    figure.savefig(part, dpi=130, **options)
+    part.replace(path)
 
 
 def _liveliest(sol: fm.Solution) -> str:
