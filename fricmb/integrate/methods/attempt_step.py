@@ -47,7 +47,7 @@ class Clock(Layout):
 
     ``longest`` step of all; ``stops`` breakpoints; transitions in a row at one instant, ``at_once``, and since the time
     ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.  ``growth``: see
-    ``step_control.next_step``.
+    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be.
     """
 
     h: float
@@ -61,6 +61,7 @@ class Clock(Layout):
     mark: float
     retry: Floats
     growth: float
+    wanted: float
 
 
 @kernel
@@ -132,6 +133,7 @@ def advance(
         clock.at_once = 0
         if h < left:
             clock.usual = max(h, 0.8 * clock.usual)
+        clock.wanted = wanted
         clock.h = next_step(clock, h, wanted)
         return ACCEPTED
     if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):

@@ -73,7 +73,7 @@ def made(problem: Problem) -> RunWorkspace:
     stops = np.zeros(problem.signals.breakpoints.size)
     clock = Clock(
         h=0.0, usual=0.0, span=np.zeros(2), longest=0.0, stops=stops, at_once=0, since_mark=0, found=np.zeros(2),
-        mark=0.0, retry=np.zeros(1), growth=np.inf,
+        mark=0.0, retry=np.zeros(1), growth=np.inf, wanted=0.0,
     )  # fmt: skip
     return RunWorkspace(
         scratch_of(problem), state_of(problem), state_of(problem), rest_of(problem),

@@ -66,7 +66,7 @@ def drive(
             past.on = 0
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)
-            if code == ACCEPTED and is_slower(past, clock.usual):
+            if code == ACCEPTED and is_slower(past, max(clock.usual, clock.wanted)):
                 clock.h = clock.usual
             if code == HANDOVER:
                 clock.h = max(clock.h, past.h)
