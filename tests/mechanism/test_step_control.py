@@ -28,8 +28,8 @@ def test_errors_and_attempts_at_every_tolerance(name, method):
     scene, t = getattr(fm.models, name)(), np.linspace(0.0, t_end, 50)
     exact = fm.simulate(scene, t_end=t_end, rtol=1e-12, method="radau", t_eval=t).q
     size = np.maximum(np.abs(exact).max(axis=1), 1e-6)
-    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
+    for rtol in (1e-1, 1e-2, 2e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
         sol = fm.simulate(scene, t_end=t_end, rtol=rtol, method=method, t_eval=t)
         error = (np.abs(sol.q - exact).max(axis=1) / size).max()
-        assert error < 20.0 * rtol, (rtol, error)
+        assert error < 5.0 * rtol, (rtol, error)
         assert sol.stats.n_steps + sol.stats.n_rejected < most, (rtol, sol.stats)

@@ -48,6 +48,8 @@ from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
 NEWTON = 0.03
 #: Shortest step, as a part of that of the one-step method: shorter ones fail by the round-off of positions over h.
 LEAST = 1e-6
+#: Loosest tolerance of a step: reactions follow from accelerations, which a rougher step gives the wrong sign.
+LOOSEST = 1e-3
 #: Rate of convergence at which the Jacobian is made anew.
 SLOW = 0.2
 
@@ -65,7 +67,7 @@ def take(values: Floats, y: State, rate: Floats) -> None:
 @kernel
 def share_of(c: Control, past: Differences) -> float:
     """What of the error this step may make: in proportion to its length, but for the few short steps of a start."""
-    return float(max(c.rtol * min(1.0, max(past.h * past.unit, 0.01)), c.blur, 4e-15))
+    return float(max(min(c.rtol, LOOSEST) * min(1.0, max(past.h * past.unit, 0.01)), c.blur, 4e-15))
 
 
 @kernel
