@@ -104,7 +104,7 @@ def radau_step(
         margins(mech, k, w, y, out, False)
         return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
     c.made = 0.0
-    # a failure, unless the end is reached
+    # taken for a failure until the end of the step has been made
     growth_before, c.growth = c.growth, 1.0
     if not try_step(mech, k, y, st, c, h):
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is

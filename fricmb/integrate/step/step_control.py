@@ -2,7 +2,8 @@
 
 Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_step.advance`` (5: ``radau``, general
 ``collocation``, ``bdf`` around transitions), ``backward_differences.GROWTH`` (3: ``bdf``), ``constrained/attempt_step``
-(3).  ``contact/event_location`` asks for the factor where a step up to a transition is too inaccurate.
+(3).  Behind a failure ``next_step`` holds growth back in the first and the last; steps of BDF grow only after k + 1
+equal ones anyhow.  ``contact/event_location`` asks for the factor where a step up to a transition is too inaccurate.
 
 The other methods ask the same formula: ``collocation/one_contact/run.length_factor`` (growth up to 3),
 ``taylor/step_start`` (1.5), ``timestepping/time_loop.adapt`` (2).
@@ -58,9 +59,9 @@ def next_step(c: Pace, h: float, wanted: float) -> float:
 
     What a step has failed at lies ahead of the next ones, too: after a failure, where ``growth`` is set to 1, it
     becomes half as large again with every step taken; behind a transition it is free again.  Steps on an exact
-    structure keep ``growth`` infinite: one that fails there costs no more than one that does not.  (Else each step that
-    is accurate is followed by one that is far too long; where equations that do not converge say so, that one costs
-    several times as much.)
+    structure keep ``growth`` infinite: one that fails there costs no more than one that does not.  (Without
+    this each accurate step was followed by one that is far too long.  Where that shows only when its equations do not
+    converge, it costs several times as much as a step.)
     """
     allowed = h * c.growth
     c.growth *= 1.5
