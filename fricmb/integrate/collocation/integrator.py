@@ -13,12 +13,12 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.nodes import Z_EXACT
+from fricmb.integrate.collocation.one_contact.constants import structure
 from fricmb.integrate.collocation.one_contact.prepare import (
     Rows,
     is_single,
     is_stiff,
     longest_step,
-    model,
     set_longest_step,
     with_rows,
 )  # fmt: skip
@@ -39,6 +39,7 @@ from fricmb.integrate.collocation.run import run_general
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.model.problem_structs import softness
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.chunks import counters
 from fricmb.integrate.run.stop import ended, watched
@@ -97,7 +98,7 @@ class Collocation(Integrator):
             return super().refuses(problem)
         try:
             if is_single(problem):
-                model(problem)
+                structure(problem)
             free_blocks(problem)
             stuck_together = softness(problem) > 0.0
         except NoBlocks as error:
@@ -143,9 +144,13 @@ def _trust(problem: Problem, safety: float) -> float:
     Laws that are steep (regularised), or have kinks or states of their own, give what the polynomial gives.
     """
     contacts = problem.contacts
-    if problem.n_z or np.any(contacts.law == LAW_SMOOTH) or np.any(contacts.piecewise):
-        return 1.0
-    return safety * BY_SPEED if np.any(contacts.law != LAW_CONSTANT) else safety
+
+    def part() -> float:
+        if problem.n_z or np.any(contacts.law == LAW_SMOOTH) or np.any(contacts.piecewise):
+            return 0.0
+        return BY_SPEED if np.any(contacts.law != LAW_CONSTANT) else 1.0
+
+    return safety * once_per(contacts, "trust", part) or 1.0
 
 
 #: Tables and work arrays are kept with the problem, for one run at a time.

@@ -89,7 +89,7 @@ def _held(M: Floats, W: Floats, stuck: tuple[int, ...]) -> tuple[Floats, Floats]
 
 def _size(matrix: Floats) -> float:
     """Largest magnitude of an entry."""
-    return float(np.abs(matrix).max()) if matrix.size else 0.0
+    return float(np.maximum.reduce(np.abs(matrix), axis=None)) if matrix.size else 0.0
 
 
 @lru_cache(maxsize=64)
@@ -101,18 +101,24 @@ def _off_diagonal(n: int) -> Floats:
 def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
     """Modes that diagonalise K and C together: (w2, d, vectors), or None."""
     size_k, size_c = _size(K), _size(C)
-    if _size(K - K.T) > 1e-14 * size_k or _size(C - C.T) > 1e-14 * size_c:
+    if not (_is_symmetric(K, size_k) and _is_symmetric(C, size_c)):
         return None
     mixed = K if size_c == 0.0 else K + C * (0.6180339887 * size_k / size_c if size_k else 1.0)
     off = _off_diagonal(len(K))
     E = np.linalg.eigh(0.5 * (mixed + mixed.T))[1] if (off * mixed).any() else np.eye(len(K))
-    Km, Cm = E.T @ K @ E, E.T @ C @ E
+    Km = E.T @ K @ E
+    Cm = E.T @ C @ E if size_c else C
     for matrix, size in ((Km, size_k), (Cm, size_c)):
-        if _size(off * matrix) > 1e-13 * max(size, 1e-300) * len(K):
+        if size and _size(off * matrix) > 1e-13 * max(size, 1e-300) * len(K):
             return None
     w2 = Km.diagonal().copy()
     w2[np.abs(w2) < 1e-14 * size_k] = 0.0
     return w2, Cm.diagonal().copy(), E
+
+
+def _is_symmetric(matrix: Floats, size: float) -> bool:
+    """Whether a matrix with entries of that size is symmetric but for round-off."""
+    return size == 0.0 or not ((matrix != matrix.T).any() and _size(matrix - matrix.T) > 1e-14 * size)
 
 
 def _pair_basis(A: Floats, first: Pole, second: Pole) -> tuple[float, float, Floats]:

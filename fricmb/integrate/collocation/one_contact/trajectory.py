@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.collocation.exact_room import has_ledger
+from fricmb.integrate.collocation.one_contact.constants import linear_part, stick_forces, structure
 from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, powers
-from fricmb.integrate.collocation.one_contact.prepare import Rows, linear_part, model, run_of, with_rows
+from fricmb.integrate.collocation.one_contact.prepare import Rows, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
 from fricmb.integrate.compile.lanes import padded
@@ -118,15 +119,12 @@ class SingleRun(Trajectory):
         self, row: Ints, tau: Floats, t: Floats, *, with_loss: bool = False
     ) -> tuple[Floats, Floats, Floats, Floats, Ints, Floats]:
         problem = self.problem
-        p = model(problem)
         n, m, k = problem.n, problem.m, len(row)
-        inverse = p["D_inv"] @ p["mw"]
-        hold = np.stack([inverse @ p["stiff"], inverse @ p["visc"]])
-        load = np.stack([p["load_0"], p["load_1"]]) @ inverse.T
+        hold, load = stick_forces(problem)
         q, v, F, g = np.empty((n, k)), np.empty((n, k)), np.empty((m, k)), np.empty((m, k))
         mode, loss = np.empty(k, dtype=np.int64), np.empty(k if with_loss else 0)
         sample_rows(
-            self._run(), row, tau, t, hold, np.ascontiguousarray(load), np.zeros((m, padded(self._s))),
+            self._run(), row, tau, t, hold, load, np.zeros((m, padded(self._s))),
             np.zeros((BY_FORCE + 2 * m, padded(n))), q, v, F, g, mode, loss,
         )  # fmt: skip
         return q, v, F, g, mode, loss
@@ -141,8 +139,8 @@ class SingleRun(Trajectory):
         start, rate = linear_part(self.problem)
         if not has_ledger(self.problem):
             return np.zeros((2, len(row)))
-        p = model(self.problem)
-        fastest = float(np.sqrt(np.abs(p["w2"])).max(initial=0.0)) + float(np.abs(p["damp"]).max(initial=0.0))
+        held = structure(self.problem).piece.arrays
+        fastest = float(np.sqrt(np.abs(held["w2"])).max(initial=0.0)) + float(np.abs(held["damp"]).max(initial=0.0))
         since = partial(from_row_starts, self._power_states, partial(powers, self.problem, start, rate))
         tau = np.maximum(tau, 0.0)
         if self._totals is not None:

@@ -9,32 +9,36 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fricmb.integrate.collocation.nodes import RUNGS, TERMS, nodes
-from fricmb.integrate.collocation.one_contact.prepare import Model, Rows, model, rows, with_rows
+from fricmb.integrate.collocation.one_contact.constants import (
+    NUMBERS_OF_CONSTANTS,
+    load_pattern,
+    put_constants,
+    structure,
+    structure_pattern,
+)
+from fricmb.integrate.collocation.one_contact.prepare import Rows, rows, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.run import BLOCKS
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.parallel_compile import load_blocks
+from fricmb.integrate.compile.piece import Pattern
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import Problem
+from fricmb.integrate.problem import Floats, Problem
 from fricmb.integrate.run.stop import ended
 
-#: Tables by step size; arrays by block or dof, numbers of a run, and what else it works in.
+#: Tables by step size; arrays by block or dof, and numbers of a run.
 TABLES = ("S", "IS", "IIS", "Q1", "Q2", "Q3")
 BY_BLOCK = (
     "u", "u_low", "v", "a", "k", "load", "slope", "e0", "e1", "u_end", "low_end", "v_end", "force", "rate", "pos",
     "pos_low", "vel", "scale",
 )  # fmt: skip
 NUMBERS = ("time", "time_low", "loss", "next_step", "first_step", "mode")
-WORK = (
-    "ladder", "free", "direction", "relative", "jacobian", "kappa", "terms", "radau", "rhs", "coefficients", "out",
-    "change", "g", "n", "used", "counts",
-)  # fmt: skip
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
 MANY, LARGE = 4, 32_000_000
@@ -45,7 +49,16 @@ FEW = 512
 #: Bytes that are copied without asking whether the run is to end.
 COPIED = 1 << 26
 
-_store: dict[tuple[int, int, int], list[tuple[bytes, Run]]] = {}
+
+class Lent(NamedTuple):
+    """Arrays of a run, the memory of those that it works in, and the structure whose weights are in its tables."""
+
+    run: Run
+    work: Floats
+    content: bytes
+
+
+_store: dict[tuple[int, int, int], list[Lent]] = {}
 _turn = threading.Lock()
 
 
@@ -57,19 +70,20 @@ def borrowed(problem: Problem, s: int) -> Iterator[list[Run]]:
     """
     load_blocks(*BLOCKS)
     size = problem.n, problem.m, s
-    p = model(problem)
-    content = once_per(problem, "model content", lambda: b"".join([np.asarray(held).tobytes() for held in p.values()]))
+    content = structure(problem).content
     with _turn:
         free = _store.setdefault(size, [])
-        place = next((i for i, (other, _) in enumerate(free) if other == content), None)
+        place = next((i for i, other in enumerate(free) if other.content == content), None)
         taken = free.pop(place) if place is not None else free.pop(0) if len(free) >= MANY else None
-    held = [_made(p, s) if taken is None else taken[1]]
-    if taken is not None and place is None:
-        _begin_anew(held[0], p)
+    run, work, before = _made(*size) if taken is None else taken
+    put_constants(run, problem)
+    if before != content:
+        _begin_anew(run, work)
+    held = [run]
     yield held
     if goes_back(held[0]):
         with _turn:
-            free.append((content, held[0]))
+            free.append(Lent(held[0], work, content))
 
 
 def goes_back(run: Run) -> bool:
@@ -110,36 +124,37 @@ def within(run: Run, memory: float | None) -> Run:
     return run if fewer is held else with_rows(run, fewer)
 
 
-def _made(p: Model, s: int) -> Run:
-    m, n = p["belt"].shape[0], p["load_0"].shape[0]
+@lru_cache(maxsize=64)
+def _work_pattern(n: int, m: int, s: int) -> Pattern:
+    """The arrays that a run works in."""
+    wide = padded(s)
+    floats: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys(BY_BLOCK, (n,)), "ladder": (RUNGS + 1,), "free": (m, wide), "direction": (m, wide),
+        "relative": (m, wide), "jacobian": (s + 2, wide), "kappa": (n + 1, TERMS), "radau": (s, s), "rhs": (s,),
+        "coefficients": (s + 1,), "out": (3, m), "change": (m,), "g": (m,), "n": (m,),
+    }  # fmt: skip
+    return Pattern(Run, floats, {"used": (3,), "counts": (5,), "terms": (n,)})
+
+
+def _made(n: int, m: int, s: int) -> Lent:
     count = 1 + int(np.clip(4_000_000 // (6 * n * s + (m * s) ** 2), 12, 48))
-    slots = np.full(RUNGS + 2, -1, dtype=np.int64)
-    slots[-1] = 0
     wide = padded(s)
     shapes: dict[str, tuple[int, ...]] = {
-        **dict.fromkeys(TABLES, (count, n, wide)), **dict.fromkeys(BY_BLOCK, (n,)),
-        "answers": (count, m * m, s, wide), "tk": (1, m * m, s, wide), "ladder": (RUNGS + 1,),
-        "free": (m, wide), "direction": (m, wide), "relative": (m, wide), "jacobian": (s + 2, wide),
-        "kappa": (n + 1, TERMS), "radau": (s, s), "rhs": (s,), "coefficients": (s + 1,), "out": (3, m), "change": (m,),
-        "g": (m,), "n": (m,),
+        **dict.fromkeys(TABLES, (count, n, wide)), "answers": (count, m * m, s, wide), "tk": (1, m * m, s, wide),
     }  # fmt: skip
     arrays: dict[str, Any] = {name: np.zeros(shape) for name, shape in shapes.items()}
-    whole = {"used": 3, "counts": 5, "terms": n}
-    arrays |= {name: np.zeros(size, np.int64) for name, size in whole.items()}
-    arrays |= {name: held.copy() if isinstance(held, np.ndarray) else held for name, held in p.items()}
-    arrays |= dict.fromkeys(NUMBERS, 0) | nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
-    return room(Run(**arrays, slots=slots, unit=np.eye(s, wide)))
+    arrays |= {"slots": np.full(RUNGS + 2, -1, dtype=np.int64), "unit": np.eye(s, wide)}
+    work = _work_pattern(n, m, s).zeros()
+    for piece in (work, structure_pattern(n, m).zeros(), load_pattern(n, m).zeros()):
+        arrays |= piece.arrays
+    arrays |= dict.fromkeys((*NUMBERS, *NUMBERS_OF_CONSTANTS), 0)
+    arrays |= nodes(s)._asdict() | rows(n, m, s, FEW)._asdict()
+    return Lent(room(Run(**arrays)), work.memory, b"")
 
 
-def _begin_anew(run: Run, p: Model) -> None:
-    """The constants of another scene of the same size; nothing is left of the run before."""
-    for name, held in p.items():
-        if isinstance(held, np.ndarray):
-            getattr(run, name)[...] = held
-        else:
-            setattr(run, name, held)
-    for name in (*BY_BLOCK, *WORK):
-        getattr(run, name).fill(0)
+def _begin_anew(run: Run, work: Floats) -> None:
+    """Nothing is left of a run on another structure."""
+    work.fill(0.0)
     for name in NUMBERS:
         setattr(run, name, 0)
     run.slots[:-1] = -1
