@@ -16,8 +16,8 @@ from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
-from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
-from fricmb.scene._family import NUMBERS, of_same_parts
+from fricmb.scene import Contact, Element, MatrixElement, Part, Scene, SpaceBody
+from fricmb.scene._family import NUMBERS, is_same_part, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
 
@@ -164,7 +164,7 @@ class SceneMechanics:
         """Names of what the arrays hold; stiffness, damping and loads are in none of them."""
         parts = [part for part in self.placed.parts if not isinstance(part, Element | MatrixElement)]
         key = "names", self.plan.dofs, self.plan.parts
-        return of_same_parts(self.placed, key, parts, self._names, but=NUMBERS)
+        return of_same_parts(self.placed, key, parts, self._names, but=NUMBERS, alike=_has_same_names)
 
     def _names(self) -> Names:
         held = set(self.plan.parts)
@@ -225,6 +225,18 @@ def mechanics_of(
             gathered=one,
         )  # fmt: skip
     return found
+
+
+def _has_same_names(one: Part, other: Part, but: frozenset[str]) -> bool:
+    """Whether names that a part brings are those of another: numbers of contacts and of bodies bring none."""
+    if is_same_part(one, other, but):
+        return True
+    return (
+        type(one) is type(other) is Contact
+        and (one.differs_in(other) or set()) <= {"law", "normal_force"}
+        and contact_names(one) == contact_names(other)
+        and row_scale(one) == row_scale(other)
+    )
 
 
 def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:

@@ -314,7 +314,7 @@ class Problem(Kept):
     @property
     def n_v(self) -> int:
         """Number of contacts whose normal force varies."""
-        return int(np.sum(self.contacts.normal != NORMAL_CONSTANT))
+        return int(np.count_nonzero(self.contacts.normal != NORMAL_CONSTANT))
 
     @property
     def n_z(self) -> int:

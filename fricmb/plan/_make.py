@@ -63,9 +63,7 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     key = ("plan", None if wanted is None else wanted.key)
     found = scene._cache.get(key)
     if found is None:
-        plan = _plan_of(scene, wanted)
-        cautions = (*short.notes, *plan.cautions)
-        found = scene._cache[key] = replace(plan, notes=(*cautions, *plan.notes), cautions=cautions)
+        found = scene._cache[key] = _plan_of(scene, wanted, short.notes)
     return found
 
 
@@ -73,14 +71,16 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
 MANY = 16
 
 
-def _plan_of(scene: Scene, wanted: Wanted | None) -> Plan:
-    """The plan, taken from another scene where that has the same."""
+def _plan_of(scene: Scene, wanted: Wanted | None, shortened: tuple[str, ...]) -> Plan:
+    """The plan, taken from another scene where that has the same; ``shortened``: what is said of modes left out."""
     plans: dict[Any, Plan] = common(scene).setdefault("plans", {})
-    key = None if wanted is None else wanted.key
+    key = None if wanted is None else wanted.key, shortened
     found = plans.get(key)
     if found is None:
         with no_collection(len(scene.parts)):
-            found = _make(scene, wanted)
+            plan = _make(scene, wanted)
+        cautions = (*shortened, *plan.cautions)
+        found = replace(plan, notes=(*cautions, *plan.notes), cautions=cautions)
         for old in list(plans)[: len(plans) + 1 - MANY]:
             plans.pop(old, None)
         plans[key] = found

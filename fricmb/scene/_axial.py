@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 from fricmb.scene._axes import check_axis, check_ends, components, direction
 from fricmb.scene._element import Element
@@ -46,6 +46,10 @@ class AxialElement(Element):
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Distance of the ends along the axis."""
         return self._coordinates
+
+    def _take_over(self, other: Self) -> None:
+        if self.a is other.a and self.b is other.b and self.axis is other.axis:
+            vars(self)["_coordinates"] = other._coordinates
 
     @cached_property
     def _coordinates(self) -> tuple[LinearForm, ...]:

@@ -6,7 +6,7 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from itertools import combinations
 from math import inf
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -141,6 +141,11 @@ class Contact(Part):
     def directions(self) -> tuple[Direction, ...]:
         """Tangential directions, one or two, each with the motion of a less that of b along it (without slide)."""
         return self._directions
+
+    def _take_over(self, other: Self) -> None:
+        plain = self.normal_kind == "constant" == other.normal_kind
+        if plain and self.a is other.a and self.b is other.b and self.axes is other.axes:
+            vars(self)["_directions"] = other._directions
 
     @cached_property
     def _directions(self) -> tuple[Direction, ...]:

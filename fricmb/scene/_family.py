@@ -19,8 +19,9 @@ MANY = 500
 
 
 def of_same_parts(
-    scene: Scene, key: Hashable, parts: Sequence[Part], make: Callable[[], _T], *, but: frozenset[str] = frozenset()
-) -> _T:
+    scene: Scene, key: Hashable, parts: Sequence[Part], make: Callable[[], _T], *, but: frozenset[str] = frozenset(),
+    alike: Callable[[Part, Part, frozenset[str]], bool] | None = None,
+) -> _T:  # fmt: skip
     """What ``make`` makes of some parts, or made of equal ones for another scene of the family.
 
     Scenes that differ in one value differ in one part, so that a sweep over a stiffness needs its contacts made once,
@@ -35,6 +36,8 @@ def of_same_parts(
         All that it is made of; what is kept is found again where these hold the same values in the same order.
     but : set of str
         Fields of bodies that it does not depend on.
+    alike : callable, optional
+        Whether one part may stand for another; default: :func:`is_same_part`.
     make : callable
         Its result must never be changed.
     """
@@ -42,14 +45,16 @@ def of_same_parts(
         return make()
     kept = scene._shared.setdefault("of same parts", {})
     held, made = kept.get(key, ((), None))
-    if len(held) != len(parts) or not parts or not all(_is_same(a, b, but) for a, b in zip(held, parts, strict=True)):
+    same = alike or is_same_part
+    equal = (a is b or same(a, b, but) for a, b in zip(held, parts, strict=False))
+    if len(held) != len(parts) or not parts or not all(equal):
         made = make()
         kept[key] = tuple(parts), made
     found: _T = made
     return found
 
 
-def _is_same(one: Part, other: Part, but: frozenset[str]) -> bool:
+def is_same_part(one: Part, other: Part, but: frozenset[str]) -> bool:
     """Whether two parts hold the same values, in bodies those fields left out."""
     if one is other:
         return True

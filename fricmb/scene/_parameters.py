@@ -63,9 +63,11 @@ def _checked(scene: Scene, named: dict[str, Any]) -> dict[str, float]:
 
 
 def _changed(scene: Scene, slots: dict[str, dict[str, Any]], named: dict[str, float]) -> dict[str, Part]:
+    if not named:
+        return {name: scene[name].with_slots(entries) for name, entries in slots.items()}
     changed: dict[str, Part] = {}
     for part in scene.parts:
-        new = part.with_named(named) if named else part
+        new = part.with_named(named)
         if part.name in slots:
             new = new.with_slots(slots[part.name])
         if new is not part:

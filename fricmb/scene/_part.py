@@ -80,26 +80,33 @@ class Part(Declaration):
 
     def with_ends(self, changed: dict[str, Part]) -> Self:
         """A copy that refers to the changed parts (by name); itself, if it refers to none of them."""
-        if not any(end.owner.name in changed for end in self.ends()):
-            return self
         new: dict[str, Any] = {}
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, End) and value.owner.name in changed and value.owner is not GROUND:
-                end = value.moved_to(changed[value.owner.name])
-                if end is not value:
-                    new[field.name] = end
+        kind: Any = type(self)
+        for name, value in zip(field_names(kind), _field_values(kind)(self), strict=True):
+            if not isinstance(value, End) or value is GROUND:
+                continue
+            other = changed.get(value.owner.name)
+            if other is not None and (end := value.moved_to(other)) is not value:
+                new[name] = end
         if not new:
             return self
         if not all(_alike(self, end, getattr(self, name)) for name, end in new.items()):
             return dataclasses.replace(self, **new)
         # nothing that was checked can be wrong now
         copy = object.__new__(type(self))
-        vars(copy).update(vars(self), **new)
+        vars(copy).update(vars(self), **new, _original=self.original)
         return copy
+
+    @property
+    def original(self) -> Part:
+        """The part that this one equals in all but the numbers of the bodies it refers to; itself, if it is no copy."""
+        found: Part = vars(self).get("_original", self)
+        return found
 
     def differs_in(self, other: Part) -> set[str] | None:
         """Fields that hold something else, ends that move alike left out; None for a part of another type."""
+        if self.original is other.original:
+            return set()
         if type(self) is not type(other):
             return None
         kind: Any = type(self)

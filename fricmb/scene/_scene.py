@@ -20,7 +20,8 @@ from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
-from fricmb.scene._part import LETTERS, End, Part
+from fricmb.scene._other_values import numbers_alone, with_changed
+from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.values import DIMENSIONS, Units, value_of
@@ -298,7 +299,7 @@ class Scene:
             for row, argument in zip(held, ("position", "velocity"), strict=True):
                 values = body.start_values(argument)
                 if isinstance(body, Body):
-                    row.extend([value_of(value) for value in values.values()])
+                    row.extend([v if type(v) is float else value_of(v) for v in values.values()])
                 else:
                     keys = (name.partition(".")[2] for name in body.dof_names)
                     row.extend([value_of(values.get(key, 0.0)) for key in keys])
@@ -348,12 +349,24 @@ class Scene:
         changed = {name: part for name, part in changed.items() if part is not self._by_name[name]}
         if not changed:
             return self
-        parts = [changed.get(part.name, part) for part in self.parts]
-        if any(isinstance(part, (BODIES, End)) for part in changed.values()):
-            parts = [part.with_ends(changed) for part in parts]
+        parts = with_changed(self, changed)
         scene = object.__new__(type(self))
-        scene._fill(self.name, parts, self.units, self._shared)
+        if numbers_alone(self, changed, parts):
+            scene._take(self, parts)
+        else:
+            scene._fill(self.name, parts, self.units, self._shared)
         return scene
+
+    def _take(self, other: Scene, parts: list[Part]) -> None:
+        """Be another scene with other numbers in its parts."""
+        put = object.__setattr__
+        for name in ("name", "units", "dof_names", "_shared"):
+            put(self, name, getattr(other, name))
+        put(self, "parts", tuple(parts))
+        put(self, "_by_name", dict(zip(other._by_name, parts, strict=True)))
+        put(self, "_motions", None)
+        lasting = {"mechanism": other.is_mechanism, "referring": other._cache.get("referring")}
+        put(self, "_cache", lasting)
 
     def with_units(self, units: Units) -> Scene:
         """The same scene with other names for the units of its numbers, which stay as they are."""

@@ -22,6 +22,7 @@ from fricmb.system._gravity import add_gravity
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._same_parts import half_of
+from fricmb.system._shares import add_share, shares_of
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
@@ -106,14 +107,15 @@ def _build(scene: Any, plan: Any) -> System:
 
 def _structure(scene: Any, motions: _motions.Motions, parts: Sequence[Any], chosen: Chosen) -> Structure:
     structure = Structure(motions=motions)
+    shares = shares_of(scene, ("structure", tuple(motions.dofs)))
     odd = add_lines(structure.lined, scene, chosen)
     for part in (*chosen.single, *odd):
         if isinstance(part, Body | ModalBody):
-            structure.add_body(part)
+            add_share(shares, part, structure, structure.add_body, STARTS)
         elif isinstance(part, MatrixElement):
             structure.add_matrix(part)
         elif isinstance(part, Element):
-            structure.add_element(part)
+            add_share(shares, part, structure, structure.add_element)
         elif isinstance(part, Gravity):
             add_gravity(part, parts, structure)
     return structure
@@ -121,12 +123,13 @@ def _structure(scene: Any, motions: _motions.Motions, parts: Sequence[Any], chos
 
 def _contacts(scene: Any, motions: _motions.Motions, chosen: Chosen) -> tuple[ContactArrays, Contacts]:
     contacts = ContactArrays(motions=motions)
+    shares = shares_of(scene, ("contacts", tuple(motions.dofs)))
     for run, lined in chosen.runs:
         if lined is not None:
             contacts.add_lined(run, lined, lines_of(scene).motions, chosen.place)
             continue
         for contact in run:
-            contacts.add(contact)
+            add_share(shares, contact, contacts, contacts.add)
     return contacts, contacts.build(len(motions.dofs), len(motions.signals.held))
 
 
@@ -146,7 +149,8 @@ def _problem(
 ) -> Problem:  # fmt: skip
     n, n_u = len(dofs), len(signals.held)
     linear, elements = structure.arrays(n_u)
-    _check_mass(linear, dofs)
+    if not structure.has_plain_masses:
+        _check_mass(linear, dofs)
     contacts, contact_arrays = touching
     table = signals.table.build(n, n_u)
     problem = Problem(

@@ -28,7 +28,7 @@ from fricmb.scene._lines import Rows
 from fricmb.system._lined import built_places, prescribed
 from fricmb.system._motions import Motions
 from fricmb.system._structure import DENSE, dense_of, is_sparse, matrix_of
-from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder
+from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder, starts
 from fricmb.system._try_law import try_law
 from fricmb.values import is_expression, value_of
 
@@ -45,13 +45,11 @@ class ContactArrays:
     motions: Motions
     rows: list[Row] = field(default_factory=list)
     w: list[float] = field(default_factory=list)
-    row_start: list[int] = field(default_factory=lambda: [0])
     law: list[int] = field(default_factory=list)
     law_table: TableBuilder = field(default_factory=TableBuilder)
     mu_s: list[float] = field(default_factory=list)
     mu_0: list[float] = field(default_factory=list)
     piecewise: list[bool] = field(default_factory=list)
-    z_start: list[int] = field(default_factory=lambda: [0])
     normal: list[int] = field(default_factory=list)
     N: list[float] = field(default_factory=list)
     normal_table: TableBuilder = field(default_factory=TableBuilder)
@@ -66,6 +64,18 @@ class ContactArrays:
     lined: list[tuple[Any, Any, Any]] = field(default_factory=list)
     driven: list[tuple[Any, Any, Any]] = field(default_factory=list)
 
+    def lists(self) -> tuple[list[Any], ...]:
+        """See :class:`Growing`."""
+        return (
+            self.rows, self.w, self.law, self.law_table.entries, self.mu_s, self.mu_0, self.piecewise, self.normal,
+            self.N, self.normal_table.entries, self.normal_rows, self.N0, self.labels, self.states, self.scale,
+            self.names,
+        )  # fmt: skip
+
+    def marks(self) -> tuple[int, ...]:
+        """See :class:`Growing`: signals are told by their numbers."""
+        return self.motions.signals.asked, len(self.timed)
+
     def add(self, contact: Contact) -> None:
         """Append a contact."""
         self.names.append(contact.name)
@@ -74,7 +84,6 @@ class ContactArrays:
         for direction, slide, s in zip(directions, contact.slides(), scale, strict=True):
             self._add_row(contact, direction.label, direction.form, slide, s)
         self.scale.append(tuple(float(s) for s in scale))
-        self.row_start.append(len(self.rows))
         self.labels.append(tuple(direction.label for direction in directions))
         self._add_normal(contact)
         self._add_law(contact, contact.law, len(directions), max(self.N[-1], self.N0[-1]))
@@ -100,7 +109,6 @@ class ContactArrays:
             labels = contact.labels()
             self.names.append(contact.name)
             self.scale.append(UNIT[len(labels)])
-            self.row_start.append(self.row_start[-1] + len(labels))
             self.labels.append(labels)
             self.normal.append(NORMAL_CONSTANT)
             self._normal(contact.normal_force, NO_ROW, 0.0)
@@ -113,7 +121,6 @@ class ContactArrays:
         self.rows.extend(Row() for _ in labels)
         self.w.extend(0.0 for _ in labels)
         self.scale.append(UNIT[len(labels)])
-        self.row_start.append(len(self.rows))
         self.labels.append(labels)
         self.normal.append(NORMAL_REACTION)
         self.normal_table.add(NO_TEMPLATE)
@@ -141,7 +148,6 @@ class ContactArrays:
         p: Sequence[float] = law.parameter_block().tolist() if compiled else numbers(law)
         labels = law.state_labels(self.labels[-1])
         self.piecewise.append(compiled)
-        self.z_start.append(self.z_start[-1] + len(labels))
         self.states.append(labels)
         constant = template.is_constant(p)
         if not constant:
@@ -193,9 +199,9 @@ class ContactArrays:
 
     def slip_table(self, n: int, n_u: int) -> Templates:
         """Of every contact (of joints nothing) slip coordinate and slip velocity in each direction as linear forms."""
-        table = TableBuilder()
+        table, start = TableBuilder(), starts(self.labels)
         for k, kind in enumerate(self.normal):
-            rows = () if kind == NORMAL_REACTION else self.rows[self.row_start[k] : self.row_start[k + 1]]
+            rows = () if kind == NORMAL_REACTION else self.rows[start[k] : start[k + 1]]
             table.add(NO_TEMPLATE, (), tuple(form for row in rows for form in (row.value(), row.rate())))
         return table.build(n, n_u)
 
@@ -210,14 +216,14 @@ class ContactArrays:
             "Wn": ([(i, k, c) for k, row in enumerate(normal_rows) for i, c in row.q], (size, n_c)),
         }
         others: dict[str, Any] = {
-            "row": np.array(self.row_start, dtype=np.int64),
+            "row": starts(self.labels),
             "w": np.array(self.w, dtype=float) + 0.0,
             "law": np.array(self.law, dtype=np.int8),
             "law_table": self.law_table.build(n, n_u),
             "mu_s": np.array(self.mu_s, dtype=float),
             "piecewise": np.array(self.piecewise, dtype=bool),
             "mu_0": np.array(self.mu_0, dtype=float),
-            "z_start": np.array(self.z_start, dtype=np.int64),
+            "z_start": starts(self.states),
             "normal": np.array(self.normal, dtype=np.int8),
             "N": np.array(self.N, dtype=float),
             "normal_table": self.normal_table.build(n, n_u),

@@ -85,9 +85,12 @@ class Signals:
         self.table = TableBuilder()
         self.held: list[Signal] = []
         self.index: dict[str, int] = {}
+        #: How often one was asked for.
+        self.asked = 0
 
     def add(self, name: str, make: Callable[[], Signal]) -> int:
         """Index of the signal called ``name``, made if it is new."""
+        self.asked += 1
         if name not in self.index:
             self.put(name, make())
         return self.index[name]
@@ -127,7 +130,8 @@ class Motions:
         q: list[tuple[int, float]] = []
         u: list[tuple[int, float]] = []
         constant = form.constant
-        for name, coefficient in self._scene.expand(form).terms:
+        known = all(name in self.dofs or name in self.driven for name, _ in form.terms)
+        for name, coefficient in (form if known else self._scene.expand(form)).terms:
             if name in self.dofs:
                 q.append((self.dofs[name], coefficient))
                 continue

@@ -59,6 +59,21 @@ class Structure:
         """Number of degrees of freedom."""
         return len(self.motions.dofs)
 
+    def lists(self) -> tuple[list[Any], ...]:
+        """See :class:`Growing`."""
+        return self.M, self.K, self.C, self.f, self.stores
+
+    def marks(self) -> tuple[int, ...]:
+        """See :class:`Growing`: signals and nonlinear elements are told by their numbers."""
+        return self.motions.signals.asked, len(self.table), len(self.B)
+
+    @property
+    def has_plain_masses(self) -> bool:
+        """Whether each degree of freedom has a mass > 0 and nothing else: the matrix needs no look."""
+        masses = self.M
+        one_each = len(masses) == len({i for i, _, _ in masses}) == self.n
+        return one_each and all(i == j and mass > 0.0 for i, j, mass in masses)
+
     # -- bodies -------------------------------------------------------------------------------------------------
     def add_body(self, body: Body | ModalBody) -> None:
         """Masses; of a modal body also modal stiffness and damping."""
@@ -195,9 +210,7 @@ class Structure:
         """The constant matrices."""
         n = self.n
         both = (n + n_u, n + n_u)
-        places = np.concatenate([np.array([i for i, _ in self.f], dtype=np.int64), *(i for i, _ in self.lined.f)])
-        forces = np.concatenate([np.array([v for _, v in self.f], dtype=float), *(v for _, v in self.lined.f)])
-        fx = np.bincount(places, forces, n + n_u).astype(float)
+        fx = self._constant_force(n + n_u)
         given: Any = {
             "M": (self.M, (n, n)), "Kx": (self.K, both, self.lined.K), "Cx": (self.C, both, self.lined.C),
             "B": (self.B, (n, n_u)),
@@ -208,10 +221,17 @@ class Structure:
                 return SparseLinear(**found, fx=fx)
         return Linear(**{name: dense_of(*entries) for name, entries in given.items()}, fx=fx)
 
+    def _constant_force(self, length: int) -> Floats:
+        if not self.lined.f:
+            return dense_of([(i, 0, value) for i, value in self.f], (length, 1)).ravel()
+        places = np.concatenate([np.array([i for i, _ in self.f], dtype=np.int64), *(i for i, _ in self.lined.f)])
+        forces = np.concatenate([np.array([v for _, v in self.f], dtype=float), *(v for _, v in self.lined.f)])
+        return np.bincount(places, forces, length).astype(float)
+
     def elements(self, n_u: int) -> Elements:
         """The nonlinear elements."""
         if not self.spread:
-            return Elements()
+            return NO_ELEMENTS
         rows = [row for element in self.spread for row in element]
         return Elements(
             table=self.table.build(self.n, n_u),
@@ -222,6 +242,10 @@ class Structure:
         )
 
 
+#: Of a structure that is linear.
+NO_ELEMENTS = Elements()
+#: Entries up to which a loop takes less time than arrays do.
+FEW = 64
 #: Scenes of more degrees of freedom keep sparse matrices where these are sparse.
 DENSE = 256
 
@@ -245,6 +269,12 @@ def dense_of(
     """The same as a dense array; entries of one place are added up in the order given, too."""
     if not entries and not more:
         return np.zeros(shape)
+    rows, columns = shape
+    if len(entries) <= FEW and rows * columns <= FEW**2 and not more:
+        held = [0.0] * (rows * columns)
+        for a, b, value in entries:
+            held[a * columns + b] += value
+        return np.array(held, dtype=float).reshape(shape)
     i, j, values = _columns(entries, more)
     places = np.asarray(i, dtype=np.int64) * shape[1] + np.asarray(j, dtype=np.int64)
     full: Floats = np.bincount(places, values, shape[0] * shape[1]).astype(float, copy=False).reshape(shape)

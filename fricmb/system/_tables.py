@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import accumulate
 
 import numpy as np
 
-from fricmb.integrate.problem import Templates
+from fricmb.integrate.problem import Ints, Templates
 
 #: Kinds of entries of X = [t, q, v, u, u'].
 TIME, Q, V, U, DU = range(5)
@@ -64,45 +65,48 @@ class TableBuilder:
     """Collects templates one by one and packs them into a :class:`Templates`."""
 
     def __init__(self) -> None:
-        self._address: list[int] = []
-        self._p: list[float] = []
-        self._p_start = [0]
-        self._x_start = [0]
-        self._arguments: list[Argument] = []
+        #: Address, parameters and arguments of each.
+        self.entries: list[tuple[int, tuple[float, ...], tuple[Argument, ...]]] = []
 
     def __len__(self) -> int:
-        return len(self._address)
+        return len(self.entries)
 
     def add(self, address: int, parameters: Iterable[float] = (), arguments: Sequence[Argument] = ()) -> None:
         """Append one template with its parameters and its arguments."""
-        self._address.append(address)
-        self._p.extend(float(p) for p in parameters)
-        self._p_start.append(len(self._p))
-        self._arguments.extend(arguments)
-        self._x_start.append(len(self._arguments))
+        self.entries.append((address, tuple([float(p) for p in parameters]), tuple(arguments)))
 
     def skip(self, count: int) -> None:
         """Append entries without a template."""
-        self._address.extend([NO_TEMPLATE] * count)
-        self._p_start.extend(self._p_start[-1:] * count)
-        self._x_start.extend(self._x_start[-1:] * count)
+        self.entries.extend([_NOTHING] * count)
 
     def build(self, n: int, n_u: int) -> Templates:
         """The packed table for n degrees of freedom and n_u signals."""
-        if not self._address:
-            return Templates()
-        if not self._p and not self._arguments:
-            return _bare(tuple(self._address))
+        if not self.entries:
+            return _NO_TABLE
+        address, numbers, given = zip(*self.entries, strict=True)
+        if not any(numbers) and not any(given):
+            return _bare(address)
         offset = (0, 1, 1 + n, 1 + 2 * n, 1 + 2 * n + n_u)
-        entries = [entry for argument in self._arguments for entry in argument.entries]
-        lengths = [len(argument.entries) for argument in self._arguments]
+        arguments = [argument for held in given for argument in held]
+        entries = [entry for argument in arguments for entry in argument.entries]
         return Templates(
-            address=np.array(self._address, dtype=np.int64),
-            p_start=np.array(self._p_start, dtype=np.int64),
-            p=np.array(self._p, dtype=float),
-            x_start=np.array(self._x_start, dtype=np.int64),
-            form_start=np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64),
+            address=np.array(address, dtype=np.int64),
+            p_start=starts(numbers),
+            p=np.array([p for held in numbers for p in held], dtype=float),
+            x_start=starts(given),
+            form_start=starts([argument.entries for argument in arguments]),
             form_index=np.array([offset[kind] + i for kind, i, _ in entries], dtype=np.int64),
             form_coefficient=np.array([c for _, _, c in entries], dtype=float),
-            form_constant=np.array([argument.constant for argument in self._arguments], dtype=float),
+            form_constant=np.array([argument.constant for argument in arguments], dtype=float),
         )
+
+
+#: A table without entries.
+_NO_TABLE = Templates()
+#: An entry without a template.
+_NOTHING: tuple[int, tuple[float, ...], tuple[Argument, ...]] = (NO_TEMPLATE, (), ())
+
+
+def starts(held: Iterable[Sequence[object]]) -> Ints:
+    """Where each of several sequences begins, one behind the other, and their length."""
+    return np.array([0, *accumulate([len(sequence) for sequence in held])], dtype=np.int64)

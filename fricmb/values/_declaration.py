@@ -223,7 +223,12 @@ class Declaration:
             head, _, rest = path.partition(".")
             fields.setdefault(head, {})[rest] = value
         new = {head: self._changed_field(head, entries) for head, entries in fields.items()}
-        return dataclasses.replace(self, **new)  # type: ignore[type-var]
+        made: Self = dataclasses.replace(self, **new)  # type: ignore[type-var]
+        made._take_over(self)
+        return made
+
+    def _take_over(self, other: Self) -> None:
+        """Take what was found for a declaration with other numbers, and does not depend on them."""
 
     def _changed_field(self, head: str, entries: dict[str, Any]) -> Any:
         if "" in entries:

@@ -163,13 +163,16 @@ def stick_forces(problem: Problem) -> tuple[Floats, Floats]:
     def hold() -> tuple[Floats, Floats]:
         held = structure(problem).piece.arrays
         inverse = held["D_inv"] @ held["mw"]
-        return inverse, np.stack([inverse @ held["stiff"], inverse @ held["visc"]])
+        by_motion = np.empty((2, *inverse.shape))
+        by_motion[0], by_motion[1] = inverse @ held["stiff"], inverse @ held["visc"]
+        return inverse, by_motion
 
     def both() -> tuple[Floats, Floats]:
         inverse, by_motion = once_per(problem.linear, ("held by", problem.contacts.W.tobytes()), hold)
         held = loads(problem).piece.arrays
-        by_load = np.stack([held["load_0"], held["load_1"]]) @ inverse.T
-        return by_motion, np.ascontiguousarray(by_load)
+        by_load = np.empty((2, len(inverse)))
+        by_load[0], by_load[1] = inverse @ held["load_0"], inverse @ held["load_1"]
+        return by_motion, by_load
 
     return once_per(problem, "stick forces", both)
 

@@ -1,0 +1,68 @@
+"""The parts of a scene in which some have other values: what refers to them, and what need not be checked again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fricmb.scene._part import GROUND, End, Part
+
+if TYPE_CHECKING:
+    from fricmb.scene._scene import Scene
+
+#: Parts above which nothing is kept of who refers to whom.
+MANY = 500
+
+
+def with_changed(scene: Scene, changed: dict[str, Part]) -> list[Part]:
+    """The parts of a scene with the changed ones in their places; others refer to these."""
+    parts = [changed.get(part.name, part) for part in scene.parts]
+    if not any(isinstance(part, End) or hasattr(part, "dof_names") for part in changed.values()):
+        return parts
+    if len(parts) > MANY:
+        return [part.with_ends(changed) for part in parts]
+    referring = _referring(scene)
+    for i in {i for name in changed for i in referring.get(name, ())}:
+        parts[i] = parts[i].with_ends(changed)
+    return parts
+
+
+def _referring(scene: Scene) -> dict[str, tuple[int, ...]]:
+    """Places of the parts that refer to each part, by its name."""
+    found: dict[str, tuple[int, ...]] | None = scene._cache.get("referring")
+    if found is None:
+        held: dict[str, list[int]] = {}
+        for i, part in enumerate(scene.parts):
+            for end in part.ends():
+                if end.owner is not GROUND:
+                    held.setdefault(end.owner.name, []).append(i)
+        found = scene._cache["referring"] = {name: tuple(places) for name, places in held.items()}
+    return found
+
+
+def numbers_alone(scene: Scene, changed: dict[str, Part], parts: list[Part]) -> bool:
+    """Whether the parts differ from those of a scene in plain numbers: then what holds for the scene holds for them.
+
+    Each part has been checked when it was made; names, ends and motions are those that the scene was checked with.
+    """
+    for old, new in zip(scene.parts, parts, strict=True):
+        if new is not old and old.original is not new.original and not (
+            new.name in changed and _is_numbers(old, new)
+        ):  # fmt: skip
+            return False
+    return True
+
+
+def _is_numbers(old: Part, new: Part) -> bool:
+    one: Any = type(old)
+    return (
+        one is type(new)
+        and old.name == new.name
+        and old.only_numbers()
+        and new.only_numbers()
+        and all(map(_is, old.ends(), new.ends()))
+        and getattr(old, "dof_names", ()) == getattr(new, "dof_names", ())
+    )
+
+
+def _is(one: object, other: object) -> bool:
+    return one is other
