@@ -6,6 +6,7 @@ cores have other work to do, such as a sweep's other processes, a call of some m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -34,5 +35,22 @@ def blas_threads(scene: Scene) -> AbstractContextManager[Any]:
     """
     if len(getattr(scene, "dof_names", ())) > MANY:  # what is no scene is told so further on
         return nullcontext()
-    context: AbstractContextManager[Any] = _controller().limit(limits=1)
-    return context
+    return _OneThread(_controller().lib_controllers)
+
+
+class _OneThread:
+    """One thread in each library while the context lasts; threadpoolctl's own looks up more than a small run takes."""
+
+    def __init__(self, libraries: Sequence[Any]) -> None:
+        self._libraries = libraries
+
+    def __enter__(self) -> None:
+        self._before = [(library, library.num_threads) for library in self._libraries]
+        for library, count in self._before:
+            if count != 1:
+                library.set_num_threads(1)
+
+    def __exit__(self, *raised: object) -> None:
+        for library, count in self._before:
+            if count != 1:
+                library.set_num_threads(count)

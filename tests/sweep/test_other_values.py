@@ -64,7 +64,7 @@ def forget():
     for store in (one_contact._store, workspace._store, pattern._store, _same._common, _same._known):
         store.clear()
     for function in (
-        structure_blocks.blocks, problem_structs._softness, structure.dense_inverse, problem_structs._mobility_by_mass,
+        structure_blocks.blocks, problem_structs.softening, structure.dense_inverse, problem_structs._mobility_by_mass,
         _spectrum.spectrum,
     ):  # fmt: skip
         function.forget()

@@ -38,7 +38,7 @@ from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_ba
 from fricmb.integrate.collocation.run import run_general
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.model.problem_structs import softness
+from fricmb.integrate.model.problem_structs import softening, softness
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.chunks import counters
@@ -98,9 +98,10 @@ class Collocation(Integrator):
             return super().refuses(problem)
         try:
             if is_single(problem):
-                structure(problem)
-            free_blocks(problem)
-            stuck_together = softness(problem) > 0.0
+                stuck_together = softening(structure(problem).piece.arrays["D"]) > 0.0
+            else:
+                free_blocks(problem)
+                stuck_together = softness(problem) > 0.0
         except NoBlocks as error:
             return f"collocation needs the structure in blocks; here {error}"
         if stuck_together:
@@ -175,7 +176,7 @@ def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
     run.time, run.next_step, run.first_step = start.t, run.ladder[8], run.ladder[8]
     w = run.belt
     g = run.wt @ start.v - w
-    speed = float(np.linalg.norm(g))
+    speed = math.sqrt(g @ g)
     run.mode = UNSETTLED
     if start.mode is not None and start.mode[0] == STICK:
         run.mode = STICK

@@ -62,7 +62,9 @@ def _inverse_factor(M: Floats) -> Floats:
     """Inverse of the lower factor of the mass matrix."""
     diagonal = np.diagonal(M)
     if np.count_nonzero(M) == np.count_nonzero(diagonal):
-        return np.diag(1.0 / np.sqrt(diagonal))
+        inverse = np.zeros(M.shape)
+        inverse.ravel()[:: len(M) + 1] = 1.0 / np.sqrt(diagonal)
+        return inverse
     return np.asarray(scipy.linalg.solve_triangular(np.linalg.cholesky(M), np.eye(len(M)), lower=True))
 
 
@@ -100,12 +102,17 @@ def _off_diagonal(n: int) -> Floats:
 
 def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
     """Modes that diagonalise K and C together: (w2, d, vectors), or None."""
-    size_k, size_c = _size(K), _size(C)
+    off = _off_diagonal(len(K))
+    undamped = not np.count_nonzero(C)
+    if undamped and not np.count_nonzero(off * K):  # uncoupled as it is
+        w2 = K.diagonal().copy()
+        w2[np.abs(w2) < 1e-14 * _size(w2)] = 0.0
+        return w2, np.zeros(len(K)), np.eye(len(K))
+    size_k, size_c = _size(K), 0.0 if undamped else _size(C)
     if not (_is_symmetric(K, size_k) and _is_symmetric(C, size_c)):
         return None
     mixed = K if size_c == 0.0 else K + C * (0.6180339887 * size_k / size_c if size_k else 1.0)
-    off = _off_diagonal(len(K))
-    E = np.linalg.eigh(0.5 * (mixed + mixed.T))[1] if (off * mixed).any() else np.eye(len(K))
+    E = np.linalg.eigh(0.5 * (mixed + mixed.T))[1] if np.count_nonzero(off * mixed) else np.eye(len(K))
     Km = E.T @ K @ E
     Cm = E.T @ C @ E if size_c else C
     for matrix, size in ((Km, size_k), (Cm, size_c)):
@@ -118,7 +125,7 @@ def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
 
 def _is_symmetric(matrix: Floats, size: float) -> bool:
     """Whether a matrix with entries of that size is symmetric but for round-off."""
-    return size == 0.0 or not ((matrix != matrix.T).any() and _size(matrix - matrix.T) > 1e-14 * size)
+    return size == 0.0 or not (np.count_nonzero(matrix != matrix.T) and _size(matrix - matrix.T) > 1e-14 * size)
 
 
 def _pair_basis(A: Floats, first: Pole, second: Pole) -> tuple[float, float, Floats]:
@@ -181,7 +188,8 @@ def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -
     """The structure M q'' + C q' + K q with the rows ``stuck`` of W held; raises NoBlocks where it has no such form."""
     N, G = _held(M, W, stuck)
     n, b = N.shape
-    Kz, Cz = N.T @ K @ N, N.T @ C @ N
+    Kz = N.T @ K @ N
+    Cz = N.T @ C @ N if np.count_nonzero(C) else np.zeros((b, b))
     proportional = _proportional(Kz, Cz)
     solid = np.ascontiguousarray
     if proportional is not None:

@@ -17,7 +17,7 @@ def with_arrays(values: _Tuple, **new: Any) -> _Tuple:
     """A room with other arrays of the same type, or other numbers, in some places; the old one stays as it is."""
     old = cast(Room, values)
     made = object.__new__(type(old))
-    made.__dict__.update(old.__dict__ | new)
+    made.__dict__ = {**old.__dict__, **new}
     made._own = []
     made._keep(old._memory.copy())
     words, kind = made._memory.data, old.room_type

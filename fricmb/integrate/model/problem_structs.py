@@ -83,9 +83,12 @@ class Packed(Layout):
 
 
 @cached_by_content
-def _softness(D: Floats) -> float:
+def softening(D: Floats) -> float:
     """Relative softening of stuck contacts: 0, or a trifle where rows of W depend on one another (least-norm force)."""
-    if len(D) == 0 or np.linalg.matrix_rank(D, hermitian=True) == len(D):
+    if len(D) == 0:
+        return 0.0
+    sizes = np.abs(np.linalg.eigvalsh(D))
+    if sizes.min() > sizes.max() * len(D) * np.finfo(float).eps:
         return 0.0
     return 1e-7  # squared in two iterations below round-off; shares of a load differ by round-off over it
 
@@ -117,7 +120,7 @@ def softness(problem: Problem) -> float:
     def find() -> float:
         if problem.m == 1 and np.any(problem.contacts.W):  # one row that moves depends on no other
             return 0.0
-        return _softness(mobility_at_contacts(problem))
+        return softening(mobility_at_contacts(problem))
 
     return once_per(problem, "softness", find)
 

@@ -100,8 +100,14 @@ def _structure(problem: Problem) -> Structure:
     held = piece.arrays
     _put_blocks(held, 0, slip, M)
     _put_blocks(held, 1, stick, M)
-    held["hold_u"][:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u)
-    held["hold_v"][:, :b] = hold @ (K @ stick.q_v + C @ stick.v_v)
+    damped = np.count_nonzero(C) > 0
+    if stick.modal:
+        held["hold_u"][:, :b] = hold @ (K @ stick.q_u)
+        if damped:
+            held["hold_v"][:, :b] = hold @ (C @ stick.v_v)
+    else:
+        held["hold_u"][:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u)
+        held["hold_v"][:, :b] = hold @ (K @ stick.q_v + C @ stick.v_v)
     c1, b1 = W.T @ slip.v_v, (slip.force_1 @ W).T
     held["c1"][...], held["b1"][...], held["wt"][...], held["mw"][...] = c1, b1, W.T, MW.T
     by_velocity, by_force = np.abs(c1), np.abs(b1)
@@ -125,7 +131,6 @@ def _structure(problem: Problem) -> Structure:
     )  # fmt: skip
 
 
-
 def linear_part(problem: Problem) -> tuple[Floats, Floats]:
     """(u at t = 0, u') of signals that are linear in time."""
     found = once_per(problem, "linear signals", lambda: linear_signals(problem))
@@ -134,15 +139,17 @@ def linear_part(problem: Problem) -> tuple[Floats, Floats]:
 
 def _loads(problem: Problem) -> Loads:
     n, linear, contacts = problem.n, problem.linear, problem.contacts
-    start, rate = linear_part(problem)
-    by_signal = linear.B - linear.Kx[:n, n:]
-    belt = contacts.w + contacts.Wu @ rate
     piece = load_pattern(n, problem.m).zeros()
     held = piece.arrays
-    held["belt"][...] = belt
-    held["load_0"][...] = linear.fx[:n] + by_signal @ start - linear.Cx[:n, n:] @ rate
-    held["load_1"][...] = by_signal @ rate
-    held["stuck_v"][...] = structure(problem).stuck_motion @ belt
+    held["belt"][...], held["load_0"][...] = contacts.w, linear.fx[:n]
+    if problem.n_u:
+        start, rate = linear_part(problem)
+        by_signal = linear.B - linear.Kx[:n, n:]
+        held["belt"] += contacts.Wu @ rate
+        held["load_0"] += by_signal @ start
+        held["load_0"] -= linear.Cx[:n, n:] @ rate
+        held["load_1"][...] = by_signal @ rate
+    held["stuck_v"][...] = structure(problem).stuck_motion @ held["belt"]
     return Loads(piece, {"mu_s_N": stick_limits(contacts)[0], "mu_0_N": contacts.mu_0[0] * contacts.N[0]})
 
 

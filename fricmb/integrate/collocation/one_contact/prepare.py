@@ -21,17 +21,21 @@ from fricmb.integrate.run.workspace import empty_arrays
 
 def is_single(problem: Problem) -> bool:
     """Whether the problem is one contact under constant friction with at most linear loads."""
-    contacts = problem.contacts
-    return bool(
-        problem.n_c == 1
-        and contacts.law[0] == LAW_CONSTANT
-        and contacts.normal[0] == NORMAL_CONSTANT
-        and contacts.N[0] > 0
-        and contacts.mu_0[0] > 0
-        and problem.n_z == 0
-        and len(problem.elements.table.address) == 0
-        and once_per(problem, "linear signals", lambda: linear_signals(problem)) is not None
-    )
+
+    def find() -> bool:
+        contacts = problem.contacts
+        return bool(
+            problem.n_c == 1
+            and contacts.law[0] == LAW_CONSTANT
+            and contacts.normal[0] == NORMAL_CONSTANT
+            and contacts.N[0] > 0
+            and contacts.mu_0[0] > 0
+            and problem.n_z == 0
+            and len(problem.elements.table.address) == 0
+            and once_per(problem, "linear signals", lambda: linear_signals(problem)) is not None
+        )
+
+    return once_per(problem, "is single", find)
 
 
 class Rows(NamedTuple):
