@@ -16,7 +16,7 @@ from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
-from fricmb.scene import Contact, Element, MatrixElement, Part, Scene, SpaceBody
+from fricmb.scene import Contact, Element, Joint, MatrixElement, Part, Scene, SpaceBody
 from fricmb.scene._family import NUMBERS, is_same_part, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
@@ -231,12 +231,18 @@ def _has_same_names(one: Part, other: Part, but: frozenset[str]) -> bool:
     """Whether names that a part brings are those of another: numbers of contacts and of bodies bring none."""
     if is_same_part(one, other, but):
         return True
+    differs = one.differs_in(other)
+    if differs is None or not isinstance(one, Contact | Joint) or not isinstance(other, Contact | Joint):
+        return False
+    named = frozenset(("law", "normal_force") if isinstance(one, Contact) else ("friction",))
     return (
-        type(one) is type(other) is Contact
-        and (one.differs_in(other) or set()) <= {"law", "normal_force"}
-        and contact_names(one) == contact_names(other)
-        and row_scale(one) == row_scale(other)
-    )
+        differs <= named and _rubs(one) and _rubs(other)
+        and (contact_names(one), row_scale(one)) == (contact_names(other), row_scale(other))
+    )  # fmt: skip
+
+
+def _rubs(part: Contact | Joint) -> bool:
+    return isinstance(part, Contact) or part.friction is not None
 
 
 def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:

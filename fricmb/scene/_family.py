@@ -7,13 +7,14 @@ from typing import TypeVar
 
 from fricmb.scene._bodies import Body
 from fricmb.scene._part import Part
+from fricmb.scene._rigid import RigidBody
 from fricmb.scene._scene import Scene
 
 _T = TypeVar("_T")
 
 #: Fields of bodies: where they start, and all numbers, by which no motion is named.
 STARTS = frozenset(("position", "velocity"))
-NUMBERS = STARTS | {"mass"}
+NUMBERS = STARTS | {"mass", "inertia"}
 #: Parts above which nothing is kept: putting something together is little beside running it.
 MANY = 500
 
@@ -59,4 +60,4 @@ def is_same_part(one: Part, other: Part, but: frozenset[str]) -> bool:
     if one is other:
         return True
     differs = one.differs_in(other)
-    return differs is not None and differs <= (but if type(one) is Body else frozenset())
+    return differs is not None and differs <= (but if type(one) in (Body, RigidBody) else frozenset())

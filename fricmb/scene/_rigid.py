@@ -15,6 +15,7 @@ from fricmb.scene._bodies import Body, check_keys
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End, Part, PartEnd, PointEnd
 from fricmb.values import is_plain, value_of
+from fricmb.values._same import is_same
 
 PLANE = ("x", "y")
 
@@ -89,6 +90,11 @@ class RigidBody(PartEnd):
         """``"name.x"``, ``"name.y"``, ``"name.angle"``."""
         return tuple(f"{self.name}.{c}" for c in (*PLANE, "angle"))
 
+    def masses(self) -> tuple[float, float, float]:
+        """What counts for x, y and angle."""
+        mass = float(value_of(self.mass))
+        return mass, mass, float(value_of(self.inertia))
+
     def start_values(self, argument: str) -> dict[str, Any]:
         """Declared start of the degrees of freedom; ``argument``: "position" or "velocity"."""
         turn = self.angle if argument == "position" else self.angular_velocity
@@ -103,6 +109,13 @@ class RigidBody(PartEnd):
     def movable(self) -> bool:
         """Always."""
         return True
+
+    def moves_like(self, other: object) -> bool:
+        """With the same points and the same angle at the start, which joints read, whatever its other numbers."""
+        fields = ("name", "angle", "points")
+        return type(other) is type(self) is RigidBody and all(
+            is_same(getattr(self, name), getattr(other, name)) for name in fields
+        )
 
     def motion(self, letter: str) -> LinearForm:
         """The centre of mass along an axis."""
@@ -162,6 +175,15 @@ class RigidPoint(PointEnd):
     def letters(self) -> tuple[str, ...]:
         """The plane."""
         return PLANE
+
+    def moves_like(self, other: object) -> bool:
+        """At the same place of a body that moves like this one's."""
+        return (
+            isinstance(other, RigidPoint)
+            and self.point == other.point
+            and is_same(self.own, other.own)
+            and self.body.moves_like(other.body)
+        )
 
     def moved_to(self, part: Part) -> End:
         """The point of the same name."""

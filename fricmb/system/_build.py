@@ -22,7 +22,7 @@ from fricmb.system._gravity import add_gravity
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._same_parts import half_of
-from fricmb.system._shares import add_share, shares_of
+from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
 from fricmb.system._system import System
@@ -111,7 +111,7 @@ def _structure(scene: Any, motions: _motions.Motions, parts: Sequence[Any], chos
     odd = add_lines(structure.lined, scene, chosen)
     for part in (*chosen.single, *odd):
         if isinstance(part, Body | ModalBody):
-            add_share(shares, part, structure, structure.add_body, STARTS)
+            add_share(shares, part, structure, structure.add_body, is_equal_but_start)
         elif isinstance(part, MatrixElement):
             structure.add_matrix(part)
         elif isinstance(part, Element):

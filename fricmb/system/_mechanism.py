@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from itertools import accumulate
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,15 +14,32 @@ from fricmb.errors import SceneError
 from fricmb.integrate.mechanism import Entries, Joints, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import common, topology
-from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody
+from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, Part, RigidBody, SpaceBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
 from fricmb.system._mechanism_system import MechanismSystem
+from fricmb.system._shares import Shares, add_share, is_equal_but_start, shares_of
 from fricmb.system._structure import Structure
 from fricmb.system._tables import Row, TableBuilder
 from fricmb.values import is_expression, value_of
+
+
+def _hold_alike(one: Part, other: Part) -> bool:
+    """Whether two joints are the same but for the numbers of their friction, which is among the contacts."""
+    if not isinstance(one, Joint) or not isinstance(other, Joint) or type(one.friction) is not type(other.friction):
+        return False
+    differs = one.differs_in(other)
+    return differs is not None and differs <= {"friction"}
+
+
+class Kept(NamedTuple):
+    """What single parts add to each kind of arrays."""
+
+    structure: Shares | None
+    contacts: Shares | None
+    joints: Shares | None
 
 
 @dataclass(kw_only=True)
@@ -31,7 +49,7 @@ class JointArrays:
     motions: _motions.Motions
     contacts: ContactArrays
     table: TableBuilder = field(default_factory=TableBuilder)
-    rows: list[int] = field(default_factory=lambda: [0])
+    rows: list[int] = field(default_factory=list)
     port: list[int] = field(default_factory=list)
     one_sided: list[int] = field(default_factory=list)
     hands_over: list[int] = field(default_factory=list)
@@ -39,22 +57,35 @@ class JointArrays:
     names: list[str] = field(default_factory=list)
     forms: list[tuple[Row, ...]] = field(default_factory=list)
 
-    def add(self, joint: Joint, *, inner: bool = False) -> None:
+    def lists(self) -> tuple[list[Any], ...]:
+        """See :class:`Growing`."""
+        return (
+            self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.names, self.forms,
+        )  # fmt: skip
+
+    def marks(self) -> tuple[int, ...]:
+        """See :class:`Growing`: signals are told by their numbers."""
+        return (self.motions.signals.asked,)
+
+    def add(self, joint: Joint, kept: Kept, *, inner: bool = False) -> None:
         """Append a joint, and its friction to the contacts; ``inner``: of one body alone."""
+        add_share(kept.joints, joint, self, lambda joint: self._append(joint, inner), _hold_alike)
+        self.port.append(-1)
+        if joint.friction is not None:
+            self.port[-1] = len(self.contacts.law)
+            add_share(kept.contacts, joint, self.contacts, self.contacts.add_joint)
+
+    def _append(self, joint: Joint, inner: bool) -> None:
         template = joint_template(joint)
         rows = [self.motions.row(form) for form in joint.local_coordinates()]
         rows += [self._drive(joint, i, drive) for i, drive in enumerate(joint.drives())]
         self.table.add(template.address, numbers(joint.bare()), [*(r.value() for r in rows), *(r.rate() for r in rows)])
-        self.rows.append(self.rows[-1] + int(template.facts["rows"]))
+        self.rows.append(int(template.facts["rows"]))
         self.one_sided.append(int(joint.one_sided))
         self.hands_over.append(int(joint.hands_over))
         self.inner.append(int(inner))
         self.names.append(joint.name)
         self.forms.append(tuple(rows))
-        self.port.append(-1)
-        if joint.friction is not None:
-            self.port[-1] = len(self.contacts.law)
-            self.contacts.add_joint(joint)
 
     def _drive(self, joint: Joint, i: int, drive: tuple[str, Any, float]) -> Row:
         given, value, start = drive
@@ -72,13 +103,13 @@ class JointArrays:
         """The arrays."""
         return Joints(
             table=self.table.build(n_y, n_u),
-            row=np.array(self.rows, dtype=np.int64),
+            row=np.array([0, *accumulate(self.rows)], dtype=np.int64),
             port=np.array(self.port, dtype=np.int64),
             one_sided=np.array(self.one_sided, dtype=np.int8),
             hands_over=np.array(self.hands_over, dtype=np.int8),
             inner=np.array(self.inner, dtype=np.int8),
             names=tuple(self.names),
-            dropped=np.zeros(self.rows[-1], dtype=np.int8),
+            dropped=np.zeros(sum(self.rows), dtype=np.int8),
         )
 
 
@@ -113,8 +144,9 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     structure = Structure(motions=motions)
     contacts = ContactArrays(motions=motions)
     joints = JointArrays(motions=motions, contacts=contacts)
+    kept_shares = Kept(*(shares_of(scene, (which, extended)) for which in Kept._fields))
     for part in parts:
-        _add(part, structure, contacts, joints, index)
+        _add(part, structure, contacts, joints, kept_shares)
     for gravity in (part for part in parts if isinstance(part, Gravity)):
         add_gravity(gravity, parts, structure)
     n_y, n_u = len(extended), len(signals.held)
@@ -204,25 +236,20 @@ def _with_bodies(scene: Any, groups: Iterable[tuple[str, ...]]) -> list[tuple[st
     return found
 
 
-def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: JointArrays, index: dict[str, int]) -> None:
-    if isinstance(part, RigidBody):
-        m, inertia = float(value_of(part.mass)), float(value_of(part.inertia))
-        structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, (m, m, inertia), strict=True))
-    elif isinstance(part, SpaceBody):
-        structure.M.extend((index[d], index[d], x) for d, x in zip(part.dof_names, part.masses(), strict=True))
-    elif isinstance(part, Body | ModalBody):
-        structure.add_body(part)
+def _add(part: Any, structure: Structure, contacts: ContactArrays, joints: JointArrays, kept: Kept) -> None:
+    if isinstance(part, Body | ModalBody | RigidBody | SpaceBody):
+        add_share(kept.structure, part, structure, structure.add_body, is_equal_but_start)
     elif isinstance(part, MatrixElement):
         structure.add_matrix(part)
     elif isinstance(part, Element):
-        structure.add_element(part)
+        add_share(kept.structure, part, structure, structure.add_element)
     elif isinstance(part, Contact):
-        contacts.add(part)
+        add_share(kept.contacts, part, contacts, contacts.add)
     elif isinstance(part, Joint):
-        joints.add(part)
+        joints.add(part, kept)
     for within in part.parts_within():
         if isinstance(within, Joint):
-            joints.add(within, inner=True)
+            joints.add(within, kept, inner=True)
         else:
             structure.add_element(within)
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Hashable
 from typing import Any, Protocol, TypeVar
 
 from fricmb.scene import Part
-from fricmb.scene._family import MANY, is_same_part
+from fricmb.scene._family import MANY, STARTS, is_same_part
 
 _P = TypeVar("_P", bound=Part)
 
@@ -36,15 +36,26 @@ def shares_of(scene: Any, key: Hashable) -> Shares | None:
     return found
 
 
+def is_equal(one: Part, other: Part) -> bool:
+    """Whether two parts hold the same values."""
+    return is_same_part(one, other, frozenset())
+
+
+def is_equal_but_start(one: Part, other: Part) -> bool:
+    """Whether two parts hold the same values, bodies but for where they start."""
+    return is_same_part(one, other, STARTS)
+
+
 def add_share(
-    shares: Shares | None, part: _P, target: Growing, add: Callable[[_P], object], but: frozenset[str] = frozenset()
-) -> None:
-    """Let a part add to arrays, or add what an equal part added; ``but``: fields of bodies that do not matter."""
+    shares: Shares | None, part: _P, target: Growing, add: Callable[[_P], object],
+    same: Callable[[Part, Part], bool] = is_equal,
+) -> None:  # fmt: skip
+    """Let a part add to arrays, or add what another one added that is the ``same`` to them."""
     if shares is None:
         add(part)
         return
     known = shares.get(part.name)
-    if known is not None and is_same_part(known[0], part, but):
+    if known is not None and (known[0] is part or same(known[0], part)):
         for grown, share in zip(target.lists(), known[1], strict=True):
             grown.extend(share)
         return

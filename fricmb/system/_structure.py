@@ -12,7 +12,18 @@ from fricmb.equations import Template, element_template, force_expression, force
 from fricmb.errors import SceneError
 from fricmb.integrate.csr import Csr
 from fricmb.integrate.problem import Elements, Floats, Linear, SparseLinear
-from fricmb.scene import Body, Element, Force, MatrixElement, ModalBody, PointDamper, PointSpring, modal_matrices
+from fricmb.scene import (
+    Body,
+    Element,
+    Force,
+    MatrixElement,
+    ModalBody,
+    PointDamper,
+    PointSpring,
+    RigidBody,
+    SpaceBody,
+    modal_matrices,
+)
 from fricmb.system._lined import Entries
 from fricmb.system._motions import Motions
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
@@ -75,9 +86,13 @@ class Structure:
         return one_each and all(i == j and mass > 0.0 for i, j, mass in masses)
 
     # -- bodies -------------------------------------------------------------------------------------------------
-    def add_body(self, body: Body | ModalBody) -> None:
+    def add_body(self, body: Body | ModalBody | RigidBody | SpaceBody) -> None:
         """Masses; of a modal body also modal stiffness and damping."""
         names, index = body.dof_names, self.motions.dofs
+        if isinstance(body, RigidBody | SpaceBody):
+            masses = body.masses()
+            self.M.extend((index[name], index[name], mass) for name, mass in zip(names, masses, strict=True))
+            return
         built = [i for i, name in enumerate(names) if name in index]
         places = [index[names[i]] for i in built]
         if isinstance(body, Body):

@@ -170,7 +170,7 @@ class Declaration:
                     return False
             elif isinstance(value, Mapping):
                 for held in value.values():
-                    if type(held) is not float:
+                    if type(held) is not float and not _is_floats(held):
                         return False
             elif not isinstance(value, str | bool):
                 return False
@@ -287,6 +287,10 @@ def _collect(path: str, value: Any, found: dict[str, Any]) -> None:
             _collect(f"{path}.{key}", held, found)
     elif _is_slot(value):
         found[path] = value
+
+
+def _is_floats(value: Any) -> bool:
+    return isinstance(value, tuple) and all(type(entry) is float for entry in value)
 
 
 def _is_slot(value: Any) -> bool:
