@@ -2,16 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
+_T = TypeVar("_T")
+
+#: Entries and rows up to which what follows from places alone is kept: matrices that differ in values need it as well.
+SMALL = 4096
+
+
+@lru_cache(maxsize=512)
+def _known(shape: tuple[int, int], first: bytes, second: bytes) -> dict[Any, Any]:
+    """What is known of places; never written to but to add something."""
+    return {}
+
+
+def _found(known: dict[Any, Any], key: Any, find: Callable[[], _T]) -> _T:
+    if key not in known:
+        known[key] = find()
+    found: _T = known[key]
+    return found
+
+
+def _known_of(shape: tuple[int, int], first: _Ints, second: _Ints) -> dict[Any, Any]:
+    if max(len(first), len(second)) > SMALL:
+        return {}
+    return _known(shape, first.tobytes(), second.tobytes())
 
 
 @dataclass(frozen=True)
@@ -35,32 +58,34 @@ class Csr:
         """From places and values; entries of one place are added up in the order given."""
         i, j = np.asarray(rows, dtype=np.int64), np.asarray(columns, dtype=np.int64)
         v = np.asarray(values, dtype=float)
-        order = np.lexsort((j, i))
-        i, j, v = i[order], j[order], v[order]
-        first = np.ones(len(i), dtype=bool)
-        first[1:] = (i[1:] != i[:-1]) | (j[1:] != j[:-1])
-        place = np.cumsum(first) - 1
-        total = np.bincount(place, v, int(first.sum())) if len(v) else np.zeros(0)
-        return cls.in_order(i[first], j[first], np.asarray(total, dtype=float), shape)
+        known = _known_of(shape, i, j)
+        order, place, start, index = _found(known, "sorted", lambda: _sorted(i, j, shape))
+        total = np.bincount(place, v[order], len(index)) if len(v) else np.zeros(0)
+        return cls(shape, start, index, np.asarray(total, dtype=float))
 
     @classmethod
     def in_order(cls, rows: _Ints, columns: _Ints, values: _Floats, shape: tuple[int, int]) -> Csr:
         """From places that rise, row by row, each of them once, and their values."""
-        start = np.zeros(shape[0] + 1, dtype=np.int64)
-        np.cumsum(np.bincount(rows, minlength=shape[0]), out=start[1:])
-        return cls(shape, start, columns, values)
+        return cls(shape, _starts(rows, shape[0]), columns, values)
 
     @classmethod
     def of_dense(cls, matrix: Any) -> Csr:
         """The non-zeros of a dense matrix."""
         dense = np.asarray(matrix, dtype=float)
         rows, columns = np.nonzero(dense)
-        return cls.in_order(rows, columns, dense[rows, columns], (dense.shape[0], dense.shape[1]))
+        shape = dense.shape[0], dense.shape[1]
+        start = _found(_known_of(shape, rows, columns), "start", lambda: _starts(rows, shape[0]))
+        return cls(shape, start, columns, dense[rows, columns])
+
+    @cached_property
+    def _places(self) -> dict[Any, Any]:
+        """What is known of the places."""
+        return _known_of(self.shape, self.start, self.index)
 
     @cached_property
     def rows(self) -> _Ints:
         """Row of every entry."""
-        return np.repeat(np.arange(self.shape[0]), np.diff(self.start))
+        return _found(self._places, "rows", lambda: np.repeat(np.arange(self.shape[0]), np.diff(self.start)))
 
     def dense(self) -> _Floats:
         """All of it.
@@ -83,9 +108,14 @@ class Csr:
     def block(self, rows: slice, columns: slice) -> Csr:
         """A contiguous part."""
         (r0, r1, _), (c0, c1, _) = rows.indices(self.shape[0]), columns.indices(self.shape[1])
-        i = self.rows
-        keep = (i >= r0) & (i < r1) & (self.index >= c0) & (self.index < c1)
-        return Csr.in_order(i[keep] - r0, self.index[keep] - c0, self.value[keep], (r1 - r0, c1 - c0))
+        i, shape = self.rows, (r1 - r0, c1 - c0)
+
+        def find() -> tuple[_Ints, _Ints, _Ints]:
+            keep = np.flatnonzero((i >= r0) & (i < r1) & (self.index >= c0) & (self.index < c1))
+            return keep, _starts(i[keep] - r0, shape[0]), self.index[keep] - c0
+
+        keep, start, index = _found(self._places, (r0, r1, c0, c1), find)
+        return Csr(shape, start, index, self.value[keep])
 
     def diagonal(self) -> _Floats:
         """Entries on the diagonal."""
@@ -114,17 +144,40 @@ class Csr:
         return result
 
 
+def _starts(rows: _Ints, count: int) -> _Ints:
+    """Where each of so many rows begins, of the rows of entries."""
+    start = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(np.bincount(rows, minlength=count), out=start[1:])
+    return start
+
+
+def _sorted(i: _Ints, j: _Ints, shape: tuple[int, int]) -> tuple[_Ints, _Ints, _Ints, _Ints]:
+    """Entries by rows: their order, place of each among the places, and these as starts and columns."""
+    order = np.lexsort((j, i))
+    i, j = i[order], j[order]
+    first = np.ones(len(i), dtype=bool)
+    first[1:] = (i[1:] != i[:-1]) | (j[1:] != j[:-1])
+    return order, np.cumsum(first) - 1, _starts(i[first], shape[0]), j[first]
+
+
 def on_one_pattern(matrices: Sequence[Csr], *also: tuple[_Ints, _Ints]) -> tuple[_Ints, _Ints, list[_Floats]]:
     """Matrices of one shape over their joint pattern, places ``also`` in it: start, index, values of each."""
     rows = np.concatenate([*(A.rows for A in matrices), *(i for i, _ in also)])
     columns = np.concatenate([*(A.index for A in matrices), *(j for _, j in also)])
-    pattern = Csr.of_entries(rows, columns, np.zeros(len(rows)), matrices[0].shape)
-    width = max(pattern.shape[1], 1)
-    key = pattern.rows * width + pattern.index
-    values = [np.zeros(len(key)) for _ in matrices]
-    for A, value in zip(matrices, values, strict=True):
-        value[np.searchsorted(key, A.rows * width + A.index)] = A.value
-    return pattern.start, pattern.index, values
+    known = _known_of(matrices[0].shape, rows, columns)
+    lengths = tuple([len(A.index) for A in matrices])
+
+    def find() -> tuple[_Ints, _Ints, list[_Ints]]:
+        pattern = Csr.of_entries(rows, columns, np.zeros(len(rows)), matrices[0].shape)
+        width = max(pattern.shape[1], 1)
+        key = pattern.rows * width + pattern.index
+        return pattern.start, pattern.index, [np.searchsorted(key, A.rows * width + A.index) for A in matrices]
+
+    start, index, places = _found(known, ("pattern", lengths), find)
+    values = [np.zeros(len(index)) for _ in matrices]
+    for A, value, place in zip(matrices, values, places, strict=True):
+        value[place] = A.value
+    return start, index, values
 
 
 class LazyMatrices:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Problem
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Linear, Problem, SparseLinear
 
 
 def against_taylor(problem: Problem) -> str | None:
@@ -23,23 +23,31 @@ def _against_taylor(problem: Problem) -> str | None:
         return "every contact needs a coefficient of friction and a constant normal force"
     if (contacts.piecewise & (contacts.law != LAW_CONSTANT)).any():
         return "coefficients of friction that depend on slip speed must be formulas"
-    if not linear.csr("M").is_diagonal():
+    return once_per(linear, "against taylor", lambda: _against_structure(linear, problem.n))
+
+
+def _against_structure(linear: Linear, n: int) -> str | None:
+    if isinstance(linear, SparseLinear):
+        diagonal = linear.csr("M").is_diagonal()
+        symmetric = linear.csr("Kx").block(slice(0, n), slice(0, n)).is_symmetric()
+    else:
+        K = linear.Kx[:n, :n]
+        diagonal = np.count_nonzero(linear.M) == np.count_nonzero(linear.M.diagonal())
+        symmetric = not np.count_nonzero(K != K.T)
+    if not diagonal:
         return "the mass matrix must be diagonal"
-    if not linear.csr("Kx").block(slice(0, problem.n), slice(0, problem.n)).is_symmetric():
-        return "the stiffness must be symmetric"
-    return None
+    return None if symmetric else "the stiffness must be symmetric"
 
 
 def fastest(problem: Problem) -> float:
     """A bound on the frequencies and decay rates of a structure whose masses are uncoupled (Gershgorin)."""
-    return once_per(problem, "taylor fastest", lambda: _fastest(problem))
+    return once_per(problem.linear, "taylor fastest", lambda: _fastest(problem.linear, problem.n))
 
 
-def _fastest(problem: Problem) -> float:
-    n = problem.n
+def _fastest(linear: Linear, n: int) -> float:
     inside = slice(0, n), slice(0, n)
-    M = problem.linear.csr("M").diagonal()
-    K, C = problem.linear.csr("Kx").block(*inside), problem.linear.csr("Cx").block(*inside)
+    M = linear.csr("M").diagonal()
+    K, C = linear.csr("Kx").block(*inside), linear.csr("Cx").block(*inside)
     scale = 1.0 / np.sqrt(M)
     sums = [np.bincount(A.rows, np.abs(A.value) * scale[A.rows] * scale[A.index], n).max(initial=0.0) for A in (K, C)]
     return float(0.5 * sums[1] + np.sqrt(0.25 * sums[1] ** 2 + sums[0]))

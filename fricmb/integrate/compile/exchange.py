@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, TypeVar, cast
 
 import numpy as np
 
+from fricmb.integrate.compile.layout import RoomType
 from fricmb.integrate.compile.room import Room, address_of
 
 Words = np.ndarray[Any, np.dtype[np.int64]]
@@ -45,3 +47,14 @@ def put_numbers(values: Any, numbers: Words) -> None:
     """Give a room the numbers of another one of its type, or those that it had."""
     held = cast(Room, values)
     held._memory[held.room_type.words] = numbers
+
+
+def put_zeros(values: Any, names: tuple[str, ...]) -> None:
+    """Make some numbers of a room 0."""
+    held = cast(Room, values)
+    held._memory[_words_of(held.room_type, names)] = 0
+
+
+@lru_cache(maxsize=64)
+def _words_of(kind: RoomType, names: tuple[str, ...]) -> Words:
+    return np.array([kind.at[name] // _WORD for name in names], dtype=np.int64)

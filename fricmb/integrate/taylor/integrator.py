@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from fricmb.integrate.compile.exchange import with_arrays
+from fricmb.integrate.compile.exchange import put_zeros, with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
@@ -133,8 +133,7 @@ def set_start(
     unseen = math.exp((math.log(tolerance.rtol) + math.lgamma(degree + 1.0)) / degree)
     longest = min(span, min(reach, unseen) / w) if w > 0.0 else span
     speed = max(np.abs(start.v).max(initial=0.0), np.abs(problem.contacts.w).max(initial=0.0))
-    for name in OF_RUN:
-        setattr(net, name, 0)
+    put_zeros(net, OF_RUN)
     net.time, net.end, net.longest, net.next_step = start.t, t_end, longest, longest
     # the direction of slip turns faster than all else where slip is slow: stick and slip lose their phase by that
     net.tol = (0.01 if has_planar(problem) else 0.1) * tolerance.rtol

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import table_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
+from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
 from fricmb.integrate.taylor.network import OF_RUN, Net
@@ -42,15 +45,31 @@ def _refusal(problem: Problem) -> str | None:
     return against_taylor(problem) or against_groups(problem)
 
 
-def _diagonals(start: Ints, index: Ints, values: Floats, n: int) -> tuple[Ints, Floats]:
-    """Offsets and diagonals (d, n), none where they are many or mostly empty."""
+def _by_diagonals(start: Ints, index: Ints, n: int, values: Sequence[Floats]) -> tuple[Ints, list[Floats]]:
+    """Offsets and matrices (d, n) by diagonals, none where they are many or mostly empty."""
+    offset, diagonal, rows = _diagonals(start, index, n)
+    tables = [np.zeros((len(offset), n)) for _ in values]
+    if len(offset):
+        for table, value in zip(tables, values, strict=True):
+            table[diagonal, rows] = value
+    return offset, tables
+
+
+@cached_by_content
+def _diagonals(start: Ints, index: Ints, n: int) -> tuple[Ints, Ints, Ints]:
+    """Offsets of the diagonals, and the diagonal and the row of each entry."""
     rows = np.repeat(np.arange(n), np.diff(start))
     offset = np.unique(index - rows)
     if len(offset) > DIAGONALS or 3 * len(index) < len(offset) * n:
-        return np.zeros(0, np.int64), np.zeros((0, n))
-    table = np.zeros((len(offset), n))
-    table[np.searchsorted(offset, index - rows), rows] = values
-    return offset, table
+        offset = np.zeros(0, np.int64)
+    return offset, np.searchsorted(offset, index - rows), rows
+
+
+@cache
+def _gauss() -> Floats:
+    """Points in 0 to 1 and weights for what signals bring in."""
+    at, weights = legendre_rule(8)
+    return np.stack([0.5 * (at + 1.0), 0.5 * weights])
 
 
 def _scaled(matrix: Csr, by: Floats) -> Csr:
@@ -74,9 +93,10 @@ def _structure(linear: Linear, n: int) -> dict[str, Any]:
     Kx, Cx, B = linear.csr("Kx"), linear.csr("Cx"), linear.csr("B")
     K, C = _scaled(Kx.block(inside, inside), inverse), _scaled(Cx.block(inside, inside), inverse)
     start, index, (k, c) = on_one_pattern([K, C], (K.index, K.rows), (C.index, C.rows))
-    offset, stiff = _diagonals(start, index, k, n)
+    offset, (stiff, visc) = _by_diagonals(start, index, n, (k, c))
     damped = bool(c.any())
-    visc = _diagonals(start, index, c, n)[1] if damped and len(offset) else np.zeros((0, n))
+    if not damped:
+        visc = np.zeros((0, n))
     Ku, Cu = Kx.block(inside, drivers), Cx.block(inside, drivers)
     Fu = Csr.of_entries(
         np.concatenate([B.rows, Ku.rows]), np.concatenate([B.index, Ku.index]),
@@ -84,16 +104,16 @@ def _structure(linear: Linear, n: int) -> dict[str, Any]:
     )  # fmt: skip
     Fu, Cu = _scaled(Fu, inverse), _scaled(Cu, -inverse)
     in_start, in_signal, (in_u, in_du, in_b) = on_one_pattern([Fu, Cu, B])
-    at, weights = legendre_rule(8)
     outside = np.zeros((3, n_u, n_u))
-    outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
-    outside[2, :, :1] = linear.fx[n:, None]
+    if n_u:
+        outside[0], outside[1] = Kx.block(drivers, drivers).dense(), Cx.block(drivers, drivers).dense()
+        outside[2, :, :1] = linear.fx[n:, None]
     return {
         "offset": offset, "tridiagonal": int(n > 2 and np.array_equal(offset, [-1, 0, 1])),
         "stiff": stiff, "visc": visc, "start": start, "neighbour": index, "k": k, "c": c,
         "load": inverse * linear.fx[:n], "in_start": in_start, "in_signal": in_signal, "in_u": in_u, "in_du": in_du,
         "in_b": in_b, "mass": mass, "drivers": outside,
-        "gauss": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "damped": int(damped),
+        "gauss": _gauss(), "damped": int(damped),
     }  # fmt: skip
 
 
@@ -116,6 +136,7 @@ def _contact_arrays(problem: Problem, inverse: Floats) -> dict[str, Any]:
     }  # fmt: skip
 
 
+@cache
 def _fit() -> Floats:
     """Powers of s of a polynomial from its values at points of a step; the last row is workspace."""
     powers = np.arange(POINTS)
@@ -135,11 +156,12 @@ def _net(problem: Problem, P: int) -> Net:
     wide = 8 * ((n + 7) // 8 | 1)
     i, z = np.int64, np.zeros
     largest = int(np.diff(group_statics(problem)["dof_start"]).max(initial=1))
-    widest = min(n + 8, WIDEST, largest * _widest(statics, n, P))
+    rings = P if statics["damped"] else P // 2
+    widest = min(n + 8, WIDEST, largest * _widest(statics["start"], statics["neighbour"], n, rings))
     groups = room(group_arrays(problem, P, widest))
     arrays = {
         **statics, **no_samples(n, m),
-        "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit(),
+        "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit().copy(),
         "q": z(n), "v": z(n), "top": z(n), "mode": z(m, np.int8), "sigma": np.ones(m), "loss": z(m), "mark": z(m),
         "free": np.ones(n), **dict.fromkeys(OF_RUN, 0), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
         "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
@@ -151,10 +173,9 @@ def _net(problem: Problem, P: int) -> Net:
     return room(Net(**{name: solid(arrays[name]) for name in Net._fields}))
 
 
-def _widest(statics: dict[str, Any], n: int, degree: int) -> int:
+@cached_by_content
+def _widest(start: Ints, index: Ints, n: int, rings: int) -> int:
     """How many dofs the correction of a transition may touch: twice as many as around some of them."""
-    start, index = statics["start"], statics["neighbour"]
-    rings = degree if statics["damped"] else degree // 2
     largest = 1
     for first in {0, n // 2, n - 1, int(np.argmax(np.diff(start)))}:
         inside = np.zeros(n, dtype=bool)

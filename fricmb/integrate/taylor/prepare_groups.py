@@ -116,9 +116,13 @@ def group_statics(problem: Problem) -> dict[str, Any]:
 
 def _groups(problem: Problem) -> tuple[int, Ints]:
     """Number of groups, and the group of every row, -1 of plain contacts."""
-    group = np.full(problem.m, -1, dtype=np.int64)
-    others = ~plain_contacts(problem)
     _, label = once_per(problem, "taylor labels", lambda: _labels(problem))
+    return _groups_of(label, ~plain_contacts(problem))
+
+
+@cached_by_content
+def _groups_of(label: Ints, others: NDArray[np.bool_]) -> tuple[int, Ints]:
+    group = np.full(len(label), -1, dtype=np.int64)
     found, group[others] = np.unique(label[others], return_inverse=True)
     return len(found), group
 
