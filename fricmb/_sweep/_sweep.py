@@ -13,6 +13,7 @@ from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
 from fricmb.errors import IntegrationError, SceneError
 from fricmb.integrate.compile.cache_files import say
+from fricmb.scene._other_values import check_values
 from fricmb.solution import Solution
 
 
@@ -75,7 +76,7 @@ def sweep(
     own = [dict(_checked(run, i)) for i, run in enumerate(runs)]
     values = [{**(parameters or {}), **run} for run in own]
     for value in values:
-        scene.with_parameters(value)
+        check_values(scene, value)
     if reduce is not None and not callable(reduce):
         raise SceneError(f"reduce: got {reduce!r}; expected a function of a Solution, or None")
     if run_limit is not None and not (isinstance(run_limit, int | float) and run_limit > 0):

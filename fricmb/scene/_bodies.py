@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cache, lru_cache
+from math import isfinite
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -36,6 +37,13 @@ def check_keys(owner: Part, argument: str, values: Any, known: tuple[str, ...]) 
 
 def _start(axes: str, values: tuple[Any, ...]) -> Mapping[str, Any]:
     return MappingProxyType(dict(zip(axes, values, strict=True)))
+
+
+def _is_start(values: Any, axes: str) -> bool:
+    """Whether values are in the form that bodies hold, as those of a body of which this one is a copy."""
+    if type(values) is not MappingProxyType or "".join(values) != axes:
+        return False
+    return all(type(value) is float and isfinite(value) for value in values.values())
 
 
 #: Bodies that start alike hold one mapping: of 100 000 blocks each its own would take 50 megabytes.
@@ -80,6 +88,8 @@ class Body(PartEnd):
         self._set("mass", self._number("mass", self.mass, above=0.0))
         check_letters(self, "axes", self.axes)
         for argument in ("position", "velocity"):
+            if _is_start(getattr(self, argument), self.axes):
+                continue
             given = check_keys(self, argument, getattr(self, argument), tuple(self.axes))
             values = {c: self._number(f"{argument}[{c!r}]", given[c]) for c in given}
             start = tuple([values.get(c, 0.0) for c in self.axes])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from fricmb.scene._bodies import Body
+from fricmb.scene._parameters import apply
 from fricmb.scene._part import GROUND, End, Part
 
 if TYPE_CHECKING:
@@ -45,23 +48,38 @@ def numbers_alone(scene: Scene, changed: dict[str, Part], parts: list[Part]) -> 
     Each part has been checked when it was made; names, ends and motions are those that the scene was checked with.
     """
     for old, new in zip(scene.parts, parts, strict=True):
-        if new is not old and old.original is not new.original and not (
-            new.name in changed and _is_numbers(old, new)
-        ):  # fmt: skip
+        if new is old or old.original is new.original:
+            continue
+        if new.name not in changed or not _is_numbers(old, new):
             return False
     return True
 
 
+def check_values(scene: Scene, values: Mapping[str, Any]) -> None:
+    """Raise what :meth:`Scene.with_parameters` would; where numbers alone change, no scene is made for that."""
+    changed = apply(scene, values)
+    if not all(_is_numbers(scene[name], part) and _leaves_others(scene, part) for name, part in changed.items()):
+        scene._with_parts(changed)
+
+
+def _leaves_others(scene: Scene, part: Part) -> bool:
+    """Whether nothing that refers to a part reads its numbers: parts of other packages may, and refuse them."""
+    if not isinstance(part, End):
+        return True
+    kind: Any = type(part)
+    if kind is not Body or len(scene.parts) > MANY:
+        return False
+    referring = [scene.parts[i] for i in _referring(scene).get(part.name, ())]
+    return all(type(other).__module__.startswith("fricmb.") for other in referring)
+
+
 def _is_numbers(old: Part, new: Part) -> bool:
     one: Any = type(old)
-    return (
-        one is type(new)
-        and old.name == new.name
-        and old.only_numbers()
-        and new.only_numbers()
-        and all(map(_is, old.ends(), new.ends()))
-        and getattr(old, "dof_names", ()) == getattr(new, "dof_names", ())
-    )
+    if one is not type(new) or old.name != new.name or not new.only_numbers():
+        return False
+    if one is Body:
+        return bool(new.axes == old.axes)  # type: ignore[attr-defined]
+    return all(map(_is, old.ends(), new.ends())) and getattr(old, "dof_names", ()) == getattr(new, "dof_names", ())
 
 
 def _is(one: object, other: object) -> bool:
