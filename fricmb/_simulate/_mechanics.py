@@ -11,13 +11,22 @@ import numpy as np
 
 from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
-from fricmb._simulate._members import Idle, Member, Rest, contact_names, idle_of, members_of, row_scale
+from fricmb._simulate._members import (
+    Idle,
+    Member,
+    Rest,
+    contact_names,
+    has_same_names,
+    idle_of,
+    members_of,
+    row_scale,
+)
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
-from fricmb.scene import Contact, Element, Joint, MatrixElement, Part, Scene, SpaceBody
-from fricmb.scene._family import NUMBERS, is_same_part, of_same_parts
+from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
+from fricmb.scene._family import NUMBERS, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
 
@@ -164,7 +173,7 @@ class SceneMechanics:
         """Names of what the arrays hold; stiffness, damping and loads are in none of them."""
         parts = [part for part in self.placed.parts if not isinstance(part, Element | MatrixElement)]
         key = "names", self.plan.dofs, self.plan.parts
-        return of_same_parts(self.placed, key, parts, self._names, but=NUMBERS, alike=_has_same_names)
+        return of_same_parts(self.placed, key, parts, self._names, but=NUMBERS, alike=has_same_names)
 
     def _names(self) -> Names:
         held = set(self.plan.parts)
@@ -225,24 +234,6 @@ def mechanics_of(
             gathered=one,
         )  # fmt: skip
     return found
-
-
-def _has_same_names(one: Part, other: Part, but: frozenset[str]) -> bool:
-    """Whether names that a part brings are those of another: numbers of contacts and of bodies bring none."""
-    if is_same_part(one, other, but):
-        return True
-    differs = one.differs_in(other)
-    if differs is None or not isinstance(one, Contact | Joint) or not isinstance(other, Contact | Joint):
-        return False
-    named = frozenset(("law", "normal_force") if isinstance(one, Contact) else ("friction",))
-    return (
-        differs <= named and _rubs(one) and _rubs(other)
-        and (contact_names(one), row_scale(one)) == (contact_names(other), row_scale(other))
-    )  # fmt: skip
-
-
-def _rubs(part: Contact | Joint) -> bool:
-    return isinstance(part, Contact) or part.friction is not None
 
 
 def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:

@@ -11,7 +11,8 @@ import numpy as np
 from fricmb.integrate import MotionSamples, Start
 from fricmb.integrate.problem import Codes, Floats, Ints
 from fricmb.plan import Island, Plan, Selection
-from fricmb.scene import Contact, Joint, Scene
+from fricmb.scene import Contact, Joint, Part, Scene
+from fricmb.scene._family import is_same_part
 from fricmb.solution import Flags, Names
 from fricmb.system import System, build
 from fricmb.system._contacts import UNIT
@@ -173,6 +174,24 @@ def row_scale(contact: Contact | Joint) -> tuple[float, ...]:
     if not contact.law.axis_scale():
         return UNIT[len(contact.labels())]
     return tuple(float(s) for s in contact.law.numeric().axis_scale())
+
+
+def has_same_names(one: Part, other: Part, but: frozenset[str]) -> bool:
+    """Whether names that a part brings are those of another: numbers of contacts and of bodies bring none."""
+    if is_same_part(one, other, but):
+        return True
+    differs = one.differs_in(other)
+    if differs is None or not isinstance(one, Contact | Joint) or not isinstance(other, Contact | Joint):
+        return False
+    named = frozenset(("law", "normal_force") if isinstance(one, Contact) else ("friction",))
+    return (
+        differs <= named and _rubs(one) and _rubs(other)
+        and (contact_names(one), row_scale(one)) == (contact_names(other), row_scale(other))
+    )  # fmt: skip
+
+
+def _rubs(part: Contact | Joint) -> bool:
+    return isinstance(part, Contact) or part.friction is not None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,8 +26,8 @@ from fricmb.integrate.problem import (
 from fricmb.scene import Contact, Joint
 from fricmb.scene._lines import Rows
 from fricmb.system._lined import built_places, prescribed
+from fricmb.system._matrices import DENSE, dense_of, is_sparse, matrix_of
 from fricmb.system._motions import Motions
-from fricmb.system._structure import DENSE, dense_of, is_sparse, matrix_of
 from fricmb.system._tables import NO_TEMPLATE, Row, TableBuilder, starts
 from fricmb.system._try_law import try_law
 from fricmb.values import is_expression, value_of

@@ -3,114 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
-from itertools import accumulate
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from fricmb.equations import joint_template, numbers, place_template, signal_expression, uniform_signal
+from fricmb.equations import place_template
 from fricmb.errors import SceneError
-from fricmb.integrate.mechanism import Entries, Joints, Mechanism, Places
+from fricmb.integrate.mechanism import Entries, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import common, topology
-from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, Part, RigidBody, SpaceBody
+from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody
 from fricmb.system import _motions
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
+from fricmb.system._joints import JointArrays, Kept
 from fricmb.system._mechanism_system import MechanismSystem
-from fricmb.system._shares import Shares, add_share, is_equal_but_start, shares_of
+from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._structure import Structure
-from fricmb.system._tables import Row, TableBuilder
-from fricmb.values import is_expression, value_of
-
-
-def _hold_alike(one: Part, other: Part) -> bool:
-    """Whether two joints are the same but for the numbers of their friction, which is among the contacts."""
-    if not isinstance(one, Joint) or not isinstance(other, Joint) or type(one.friction) is not type(other.friction):
-        return False
-    differs = one.differs_in(other)
-    return differs is not None and differs <= {"friction"}
-
-
-class Kept(NamedTuple):
-    """What single parts add to each kind of arrays."""
-
-    structure: Shares | None
-    contacts: Shares | None
-    joints: Shares | None
-
-
-@dataclass(kw_only=True)
-class JointArrays:
-    """Joints under construction."""
-
-    motions: _motions.Motions
-    contacts: ContactArrays
-    table: TableBuilder = field(default_factory=TableBuilder)
-    rows: list[int] = field(default_factory=list)
-    port: list[int] = field(default_factory=list)
-    one_sided: list[int] = field(default_factory=list)
-    hands_over: list[int] = field(default_factory=list)
-    inner: list[int] = field(default_factory=list)
-    names: list[str] = field(default_factory=list)
-    forms: list[tuple[Row, ...]] = field(default_factory=list)
-
-    def lists(self) -> tuple[list[Any], ...]:
-        """See :class:`Growing`."""
-        return (
-            self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.names, self.forms,
-        )  # fmt: skip
-
-    def marks(self) -> tuple[int, ...]:
-        """See :class:`Growing`: signals are told by their numbers."""
-        return (self.motions.signals.asked,)
-
-    def add(self, joint: Joint, kept: Kept, *, inner: bool = False) -> None:
-        """Append a joint, and its friction to the contacts; ``inner``: of one body alone."""
-        add_share(kept.joints, joint, self, lambda joint: self._append(joint, inner), _hold_alike)
-        self.port.append(-1)
-        if joint.friction is not None:
-            self.port[-1] = len(self.contacts.law)
-            add_share(kept.contacts, joint, self.contacts, self.contacts.add_joint)
-
-    def _append(self, joint: Joint, inner: bool) -> None:
-        template = joint_template(joint)
-        rows = [self.motions.row(form) for form in joint.local_coordinates()]
-        rows += [self._drive(joint, i, drive) for i, drive in enumerate(joint.drives())]
-        self.table.add(template.address, numbers(joint.bare()), [*(r.value() for r in rows), *(r.rate() for r in rows)])
-        self.rows.append(int(template.facts["rows"]))
-        self.one_sided.append(int(joint.one_sided))
-        self.hands_over.append(int(joint.hands_over))
-        self.inner.append(int(inner))
-        self.names.append(joint.name)
-        self.forms.append(tuple(rows))
-
-    def _drive(self, joint: Joint, i: int, drive: tuple[str, Any, float]) -> Row:
-        given, value, start = drive
-        name = joint.name if i == 0 else f"{joint.name}.{i}"
-        if is_expression(value) and not _is_number(value):
-            what = f"{type(joint).__name__} {joint.name!r}"
-            j = self.motions.signals.add(name, lambda: signal_expression(value, given, start, what))
-        else:
-            number = float(value_of(value))
-            rate, offset = (0.0, number + start) if given == "value" else (number, start)
-            j = self.motions.signals.add(name, lambda: uniform_signal(rate, offset))
-        return Row((), ((j, 1.0),))
-
-    def build(self, n_y: int, n_u: int) -> Joints:
-        """The arrays."""
-        return Joints(
-            table=self.table.build(n_y, n_u),
-            row=np.array([0, *accumulate(self.rows)], dtype=np.int64),
-            port=np.array(self.port, dtype=np.int64),
-            one_sided=np.array(self.one_sided, dtype=np.int8),
-            hands_over=np.array(self.hands_over, dtype=np.int8),
-            inner=np.array(self.inner, dtype=np.int8),
-            names=tuple(self.names),
-            dropped=np.zeros(sum(self.rows), dtype=np.int8),
-        )
 
 
 def _found_once(scene: Any, key: Any, find: Callable[[], list[Any]]) -> list[Any]:
@@ -120,14 +31,6 @@ def _found_once(scene: Any, key: Any, find: Callable[[], list[Any]]) -> list[Any
         known[key] = find()
     found: list[Any] = known[key]
     return found
-
-
-def _is_number(value: Any) -> bool:
-    try:
-        value_of(value)
-    except TypeError:
-        return False
-    return True
 
 
 def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:

@@ -251,3 +251,36 @@ def test_wrong_scenes_say_what_is_wrong(make, words):
         make(a, b)
     for word in words:
         assert word in str(error.value)
+
+
+def test_a_value_that_cannot_be_is_refused_also_where_numbers_alone_change():
+    scene = fm.models.brake4dof()
+    for values in ({"k1x.stiffness": float("nan")}, {"pad.mass": -1.0}, {"lining.law.mu_k": 2.0}):
+        with pytest.raises(fm.FricmbError):
+            scene.with_parameters(values)
+        with pytest.raises(fm.FricmbError):
+            fm.sweep(scene, [values], t_end=1.0, workers=1, progress=False)
+    with pytest.raises(fm.FricmbError):
+        scene.with_parameters({"k1x.stifness": 1.0})
+
+
+def test_a_scene_with_other_numbers_knows_its_parts():
+    scene = fm.models.brake4dof()
+    heavy = scene.with_parameters({"pad.mass": 2.0})
+    assert heavy["pad"].mass == 2.0
+    assert heavy["k1x"].a is heavy["pad"] is heavy["lining"].a
+    assert heavy["k1x"] == fm.Spring("k1x", heavy["pad"], axis="x", stiffness=1.0)
+    assert heavy["k1x"].original is scene["k1x"]
+    assert heavy["k2y"] is scene["k2y"]
+    assert heavy == fm.Scene(scene.name, heavy.parts, units=scene.units)
+    again = heavy.with_parameters({"pad.mass": 3.0, "k1x.stiffness": 2.0})
+    assert again["k1x"].original is not scene["k1x"]
+    assert again["k1y"].original is scene["k1y"]
+    assert again.parameters["k1x.stiffness"] == 2.0
+    assert dict(again.parameters, **{"pad.mass": 1.0, "k1x.stiffness": 1.0}) == scene.parameters
+
+
+def test_joints_look_at_the_angle_at_the_start_and_not_at_masses():
+    scene = fm.models.slider_crank()
+    assert scene.with_parameters({"slider.mass": 2.0})["guide"].original is scene["guide"]
+    assert scene.with_parameters({"slider.angle": 0.1})["guide"].original is not scene["guide"]

@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 import fricmb as fm
+from fricmb.integrate import csr
 from fricmb.integrate.collocation import structure_blocks
+from fricmb.integrate.collocation.one_contact import constants
 from fricmb.integrate.collocation.one_contact import workspace as one_contact
 from fricmb.integrate.constrained import pattern
 from fricmb.integrate.model import problem_structs, structure
 from fricmb.integrate.run import workspace
+from fricmb.integrate.taylor import prepare, prepare_groups
 from fricmb.plan import _same, make_plan
 from fricmb.plan._make import _make
 from fricmb.scene._family_of import forget_families
@@ -65,9 +68,11 @@ def forget():
         store.clear()
     for function in (
         structure_blocks.blocks, problem_structs.softening, structure.dense_inverse, problem_structs._mobility_by_mass,
-        _spectrum.spectrum,
+        _spectrum.spectrum, structure_blocks._held, constants._port, prepare._widest, prepare._diagonals,
+        prepare_groups._groups_of, prepare_groups._labels_of, prepare_groups._places,
     ):  # fmt: skip
         function.forget()
+    csr._known.cache_clear()
     structure._places.cache_clear()
     structure._order.cache_clear()
 

@@ -207,3 +207,45 @@ def test_one_problem_serves_all_starts_while_somebody_has_it():
     stiff = build(scene.replace("k1x", stiffness=2.0)).problem
     assert stiff is not problem
     assert build(scene.with_parameters({"pad.position.x": 0.3})).problem is not stiff
+
+
+def test_a_part_that_reads_signals_is_put_in_anew_where_their_numbers_change():
+    """A spring to a body that moves comes after another one, or before."""
+    first, second = (fm.Driven(name, position={"x": sympy.sin(fm.t)}) for name in ("first", "second"))
+    body = fm.Body("body", mass=1.0)
+    one, other = (fm.Spring(f"to {end.name}", body, end, axis="x", stiffness=2.0) for end in (first, second))
+    forget_families()
+    for springs in ((one, other), (other, one), (other,), (one,)):
+        scene = fm.Scene("signals", [first, second, body, *springs])
+        linear = build(scene).problem.linear
+        names = [spring.name.removeprefix("to ") for spring in springs]
+        assert linear.Kx[0, 1:].tolist() == [-2.0] * len(names)
+        stiffer = scene.with_parameters({f"to {names[-1]}.stiffness": 3.0})
+        assert build(stiffer).problem.linear.Kx[0, 1:].tolist() == [-2.0] * (len(names) - 1) + [-3.0]
+
+
+def test_a_sweep_refuses_what_an_element_of_others_refuses_before_anything_is_run():
+    @dataclass(frozen=True, kw_only=True)
+    class Light(fm.Element):
+        """Holds light bodies alone."""
+
+        a: fm.Body
+        stiffness: float
+
+        def __post_init__(self):
+            super().__post_init__()
+            if self.a.mass > 5.0:
+                self._refuse("a", self.a.mass, "a body of at most 5")
+
+        def local_coordinates(self):
+            return (self.a.motion("x"),)
+
+        def define_potential(self, x):
+            return self.stiffness * x[0] ** 2 / 2
+
+    body = fm.Body("body", mass=1.0, velocity={"x": 1.0})
+    scene = fm.Scene("light", [body, Light(name="s", a=body, stiffness=3.0)])
+    ran = []
+    with pytest.raises(fm.SceneError, match="at most 5"):
+        fm.sweep(scene, [{"body.mass": m} for m in (2.0, 9.0)], t_end=1.0, reduce=ran.append, workers=1, progress=False)
+    assert not ran

@@ -89,43 +89,53 @@ def _put_blocks(held: dict[str, Any], z: int, part: Blocks, M: Floats) -> None:
         held["force_0"][z, :b], held["start_0"][z, :b] = part.force_0, part.force_0 @ M
 
 
+def _put_contact(held: dict[str, Any], slip: Blocks, W: Floats) -> None:
+    """What the contact feels of the blocks in slip."""
+    c1, b1 = W.T @ slip.v_v, (slip.force_1 @ W).T
+    held["c1"][...], held["b1"][...] = c1, b1
+    by_velocity, by_force = np.abs(c1), np.abs(b1)
+    if not slip.modal:
+        c0, b0 = W.T @ slip.v_u, (slip.force_0 @ W).T
+        held["c0"][...], held["b0"][...] = c0, b0
+        by_velocity, by_force = np.abs(c0) + by_velocity, np.abs(b0) + by_force
+    held["linked"][...] = by_velocity @ by_force.T > 0
+
+
+def _put_hold(held: dict[str, Any], stick: Blocks, hold: Floats, K: Floats, C: Floats) -> None:
+    """The force of the contact in stick by the blocks."""
+    b = len(stick.w2)
+    if not stick.modal:
+        held["hold_u"][:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u)
+        held["hold_v"][:, :b] = hold @ (K @ stick.q_v + C @ stick.v_v)
+        return
+    held["hold_u"][:, :b] = hold @ (K @ stick.q_u)
+    if np.count_nonzero(C):
+        held["hold_v"][:, :b] = hold @ (C @ stick.v_v)
+
+
 def _structure(problem: Problem) -> Structure:
     n, m, linear = problem.n, problem.m, problem.linear
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
     W = np.ascontiguousarray(problem.contacts.W)
     slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
     Minv, MW, D, Dinv, hold = _port(M, W)
-    b = len(stick.w2)
     piece = structure_pattern(n, m).zeros()
     held = piece.arrays
     _put_blocks(held, 0, slip, M)
     _put_blocks(held, 1, stick, M)
-    damped = np.count_nonzero(C) > 0
-    if stick.modal:
-        held["hold_u"][:, :b] = hold @ (K @ stick.q_u)
-        if damped:
-            held["hold_v"][:, :b] = hold @ (C @ stick.v_v)
-    else:
-        held["hold_u"][:, :b] = hold @ (K @ stick.q_u + C @ stick.v_u)
-        held["hold_v"][:, :b] = hold @ (K @ stick.q_v + C @ stick.v_v)
-    c1, b1 = W.T @ slip.v_v, (slip.force_1 @ W).T
-    held["c1"][...], held["b1"][...], held["wt"][...], held["mw"][...] = c1, b1, W.T, MW.T
-    by_velocity, by_force = np.abs(c1), np.abs(b1)
-    if not slip.modal:
-        c0, b0 = W.T @ slip.v_u, (slip.force_0 @ W).T
-        held["c0"][...], held["b0"][...] = c0, b0
-        by_velocity, by_force = np.abs(c0) + by_velocity, np.abs(b0) + by_force
-    linked = by_velocity @ by_force.T > 0
-    held["linked"][...], held["D"][...], held["D_inv"][...] = linked, D, Dinv
+    _put_hold(held, stick, hold, K, C)
+    _put_contact(held, slip, W)
+    held["wt"][...], held["mw"][...], held["D"][...], held["D_inv"][...] = W.T, MW.T, D, Dinv
     held["stiff"][...], held["visc"][...], held["minv"][...] = K, C, Minv
-    frequencies = np.sqrt(np.abs(slip.w2))
+    frequencies, linked, b = np.sqrt(np.abs(slip.w2)), held["linked"], len(stick.w2)
     rates = np.maximum(frequencies, np.abs(slip.d))
     numbers = {
         "stuck_blocks": b, "coupled": int(m == 2 and bool(linked[0, 1] or linked[1, 0])),
         "fastest": frequencies.max(initial=0.0),
     }  # fmt: skip
     return Structure(
-        piece=piece, numbers=numbers, content=piece.memory.tobytes() + bytes([b]), stuck_motion=stick.stuck_motion,
+        piece=piece, numbers=numbers, content=piece.memory.tobytes() + b.to_bytes(4, "little"),
+        stuck_motion=stick.stuck_motion,
         quickest=float(rates.max(initial=0.0)),
         ringing=float(rates[slip.d <= 2.0 * CALM * frequencies].max(initial=0.0)),
     )  # fmt: skip
