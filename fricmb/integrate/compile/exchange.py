@@ -16,7 +16,7 @@ _WORD = 8
 
 
 def with_arrays(values: _Tuple, **new: Any) -> _Tuple:
-    """A room with other arrays of the same type, or other numbers, in some places; the old one stays as it is."""
+    """A room with other arrays or rooms of the same type, or other numbers, in some places; the old one stays."""
     old = cast(Room, values)
     made = object.__new__(type(old))
     made.__dict__ = {**old.__dict__, **new}
@@ -26,6 +26,11 @@ def with_arrays(values: _Tuple, **new: Any) -> _Tuple:
     for name, value in new.items():
         if name in kind.numbers:
             setattr(made, name, value)
+            continue
+        if kind.takes[name] is None:
+            if value.room_type is not kind.of[name]:
+                raise TypeError(f"{name} is a {value.room_type}; expected {kind.of[name]}")
+            words[kind.at[name] // _WORD] = value._address
             continue
         if (value.dtype, value.ndim) != kind.takes[name] or not value.flags.c_contiguous:
             raise TypeError(f"{name} is {value.dtype} with {value.ndim} axes; expected {kind.of[name]}")

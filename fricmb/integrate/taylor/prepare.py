@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.parallel_compile import load_blocks
+from fricmb.integrate.compile.piece import Pattern
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.model.friction_cone import stick_limits
-from fricmb.integrate.model.problem_structs import table_of
+from fricmb.integrate.model.problem_structs import Table, table_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
+from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone
-from fricmb.integrate.taylor.network import OF_RUN, Net
+from fricmb.integrate.taylor.groups import Groups
+from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare_groups import (
     against_groups,
-    group_arrays,
+    group_room,
     group_statics,
     legendre_rule,
     plain_contacts,
@@ -152,25 +156,44 @@ def net_of(problem: Problem, degree: int) -> Net:
 def _net(problem: Problem, P: int) -> Net:
     n, m, n_u = problem.n, problem.m, problem.n_u
     statics = once_per(problem, "taylor statics", lambda: _statics(problem))
-    # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
-    wide = 8 * ((n + 7) // 8 | 1)
-    i, z = np.int64, np.zeros
     largest = int(np.diff(group_statics(problem)["dof_start"]).max(initial=1))
     rings = P if statics["damped"] else P // 2
     widest = min(n + 8, WIDEST, largest * _widest(statics["start"], statics["neighbour"], n, rings))
-    groups = room(group_arrays(problem, P, widest))
-    arrays = {
-        **statics, **no_samples(n, m),
-        "series": z((n_u, P + 3)), "rates": z((n_u, P + 3)), "large": z((2, n_u)), "window": z(8), "fit": _fit().copy(),
-        "q": z(n), "v": z(n), "top": z(n), "mode": z(m, np.int8), "sigma": np.ones(m), "loss": z(m), "mark": z(m),
-        "free": np.ones(n), **dict.fromkeys(OF_RUN, 0), "Q": z((P + 1, wide)), "R": z((P - 1, wide)),
-        "slack": z(m), "due": z(m), "since": z(m), "heap_t": z(2 * m + 64), "heap_c": z(2 * m + 64, i),
-        "flat": z((3, n)), "local": z(widest, i), "grown": z(widest, np.int8), "kind": z(widest, np.int8),
-        "place": np.full(n, -1, dtype=i), "dQ": z((P + 2, widest)), "dR": z((P + 1, widest)), "old": z((3, P + 3)),
-        "events": z((max(64, 4 * m), 3)), "steps": z((256, 2)), "stops": z(1),
-        "groups": groups,
+    sizes = n, m, n_u, P, widest
+    work = _work_pattern(*sizes).zeros()
+    for name, value in (("sigma", 1.0), ("free", 1.0), ("place", -1)):
+        work.arrays[name].fill(value)
+    work.arrays["fit"][...] = _fit()
+    codes = {"mode": np.zeros(m, np.int8), "grown": np.zeros(widest, np.int8), "kind": np.zeros(widest, np.int8)}
+    given = {name: solid(value) for name, value in statics.items()} | codes
+    rooms = {"signals": room(statics["signals"]), "groups": group_room(problem, P, widest)}
+    net = with_arrays(_blank(*sizes), **given | rooms)
+    _work_pattern(*sizes).put(net, work)
+    return net
+
+
+@lru_cache(maxsize=64)
+def _work_pattern(n: int, m: int, n_u: int, P: int, widest: int) -> Pattern:
+    """Arrays that a run works in, but for those of codes."""
+    # rows that do not lie a multiple of 4096 bytes apart stay in the cache together
+    wide = 8 * ((n + 7) // 8 | 1)
+    heap = (2 * m + 64,)
+    floats: dict[str, tuple[int, ...]] = {
+        "series": (n_u, P + 3), "rates": (n_u, P + 3), "large": (2, n_u), "window": (8,), "fit": (POINTS + 1, POINTS),
+        **dict.fromkeys(("q", "v", "top", "free"), (n,)), "Q": (P + 1, wide), "R": (P - 1, wide),
+        **dict.fromkeys(("sigma", "loss", "mark", "slack", "due", "since"), (m,)), "heap_t": heap, "flat": (3, n),
+        "dQ": (P + 2, widest), "dR": (P + 1, widest), "old": (3, P + 3), "events": (max(64, 4 * m), 3),
+        "steps": (256, 2), "stops": (1,),
     }  # fmt: skip
-    return room(Net(**{name: solid(arrays[name]) for name in Net._fields}))
+    return Pattern(Net, floats, {"heap_c": heap, "local": (widest,), "place": (n,)})
+
+
+@lru_cache(maxsize=64)
+def _blank(n: int, m: int, n_u: int, P: int, widest: int) -> Net:
+    """A room with arrays to work in and for no samples; of structure and contacts there is nothing."""
+    arrays = empty_arrays(Net) | no_samples(n, m) | _work_pattern(n, m, n_u, P, widest).zeros().arrays
+    nothing = Table(**empty_arrays(Table))
+    return room(Net(**arrays, signals=nothing, groups=Groups(**empty_arrays(Groups), laws=nothing)))
 
 
 @cached_by_content

@@ -10,10 +10,14 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
-from fricmb.integrate.model.problem_structs import table_of
+from fricmb.integrate.compile.exchange import with_arrays
+from fricmb.integrate.compile.piece import Pattern
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.model.problem_structs import Table, table_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
 from fricmb.integrate.run.array_cache import cached_by_content
+from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.taylor.groups import SECOND, Groups
 from fricmb.integrate.taylor.layout import PLAN
 
@@ -190,31 +194,53 @@ def _interpolation(degree: int) -> tuple[Floats, Floats]:
     return np.cos(angle), fit
 
 
-def group_arrays(problem: Problem, P: int, widest: int) -> Groups:
+def group_room(problem: Problem, P: int, widest: int) -> Groups:
     """All of it for polynomials of degree P and corrections of at most ``widest`` dofs."""
     statics = group_statics(problem)
-    i, z, m = np.int64, np.zeros, problem.m
-    at, weights = legendre_rule(P)
-    nodes, fit = _interpolation(P)
     lawful = int(np.count_nonzero(statics["lawful"] >= 0))
     count, grouped = len(statics["group_start"]) - 1, len(statics["group_contact"])
-    most = min(grouped, 4 * widest)
     planes = int(np.count_nonzero(statics["planar"] >= 0))
-    sums = (P + 3, P + 1)
-    arrays: dict[str, Any] = {
-        **statics, "F": z((P - 1, m if grouped else 0)), "L": z(len(statics["G"])), "stuck": z(grouped, i),
-        "n_stuck": z(count, i), "factored": np.full(grouped, -1, np.int8), "rhs": z(grouped),
-        "curve": z((lawful, P + 1)), "middle": z(lawful), "half": z(lawful), "terms": z(lawful, i),
-        "rough": z(lawful), "nodes": nodes, "fit": fit, "values": z(P + 1), "work": z(8), "b": z((lawful, *sums)),
-        "paid": z(m), "rule": np.stack([0.5 * (at + 1.0), 0.5 * weights]), "rests": z(m, np.int8),
-        "before": z(m, np.int8), "slot": np.full(m, -1, i), "here": z(most, i), "reached": z(count, i),
-        "touched": z(count, np.int8), "was": z((most, P + 1)), "dF": z((P + 1, most)),
-        "local_b": z((most if lawful else 0, *sums)), "first": z(most, i), "along": z((2, 12)),
-        "unit": z((planes, 2, P + 1)), "speed": z((planes, P + 1)), "rubbing": z((planes, P + 1)),
-        "begins": z(planes, np.int8), "first_speed": z(planes), "turned": z((planes, P + 1)),
-        "landing": z((planes, PLAN)), "square": z(2 * P + 3),
+    sizes = problem.m, P, count, grouped, len(statics["G"]), lawful, min(grouped, 4 * widest), planes
+    work = _work_pattern(*sizes).zeros()
+    work.arrays["slot"].fill(-1)
+    codes = {
+        "factored": np.full(grouped, -1, np.int8), "touched": np.zeros(count, np.int8),
+        "begins": np.zeros(planes, np.int8),
+        **{name: np.zeros(problem.m, np.int8) for name in ("rests", "before")},
     }  # fmt: skip
-    return Groups(**{name: solid(array) for name, array in arrays.items()})
+    given = {name: solid(value) for name, value in statics.items()} | codes
+    groups = with_arrays(_blank(*sizes), **given | {"laws": room(statics["laws"])})
+    _work_pattern(*sizes).put(groups, work)
+    return groups
+
+
+@lru_cache(maxsize=64)
+def _work_pattern(
+    m: int, P: int, count: int, grouped: int, entries: int, lawful: int, most: int, planes: int
+) -> Pattern:
+    """Arrays that a run works in, but for those of codes."""
+    sums = (P + 3, P + 1)
+    floats: dict[str, tuple[int, ...]] = {
+        "F": (P - 1, m if grouped else 0), "L": (entries,), "rhs": (grouped,), "curve": (lawful, P + 1),
+        "middle": (lawful,), "half": (lawful,), "rough": (lawful,), "values": (P + 1,), "work": (8,),
+        "b": (lawful, *sums), "paid": (m,), "was": (most, P + 1), "dF": (P + 1, most),
+        "local_b": (most if lawful else 0, *sums), "along": (2, 12), "unit": (planes, 2, P + 1),
+        "first_speed": (planes,), "landing": (planes, PLAN), "square": (2 * P + 3,),
+        **dict.fromkeys(("speed", "rubbing", "turned"), (planes, P + 1)),
+    }  # fmt: skip
+    whole = {"stuck": (grouped,), "n_stuck": (count,), "terms": (lawful,), "slot": (m,), "reached": (count,)}
+    return Pattern(Groups, floats, {**whole, "here": (most,), "first": (most,)})
+
+
+@lru_cache(maxsize=64)
+def _blank(m: int, P: int, count: int, grouped: int, entries: int, lawful: int, most: int, planes: int) -> Groups:
+    """A room with arrays to work in and rules; of groups and laws there is nothing."""
+    arrays = empty_arrays(Groups) | _work_pattern(m, P, count, grouped, entries, lawful, most, planes).zeros().arrays
+    at, weights = legendre_rule(P)
+    nodes, fit = _interpolation(P)
+    rules = {"nodes": nodes, "fit": fit, "rule": np.stack([0.5 * (at + 1.0), 0.5 * weights])}
+    given = {name: solid(array) for name, array in (arrays | rules).items()}
+    return room(Groups(**given, laws=Table(**empty_arrays(Table))))
 
 
 def solid(x: Any) -> Any:
