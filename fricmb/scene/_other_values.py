@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fricmb.scene._bodies import Body
 from fricmb.scene._parameters import apply
-from fricmb.scene._part import GROUND, End, Part
+from fricmb.scene._part import GROUND, End, Part, original_of
 
 if TYPE_CHECKING:
     from fricmb.scene._scene import Scene
@@ -48,7 +48,7 @@ def numbers_alone(scene: Scene, changed: dict[str, Part], parts: list[Part]) -> 
     Each part has been checked when it was made; names, ends and motions are those that the scene was checked with.
     """
     for old, new in zip(scene.parts, parts, strict=True):
-        if new is old or old.original is new.original:
+        if new is old or original_of(old) is original_of(new):
             continue
         if new.name not in changed or not _is_numbers(old, new):
             return False

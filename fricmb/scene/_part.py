@@ -94,18 +94,12 @@ class Part(Declaration):
             return dataclasses.replace(self, **new)
         # nothing that was checked can be wrong now
         copy = object.__new__(type(self))
-        vars(copy).update(vars(self), **new, _original=self.original)
+        vars(copy).update(vars(self), **new, _original=original_of(self))
         return copy
-
-    @property
-    def original(self) -> Part:
-        """The part that this one equals in all but the numbers of the bodies it refers to; itself, if it is no copy."""
-        found: Part = vars(self).get("_original", self)
-        return found
 
     def differs_in(self, other: Part) -> set[str] | None:
         """Fields that hold something else, ends that move alike left out; None for a part of another type."""
-        if self.original is other.original:
+        if original_of(self) is original_of(other):
             return set()
         if type(self) is not type(other):
             return None
@@ -113,6 +107,12 @@ class Part(Declaration):
         read = _field_values(kind)
         values = zip(field_names(kind), read(self), read(other), strict=True)
         return {name for name, a, b in values if not (is_same(a, b) or _alike(self, a, b))}
+
+
+def original_of(part: Part) -> Part:
+    """What a part equals in all but the numbers of the bodies that it refers to; itself, where it is no such copy."""
+    found: Part = vars(part).get("_original", part)
+    return found
 
 
 def _alike(part: Part, one: Any, other: Any) -> bool:
