@@ -52,6 +52,8 @@ def _set_up(options: argparse.Namespace) -> None:
         os.environ["FRICMB_COMPILE_PROCESSES"] = str(threads)
     if getattr(options, "quiet", False):
         os.environ["FRICMB_QUIET"] = "1"
+    # else numba sets up colours for messages that nobody sees, and the terminal gets an escape sequence at the end
+    os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
 
 
 def _threads(text: str) -> int:

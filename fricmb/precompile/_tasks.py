@@ -35,7 +35,8 @@ def runs() -> list[str]:
     """
     import fricmb as fm
 
-    return ["dae linear", *(f"model {name}" for name in reversed(fm.models.catalogue))]
+    largest, *others = (f"model {name}" for name in reversed(fm.models.catalogue))
+    return [largest, "dae linear", *others]
 
 
 def do(task: str) -> None:

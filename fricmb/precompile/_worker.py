@@ -31,3 +31,5 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
+    # all that was made is on disk and told: to take half a gigabyte of compilers apart would take seconds
+    os._exit(0)

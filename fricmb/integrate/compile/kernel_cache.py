@@ -70,12 +70,22 @@ class KernelCache(Cache):  # type: ignore[misc]
         """Keep a compiled kernel; where that cannot be done the run goes on."""
         if any(not lifted.can_cache for lifted in data.lifted) or data.library.has_dynamic_globals:
             return
-        payload = pickle.dumps(self._impl.reduce(data), protocol=-1)
+        payload = pickle.dumps(_lean(self._impl.reduce(data)), protocol=-1)
         name = self._file(sig, data.codegen)
         _files.write(name, payload)
 
     def _file(self, sig: Any, codegen: Any) -> str:
         return f"{self._name}-{content_digest(self._py_func, self._options, sig, codegen.magic_tuple())}.nbc"
+
+
+def _lean(reduced: tuple[Any, ...]) -> tuple[Any, ...]:
+    """What is kept of a kernel, without the environments of functions in it that hold nothing.
+
+    An environment holds objects of Python that machine code hands to the interpreter, as ``print`` does.  To make one,
+    loading imports the module of its function: of numba's own functions nothing else asks for these modules.
+    """
+    *others, environments = reduced
+    return *others, tuple(environment for environment in environments if environment.consts)
 
 
 def cached_on_disk(compiled: Any) -> Any:
