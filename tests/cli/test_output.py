@@ -134,3 +134,13 @@ def test_quiet_says_nothing(monkeypatch, capsys):
     monkeypatch.setenv("FRICMB_QUIET", "1")
     say("a notice")
     assert capsys.readouterr().err == ""
+
+
+def test_colours_of_numba_leave_nothing_on_the_terminal(monkeypatch):
+    """With colorama installed numba would write an escape sequence at the end of what compiles."""
+    from fricmb.cli._main import _set_up, parser
+
+    monkeypatch.setenv("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "")  # put back behind the test, set or not
+    monkeypatch.delenv("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING")
+    _set_up(parser().parse_args(["list"]))
+    assert os.environ["NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"] == "1"

@@ -131,3 +131,31 @@ def test_a_run_by_bdf_compiles_nothing_the_second_time():
     run = [sys.executable, "-c", program]
     misses = [subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()[-1] for _ in range(2)]
     assert misses[1] == "0", misses
+
+
+ARRAYS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from summed import summed
+print(summed(2.0), sum(summed.stats.cache_misses.values()), "numba.np.arrayobj" in sys.modules)
+"""
+SUMMED = """
+import numpy as np
+from fricmb.integrate.compile.kernel import entry
+@entry
+def summed(x: float) -> float:
+    held = np.zeros(3)
+    held[:] = x
+    return held.sum()
+"""
+
+
+def test_loading_imports_nothing_that_only_compiling_needs(tmp_path):
+    """Numba's own functions in a kernel bring none of the modules that define them."""
+    (tmp_path / "summed.py").write_text(SUMMED)
+    kept = str(tmp_path / "kept")
+    env = {**os.environ, "NUMBA_CACHE_DIR": kept, "FRICMB_CACHE_DIR": kept}
+    for expected in ("6.0 1 True", "6.0 0 False"):
+        command = [sys.executable, "-B", "-c", ARRAYS, str(tmp_path)]
+        done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+        assert done.stdout.strip() == expected

@@ -103,6 +103,12 @@ def test_a_process_that_died_before_its_first_task_is_told():
             crew.work_off(["block find_open", "block mark_rest"], lambda task, answer: None)
 
 
+def test_workers_end_by_themselves():
+    with Crew(1) as crew:
+        crew.work_off(["block find_open"], lambda task, answer: None)
+    assert [process.returncode for process in crew._processes] == [0]
+
+
 def test_all_kernels_are_listed():
     tasks = _tasks.kernels()
     assert len(tasks) == len(set(tasks)) > 100
