@@ -11,6 +11,8 @@ from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from fricmb._simulate._put_off import put_off_f2py
+
 if TYPE_CHECKING:
     from fricmb.scene import Scene
 
@@ -21,6 +23,7 @@ MANY = 200
 @lru_cache(maxsize=1)
 def _controller() -> Any:
     """What sets the threads of the libraries of numpy and scipy; both have to be loaded to be found."""
+    put_off_f2py()
     import scipy.linalg  # noqa: F401
     from threadpoolctl import ThreadpoolController
 

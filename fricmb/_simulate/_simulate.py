@@ -96,10 +96,13 @@ def simulate(
         After Ctrl-C (a KeyboardInterrupt); ``partial`` is the solution up to there.
     """
     begin = time.perf_counter()
-    from fricmb._simulate._blas import blas_threads
-    from fricmb._simulate._compile_watch import CompileWatch
+    from fricmb.integrate.compile.few_collections import few_collections
 
-    with CompileWatch() as compiling, blas_threads(scene):
+    with few_collections():  # what the first call loads stays
+        from fricmb._simulate._blas import blas_threads
+        from fricmb._simulate._compile_watch import CompileWatch
+
+    with few_collections(), CompileWatch() as compiling, blas_threads(scene):
         from fricmb._simulate._arguments import (
             check_limit,
             check_memory,

@@ -26,10 +26,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     _set_up(options)
     from fricmb.errors import FricmbError, IntegrationError
+    from fricmb.integrate.compile.few_collections import few_collections
 
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        status = command(options)
+        with few_collections():  # what a command loads stays until its end
+            status = command(options)
         _flush()
     except IntegrationError as error:
         return _complain(str(error), FAILED)
@@ -188,9 +190,7 @@ def _add_law(commands: _Commands) -> None:
     sub.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", dest="values", help="a parameter; may be repeated"
     )
-    sub.add_argument(
-        "--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)"
-    )
+    sub.add_argument("--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)")
     sub.add_argument(
         "--out", type=Path, default=Path("fricmb-out/laws"), metavar="DIR", help="folder (default: %(default)s)"
     )

@@ -17,16 +17,16 @@ def main() -> None:
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever else is printed is no answer
     from fricmb.integrate.compile.cache_files import used_files
-    from fricmb.integrate.compile.compilers import SELDOM
+    from fricmb.integrate.compile.few_collections import few_collections
     from fricmb.precompile._tasks import do, kernels
 
-    kernels()
-    gc.freeze()
-    gc.set_threshold(*SELDOM)
-    for line in sys.stdin:
-        start = time.perf_counter()
-        do(line.strip())
-        print(json.dumps({"seconds": time.perf_counter() - start, "files": used_files()}), file=answers, flush=True)
+    with few_collections():
+        kernels()
+        gc.freeze()
+        for line in sys.stdin:
+            start = time.perf_counter()
+            do(line.strip())
+            print(json.dumps({"seconds": time.perf_counter() - start, "files": used_files()}), file=answers, flush=True)
 
 
 if __name__ == "__main__":

@@ -7,34 +7,17 @@ and handed on; what is optimised, and becomes machine code, is the entry or bloc
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from numba.core.compiler import CompilerBase
 
+from fricmb.integrate.compile.few_collections import few_collections
 from fricmb.integrate.compile.passes import LowerForLinking, LowerShort, lowered_by
-
-#: When Python looks for unreachable objects, while compiling: seldom, since millions are made that stay, and looking
-#: through them took a fifth of the time.
-SELDOM = (200_000, 20, 50)
-
-
-@contextmanager
-def _few_collections() -> Iterator[None]:
-    """Let Python look for unreachable objects seldom."""
-    before = gc.get_threshold()
-    gc.set_threshold(*SELDOM)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*before)
 
 
 class _Compiler(CompilerBase):  # type: ignore[misc]
     def _compile_core(self) -> Any:
-        with _few_collections():
+        with few_collections():
             return super()._compile_core()
 
 
