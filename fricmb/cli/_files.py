@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import sys
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 #: All that a run may draw.
 PICTURES = ("velocities", "phase", "energy", "transitions", "force")
+#: Seconds that one waits for the other process with nothing left to draw.
+PATIENCE = 30.0
 #: Kinds of files they are written as.
 FORMATS = ("png", "svg", "pdf")
 
@@ -98,31 +101,55 @@ def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
 
 
 def _draw_by_two(pictures: Pictures) -> None:
-    """Draw pictures, beside a second process where one can be had as it stands: drawing takes longest of all.
+    """Draw pictures, with a forked helper where one can be had, which inherits the solution: drawing takes longest.
 
-    Each takes the next that is left.  What the other did not bring about is drawn here, so that an error is told as any
-    other is.
+    Each takes the next that is left.  What the helper did not bring about is drawn here, so that an error is told once
+    and as any other is.
     """
-    if sys.platform == "linux" and (os.cpu_count() or 1) > 1:
-        context = multiprocessing.get_context("fork")
-        taken = context.Value("i", 0)
-        helper = context.Process(target=_draw_in_turn, args=(pictures, taken), daemon=True)
-        helper.start()
+    taken, helper = _helper(pictures)
+    try:
         _draw_in_turn(pictures, taken)
-        helper.join()
+        if helper is not None:
+            helper.join(PATIENCE)
+    finally:
+        if helper is not None:
+            helper.terminate()
+            helper.join()
     for path, picture in pictures.items():
         if not path.exists():
             _draw(path, picture)
 
 
+def _helper(pictures: Pictures) -> tuple[Any, Any]:
+    """The number of pictures that are taken, shared with a process that draws them, too; None: there is none."""
+    if sys.platform != "linux" or (os.cpu_count() or 1) < 2:
+        return None, None
+    context = multiprocessing.get_context("fork")
+    try:
+        taken = context.Value("i", 0)
+        helper = context.Process(target=_draw_quietly, args=(pictures, taken), daemon=True)
+        helper.start()
+    except (OSError, ImportError, AssertionError):  # no semaphores here, or already somebody's helper
+        return None, None
+    return taken, helper
+
+
+def _draw_quietly(pictures: Pictures, taken: Any) -> None:
+    """Draw in turn; where that fails the picture is drawn again by who waits, and told there."""
+    with contextlib.suppress(Exception):
+        _draw_in_turn(pictures, taken)
+
+
 def _draw_in_turn(pictures: Pictures, taken: Any) -> None:
     """Take one picture after the other until all are taken."""
     for i, (path, picture) in enumerate(pictures.items()):
-        with taken.get_lock():
-            mine = taken.value == i
-            taken.value += mine
-        if mine:
-            _draw(path, picture)
+        if taken is not None:
+            with taken.get_lock():
+                mine = taken.value == i
+                taken.value += mine
+            if not mine:
+                continue
+        _draw(path, picture)
 
 
 def _draw(path: Path, picture: Callable[[], Figure]) -> None:

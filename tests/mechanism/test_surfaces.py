@@ -135,7 +135,7 @@ def test_a_singular_position_is_seen_from_afar_and_from_another_one(method, star
         for rtol in (1e-2, 1e-5, 1e-10):
             with pytest.raises(fm.IntegrationError, match="singular position") as caught:
                 fm.simulate(parallelogram(start), t_end=part * flat, rtol=rtol, method=method)
-            assert caught.value.t == pytest.approx(flat, abs=3e-5 + 10.0 * rtol)
+            assert caught.value.t == pytest.approx(flat, abs=3e-5 + 0.2 * rtol)
 
 
 @pytest.mark.slow
@@ -149,38 +149,86 @@ def test_a_crank_and_a_rod_of_equal_lengths_lock_upright(method, start):
         assert caught.value.partial["crank.end.x"][-1] == pytest.approx(0.0, abs=1e-4 + 10.0 * rtol)
 
 
-def equal_crank(angle):
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_two_equal_cranks_lock_as_one_does(method):
+    """Two values change their signs at once, and the determinant keeps its own."""
+    for rtol in (1e-2, 1e-3, 1e-4, 1e-5, 1e-8):
+        for t_end in (0.5, 1.0, 3.0):
+            with pytest.raises(fm.IntegrationError, match="singular position") as caught:
+                fm.simulate(twin_cranks(), t_end=t_end, rtol=rtol, method=method)
+            end = caught.value.partial
+            for name in ("left crank.end.x", "right crank.end.x"):
+                assert end[name][-1] == pytest.approx(0.0, abs=1e-4 + rtol)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("longer", [1e-4, 1e-6])
+def test_a_rod_that_is_a_little_longer_lets_the_crank_pass(method, longer):
+    """No step ends where the joints are open: those near the upright position either close them or are taken back."""
+    for rtol in (1e-2, 1e-3, 1e-5):
+        stopped = ""
+        try:
+            sol = fm.simulate(equal_crank(1.0, longer=longer), t_end=3.0, rtol=rtol, method=method)
+        except fm.IntegrationError as error:
+            sol, stopped = error.partial, str(error)
+        assert not stopped or "singular position" in stopped
+        np.testing.assert_allclose(sol["rod.slider.y"], 0.0, atol=1e-9)
+        np.testing.assert_allclose(sol["crank.end.x"], sol["rod.pin.x"], atol=1e-9)
+        assert np.abs(sol.velocity("crank.end.x")).max() < 1e3
+
+
+def test_three_parallel_legs_pass_upright_and_say_what_is_not_looked_for():
+    """The constraints that are kept depend on one another there, all of them together do not."""
+    sol = fm.simulate(parallelogram(0.2, legs=3), t_end=0.9, rtol=1e-6)
+    assert sol["leg0.head.x"][-1] == pytest.approx(np.cos(0.2 + 3.0 * 0.9), abs=1e-6)
+    assert any("no singular position is looked for" in note for note in sol.stats.notes)
+
+
+def twin_cranks():
+    """Two such mechanisms that do not know of one another, and move alike."""
+    return fm.Scene("twins", [*crank_parts(0.8, "left "), *crank_parts(0.8, "right ")])
+
+
+def equal_crank(angle, longer=0.0):
     """A crank that turns, and a rod as long as it to a slider on a line through its axis."""
+    return fm.Scene("crank and rod", crank_parts(angle, longer=longer))
+
+
+def crank_parts(angle, tag="", longer=0.0):
+    """Crank, rod and joints; the rod may be a little longer."""
     c, s = np.cos(angle), np.sin(angle)
-    crank = fm.RigidBody("crank", mass=1.0, inertia=0.1, position=(0.5 * c, 0.5 * s), angle=angle,
+    crank = fm.RigidBody(f"{tag}crank", mass=1.0, inertia=0.1, position=(0.5 * c, 0.5 * s), angle=angle,
                          velocity=(-1.5 * s, 1.5 * c), angular_velocity=3.0,
                          points={"axis": (-0.5, 0.0), "end": (0.5, 0.0)})  # fmt: skip
-    rod = fm.RigidBody("rod", mass=1.0, inertia=0.1, position=(1.5 * c, 0.5 * s), angle=-angle,
+    rod = fm.RigidBody(f"{tag}rod", mass=1.0, inertia=0.1, position=(1.5 * c, 0.5 * s), angle=-angle,
                        velocity=(-4.5 * s, 1.5 * c), angular_velocity=-3.0,
-                       points={"pin": (-0.5, 0.0), "slider": (0.5, 0.0)})  # fmt: skip
+                       points={"pin": (-0.5, 0.0), "slider": (0.5 + longer, 0.0)})  # fmt: skip
     joints = (
-        fm.Revolute("axis", crank.point("axis"), fm.ground_point(0.0, 0.0)),
-        fm.Revolute("pin", rod.point("pin"), crank.point("end")),
-        fm.RollerOnLine("slider", rod.point("slider"), fm.ground_point(0.0, 0.0), angle=0.0),
+        fm.Revolute(f"{tag}axis", crank.point("axis"), fm.ground_point(0.0, 0.0)),
+        fm.Revolute(f"{tag}pin", rod.point("pin"), crank.point("end")),
+        fm.RollerOnLine(f"{tag}slider", rod.point("slider"), fm.ground_point(0.0, 0.0), angle=0.0),
     )
-    return fm.Scene("crank and rod", [crank, rod, *joints])
+    return [crank, rod, *joints]
 
 
-def parallelogram(angle=np.pi / 2):
-    """Two legs and a top that turn steadily; they lie flat at the angle pi."""
+def parallelogram(angle=np.pi / 2, legs=2):
+    """Legs, side by side, and a top that turn steadily; they lie flat at the angle pi."""
     c, s = np.cos(angle), np.sin(angle)
     legs = [
         fm.RigidBody(f"leg{i}", mass=1.0, inertia=0.1, position=(i + 0.5 * c, 0.5 * s), angle=angle,
                      velocity=(-1.5 * s, 1.5 * c), angular_velocity=3.0,
                      points={"foot": (-0.5, 0.0), "head": (0.5, 0.0)})
-        for i in range(2)
+        for i in range(legs)
     ]  # fmt: skip
-    ends = {"l": (-0.5, 0.0), "r": (0.5, 0.0)}
+    ends = {"l": (-0.5, 0.0), "r": (0.5, 0.0), "next": (1.5, 0.0)}
     top = fm.RigidBody("top", mass=1.0, inertia=0.3, position=(0.5 + c, s), velocity=(-3.0 * s, 3.0 * c), points=ends)
     parts = [
         *legs, top, *(fm.Revolute(f"foot{i}", leg.point("foot"), fm.ground_point(float(i), 0.0))
                       for i, leg in enumerate(legs)),
         fm.Revolute("left", top.point("l"), legs[0].point("head")),
         fm.Revolute("right", top.point("r"), legs[1].point("head")),
+        *(fm.Revolute("third", top.point("next"), leg.point("head")) for leg in legs[2:]),
     ]  # fmt: skip
     return fm.Scene("parallelogram", parts)

@@ -72,6 +72,7 @@ def arrive(
     y.t = stop
     if stop >= c.span[1]:
         return DONE
+    c.growth = np.inf
     code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
     if rec.used[0] > 0:
         rec.after[rec.used[0] - 1] = 1
@@ -133,6 +134,7 @@ def radau_step(
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
+            c.growth = 1.0
             return reject(c, 0.3 * c.h)
         may_have_passed(mech, k, w, end, out, h)
     record_step(mech, rec, y, end, st, c, h)
@@ -142,6 +144,7 @@ def radau_step(
     c.counts[0] += 1
     copy_state(end, y)
     grow(c, out, k, y)
+    c.wanted = max(h, c.h)
     if worst < 0 and (h < left or factor < 1.0):
         c.wanted = h * min(3.0, max(0.3, factor))
         c.h = next_step(c, h, c.wanted)

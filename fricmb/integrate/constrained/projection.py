@@ -13,13 +13,15 @@ from fricmb.integrate.run.breakpoints import EPS
 
 #: Corrections of positions at most: after a step one or two are needed.
 CORRECTIONS = 6
+#: Last correction, beside the largest coordinate, with which joints count as closed: larger ones go nowhere.
+CLOSED = 1e-10
 
 
 @block
 def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
     """Move q the least, in the norm of the mass matrix, so that phi(q) = 0 to round-off; leaves the factored matrix."""
     n, m = y.q.shape[0], y.lam.shape[0]
-    last = 1e300
+    last, size = 1e300, 0.0
     for i in range(CORRECTIONS):
         move(mech, k, y.t, y.q, y.v)
         forces(mech, k, y.lam, y.F, y.N, y.g)
@@ -37,9 +39,9 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
         if not largest < 1e300:
             return False
         if largest <= 4.0 * EPS * size or (i > 1 and largest > 0.5 * last):
-            return True
+            return bool(largest <= CLOSED * size)
         last = largest
-    return True
+    return bool(last <= CLOSED * size)
 
 
 @block

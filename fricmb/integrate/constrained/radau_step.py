@@ -31,7 +31,8 @@ class Control(Layout):
     work done; ``longest`` step of all; ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M;
     ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z)
     space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
-    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be.
+    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
+    was to be where it was cut.
     """
 
     rtol: float

@@ -126,7 +126,8 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
     if not rows.size:
         return ()
     listed = ", ".join(repr(name) for name in names_of_rows(m, rows))
-    return (f"redundant constraints: {len(rows)} of {listed} follow(s) from the others; reactions are of least norm",)
+    what = "reactions are of least norm, and no singular position is looked for"
+    return (f"redundant constraints: {len(rows)} of {listed} follow(s) from the others; {what}",)
 
 
 #: Attempted steps of BDF for the time of one of the one-step method with five stages: 2.0 to 4.2, median 3.3, on six of

@@ -22,10 +22,10 @@ TURNS = 20
 REACHED = 2.5e-5
 #: The same, where steps have become as short as round-off on the way there.
 SUSPECTED = 1e-3
-#: The same, where steps become shorter than the way to it; their part of that way.
+#: The same, below which a step covers a part of the way left at most, and that part.
 NEAR, APPROACH = 0.6, 0.7
-#: Round-off of velocities where it is largest; reactions, and with them velocities, have more of it with the square of
-#: its inverse, and no step is more accurate.
+#: Round-off of velocities where the least singular value is as large as it was at most; reactions, and with them
+#: velocities, have more of it with the square of its inverse, and no step is more accurate.
 ROUND_OFF = 20.0 * EPS
 #: Part by which it changes before its rate is counted anew: what is less may be round-off, in short steps.
 NOTED = 1e-3
@@ -80,10 +80,19 @@ def has_come_near(out: Watch, part: float) -> bool:
 
 
 @kernel
-def start_watch(mech: Mech, w: Instant, out: Watch) -> None:
-    """Least singular value where a run, or one with other joints, begins; its matrix without friction is factored."""
+def start_watch(mech: Mech, w: Instant, out: Watch, top: float) -> None:
+    """Least singular value where a run, or one with other joints, begins; its matrix without friction is factored.
+
+    ``top``: the largest so far.  Where constraints were left out since they follow from others, nothing is watched:
+    those that were kept may depend on one another where all of them together do not.
+    """
+    out.redundant = 0
+    for i in range(mech.joint.dropped.shape[0]):
+        if mech.joint.dropped[i] == 1:
+            out.redundant = 1
     out.sigma_end = least_singular(mech, w, out, TURNS)
-    out.sigma_top = out.sigma_before = out.sigma_end
+    out.sigma_before = out.sigma_end
+    out.sigma_top = max(top, out.sigma_end)
     out.sigma_h = out.sigma_rate = 0.0
     copy_columns(mech, w.L.A1, out.reactions_end, True)
     go_on(out)
@@ -114,10 +123,12 @@ def copy_columns(mech: Mech, A: Floats, columns: Floats, out: bool) -> None:
 
 @kernel
 def has_turned(mech: Mech, w: Instant, out: Watch) -> bool:
-    """Whether G M^-1 G' has a negative determinant, with G of the instant on the left, of the last state on the right.
+    """Whether K = G M^-1 G', G of the instant on the left and of the last state on the right, is no longer positive.
 
-    With both of one position it is positive; a singular value that goes through 0 in between changes its sign.  It is
-    the determinant of the matrix of the instant, which the layers ``w.L`` hold, with the reactions of the last state.
+    With both of one position it is; a singular value that goes through 0 in between changes the sign of its
+    determinant, which is that of the matrix of the instant (the layers ``w.L`` hold it) with the reactions of the last
+    state.  Two at once, of two mechanisms that are alike, leave it: then ``weak_end K^-1 weak_end`` is negative.
+    The factors in ``w.ab`` are those of K afterwards.
     """
     order = mech.order
     for i in range(w.ab.shape[0]):
@@ -129,7 +140,18 @@ def has_turned(mech: Mech, w: Instant, out: Watch) -> bool:
     for j in range(order.place.shape[0]):
         swapped = w.pivots[j] != j + 1
         negative = negative != (swapped != (w.ab[j * order.sizes[3] + order.sizes[1] + order.sizes[2]] < 0.0))
-    return negative
+    if negative:
+        return True
+    n = first_multiplier(mech)
+    for i in range(w.r.shape[0]):
+        w.r[i] = 0.0
+    for i in range(out.weak_end.shape[0]):
+        w.r[n + i] = out.weak_end[i]
+    solve_instant(mech, w)
+    along = 0.0
+    for i in range(out.weak_end.shape[0]):
+        along += out.weak_end[i] * w.r[n + i]
+    return along < 0.0
 
 
 @kernel
@@ -142,8 +164,9 @@ def way_left(out: Watch) -> float:
 def may_have_passed(mech: Mech, k: Moving, w: Instant, end: State, out: Watch, h: float) -> bool:
     """Whether a singular position may lie between the last state and the ``end`` of a step h that is just complete.
 
-    Or the step has not gone through, but come back to where the least singular value is larger; where it is a small
-    part of the way that was left, that is a turn of the motion.
+    It may have gone through, or come back to where the least singular value is larger; of a step that is a small part
+    of the way that was left (0.3), the latter is but a turn of the motion.  ``sigma_end``, ``weak_end`` and
+    ``reactions_end`` are left for :func:`near_singular`.
     """
     out.sigma_end = 0.0
     # without friction the factors of the projection are those of the instant
@@ -152,7 +175,7 @@ def may_have_passed(mech: Mech, k: Moving, w: Instant, end: State, out: Watch, h
     out.sigma_end = least_singular(mech, w, out, 1)
     copy_columns(mech, w.L.A1, out.reactions_end, True)
     came_back = out.sigma_end > out.sigma and h > 0.3 * way_left(out) and out.sigma < NEAR * out.sigma_top
-    return came_back or has_turned(mech, w, out)
+    return out.redundant == 0 and (came_back or has_turned(mech, w, out))
 
 
 @kernel
@@ -170,10 +193,11 @@ def near_singular(c: Control, out: Watch, h: float) -> bool:
         # had it gone on as it did, more would have been noted by now
         out.sigma_rate = max(out.sigma_rate, -NOTED * out.sigma_before / out.sigma_h)
     c.blur = ROUND_OFF * (out.sigma_top / max(out.sigma, 1e-290)) ** 2
-    return out.sigma == 0.0 or has_come_near(out, REACHED)
+    return out.sigma == 0.0 or (out.redundant == 0 and has_come_near(out, REACHED))
 
 
 @kernel
 def longest_towards(out: Watch) -> float:
     """Longest step on the way to a singular position that is near: one far beyond it would not see it."""
-    return APPROACH * way_left(out) if out.sigma < NEAR * out.sigma_top else np.inf
+    near = out.redundant == 0 and out.sigma < NEAR * out.sigma_top
+    return APPROACH * way_left(out) if near else np.inf

@@ -51,7 +51,7 @@ def begin(
         return FAIL_SINGULAR
     if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
         return FAIL_SINGULAR
-    start_watch(mech, w, out)
+    start_watch(mech, w, out, 0.0)
     mark_rest(mech, y, small, part)
     if given:
         for i in range(part.shape[0]):
@@ -77,8 +77,9 @@ def begin(
             worst = j if out.trigger[j] < out.trigger[worst] else worst
         if out.trigger[worst] >= 0.0:
             break
-        if let_go(mech, k, w, y, out, worst - 2 * n_c) != DONE:
-            return FAIL_LOST
+        code = let_go(mech, k, w, y, out, worst - 2 * n_c)
+        if code != DONE:
+            return FAIL_SINGULAR if code == FAIL_SINGULAR else FAIL_LOST
         mark_rest(mech, y, small, part)
         code = decide(mech, k, w, y, part, -1)
         if code != FOUND:

@@ -24,7 +24,16 @@ from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window
-from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL
+from fricmb.integrate.run.outcomes import (
+    DONE,
+    FAIL_HIT,
+    FAIL_LOST,
+    FAIL_MARGIN,
+    FAIL_MODES,
+    FAIL_PROJECT,
+    FAIL_SEVERAL,
+    FAIL_SINGULAR,
+)
 
 
 @kernel
@@ -45,8 +54,9 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
         for a in range(mech.port.row[c], mech.port.row[c + 1]):
             y.F[a] = 0.0
     move(mech, k, y.t, y.q, y.v)
-    instant_matrix(mech, k, w, y, NONE)
-    start_watch(mech, w, out)
+    if not instant_matrix(mech, k, w, y, NONE):
+        return FAIL_SINGULAR
+    start_watch(mech, w, out, out.sigma_top)
     return DONE
 
 

@@ -17,10 +17,11 @@ class Watch(Layout):
 
     ``margin`` (n_c,): 1 + mu n dN/dF of every port that slips, which must stay above 0; ``together`` the least
     principal minor of the same for several of them (``contacts``, ``A``, ``B``, ``sizes``, ``pivots`` space for it).
-    ``sigma``: least singular value of G M^-1/2 now, ``sigma_top`` the largest since the start or since a joint opened,
-    and ``sigma_before`` when its rate ``sigma_rate`` was last counted, a time ``sigma_h`` ago; ``weak`` (m,) its
+    ``sigma``: least singular value of G M^-1/2 now, ``sigma_top`` the largest since the start, and
+    ``sigma_before`` when its rate ``sigma_rate`` was last counted, a time ``sigma_h`` ago; ``weak`` (m,) its
     direction among the constraints, ``reactions`` (m * ldab,) their columns in the banded matrix of an instant;
-    ``sigma_end``, ``weak_end``, ``reactions_end`` the same at the end of a step.
+    ``sigma_end``, ``weak_end``, ``reactions_end`` the same at the end of a step; whether constraints are left out as
+    ``redundant``, and none of this is heeded.
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
     stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
@@ -37,6 +38,7 @@ class Watch(Layout):
     pivots: Pivots
     sigma: float
     sigma_top: float
+    redundant: int
     sigma_before: float
     sigma_h: float
     sigma_rate: float
@@ -71,7 +73,7 @@ def watch_of(problem: Problem, stages: int) -> Watch:
     return Watch(
         np.ones(problem.n_c), 1.0, np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
         np.zeros(4, np.int32), np.zeros(MANY, np.int32),
-        0.0, 0.0, 0.0, 0.0, 0.0, np.random.default_rng(1).standard_normal(m.n_rows), np.zeros(columns),
+        0.0, 0.0, 0, 0.0, 0.0, 0.0, np.random.default_rng(1).standard_normal(m.n_rows), np.zeros(columns),
         0.0, np.zeros(m.n_rows), np.zeros(columns), np.ones(count),
         np.ones((stages + 1, count)), np.ones(count), 1.0, np.zeros(stages),
         np.zeros(stages + 1), np.zeros(len(m.joints.port)),
