@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,7 +21,7 @@ def progress_bar(shown: bool, t_start: float, t_end: float) -> Iterator[Progress
     from tqdm import tqdm
 
     form = "{desc}: {percentage:3.0f}%|{bar}| t = {n:.4g} of {total:.4g} [{elapsed}<{remaining}]"
-    with tqdm(total=t_end - t_start, desc="fricmb", bar_format=form) as bar:
+    with tqdm(total=t_end - t_start, desc="fricmb", bar_format=form, **bar_options()) as bar:
         yield _forward(bar, t_start)
         # methods tell of whole pieces of work, the last of which may end before the run does
         bar.update(t_end - t_start - bar.n)
@@ -40,8 +42,21 @@ def bar(total: int, unit: str, what: str, shown: bool, *, done: int = 0) -> Iter
         return
     from tqdm import tqdm
 
-    with tqdm(total=total, initial=done, unit=unit, desc=what) as made:
+    with tqdm(total=total, initial=done, unit=unit, desc=what, **bar_options()) as made:
         yield made
+
+
+def bar_options() -> dict[str, Any]:
+    """What every bar is told: to be drawn again however little was done, for work that begins fast may turn slow.
+
+    And the size of a terminal that says it has none, as those of containers do.
+    """
+    often = {"miniters": 0}
+    try:
+        columns, lines = os.get_terminal_size(sys.stderr.fileno())
+    except (OSError, ValueError, AttributeError):
+        return often
+    return often if columns and lines else often | {"ncols": columns or 80, "nrows": lines or 24}
 
 
 def _forward(bar: Any, t_start: float) -> Progress:

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from fricmb._simulate._progress import bar_options
 from fricmb.bench import (
     Options,
     Store,
@@ -85,7 +86,7 @@ def _bar() -> Iterator[Callable[[int, int, str], None]]:
     """A progress bar on stderr."""
     from tqdm import tqdm
 
-    with tqdm(unit="cell", file=sys.stderr, dynamic_ncols=True) as bar:
+    with tqdm(unit="cell", file=sys.stderr, **({"dynamic_ncols": True} | bar_options())) as bar:
 
         def progress(done: int, total: int, what: str) -> None:
             bar.total = total

@@ -7,6 +7,7 @@ import time
 
 from tqdm import tqdm
 
+from fricmb._simulate._progress import bar_options
 from fricmb.precompile import compile_all
 
 
@@ -14,7 +15,7 @@ def compile_ahead(options: argparse.Namespace) -> int:
     """Compile everything, with a bar that tells what is being made."""
     start = time.perf_counter()
     form = "{l_bar}{bar}| {n_fmt}/{total_fmt} {elapsed}{postfix}"
-    with tqdm(disable=options.quiet, bar_format=form) as bar:
+    with tqdm(disable=options.quiet, bar_format=form, **bar_options()) as bar:
 
         def report(task: str, done: int, total: int) -> None:
             bar.total, bar.n = total, done

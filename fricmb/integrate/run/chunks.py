@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from fricmb.integrate.problem import Ints, Start
 from fricmb.integrate.run.outcomes import FULL
-from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.run.stop import ended, present, watched
 from fricmb.integrate.trajectory import Counters, Transitions
 
 
@@ -49,7 +50,8 @@ class Chunks:
         """
         code = FULL
         while code == FULL and ended() is None:
-            code = watched(step)
+            with telling(progress, lambda: float(y.t)):
+                code = watched(step)
             self.take()
             if progress is not None:
                 progress(float(y.t))
@@ -61,6 +63,20 @@ class Chunks:
         """All that were recorded."""
         event = np.concatenate(self._events) if self._events else np.zeros((0, 3))
         return Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
+
+
+@contextmanager
+def telling(progress: Callable[[float], None] | None, time: Callable[[], float]) -> Iterator[None]:
+    """Let kernels tell the time that they have reached while they work: space for rows may take minutes to fill."""
+    watch = present()
+    if progress is None or watch is None:
+        yield
+        return
+    watch.tell = lambda: progress(time())
+    try:
+        yield
+    finally:
+        watch.tell = None
 
 
 def counters(counts: Ints, notes: tuple[str, ...] = ()) -> Counters:

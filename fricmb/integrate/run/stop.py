@@ -109,6 +109,8 @@ class Watch:
         What was raised by a signal's handler (KeyboardInterrupt).
     reason : str or None
         Why the run was ended; None: it was not.
+    tell : callable or None
+        Called while kernels work, at each look: tells how far they are.
     """
 
     def __init__(
@@ -117,6 +119,7 @@ class Watch:
         self.limit = limit
         self.cause: BaseException | None = None
         self.reason: str | None = None
+        self.tell: Callable[[], None] | None = None
         self._end = None if limit is None else (time.perf_counter() if since is None else since) + limit
         self._footprint = footprint
 
@@ -147,6 +150,8 @@ def _ask() -> int:
         if _words[RAISED] != 0:
             watch.interrupt(_raised())
         watch.look()
+        if watch.tell is not None:
+            watch.tell()
         _words[DUE] = _now() + EVERY
     except BaseException as error:  # of a signal that came just now
         watch.interrupt(error)

@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.run.chunks import telling
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.step_control import SAMPLED
 from fricmb.integrate.timestepping.doubts import kinks, short_phases
@@ -101,7 +102,8 @@ class TimeStepping(Integrator):
         held = 0
         code = FULL
         while code == FULL and (memory is None or held < memory) and ended() is None:
-            code = watched(drive, run)
+            with telling(progress, lambda: float(run.time)):
+                code = watched(drive, run)
             chunks.append(_emptied(run))
             held += 8 * width * len(chunks[-1]["row_t"])
             if progress is not None:
