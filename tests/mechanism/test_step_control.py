@@ -33,3 +33,22 @@ def test_errors_and_attempts_at_every_tolerance(name, method):
         error = (np.abs(sol.q - exact).max(axis=1) / size).max()
         assert error < 5.0 * rtol, (rtol, error)
         assert sol.stats.n_steps + sol.stats.n_rejected < most, (rtol, sol.stats)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_small_vibrations_about_the_origin(method):
+    """Round-off of constraints is that of arms, of length 3: corrections never get small beside the coordinates."""
+    rng = np.random.default_rng(0)
+    for amplitude in (1e-8, 1e-7, 1e-6, 1e-5):
+        x, y = rng.uniform(-3.0, 3.0, 2)
+        body = fm.RigidBody(
+            "body", mass=1.0, inertia=0.1, position=(0.0, 0.0), velocity=(amplitude * y, -amplitude * x),
+            angular_velocity=amplitude, points={"pin": (x, y)},
+        )  # fmt: skip
+        joint = fm.Revolute("pin", body.point("pin"), fm.ground_point(x, y))
+        scene = fm.Scene("rocker", [body, joint, fm.TorsionSpring("spring", body, stiffness=30.0)])
+        omega = np.sqrt(30.0 / (0.1 + x * x + y * y))
+        sol = fm.simulate(scene, t_end=5.0, rtol=1e-6, method=method)
+        expected = amplitude / omega * np.sin(omega * 5.0)
+        assert sol["body.angle"][-1] == pytest.approx(expected, abs=1e-4 * amplitude / omega)
+        assert sol.stats.n_steps + sol.stats.n_rejected < 400

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, STUCK, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import forces, move
 from fricmb.integrate.constrained.moving import Moving
@@ -13,15 +14,25 @@ from fricmb.integrate.run.breakpoints import EPS
 
 #: Corrections of positions at most: after a step one or two are needed.
 CORRECTIONS = 6
-#: Last correction, beside the largest coordinate, with which joints count as closed: larger ones go nowhere.
+#: Last correction, beside the largest coordinate of a body or of a point, with which joints count as closed: larger
+#: ones go nowhere.  (Round-off of constraints is that of points, also where bodies move by next to nothing.)
 CLOSED = 1e-10
+
+
+@kernel
+def is_closed(k: Moving, last: float) -> bool:
+    """Whether corrections have come to their end with a last one."""
+    extent = 0.0
+    for e in range(k.ddy.shape[0]):
+        extent = max(extent, abs(k.s.X[1 + e]))
+    return bool(last <= CLOSED * extent)
 
 
 @block
 def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
     """Move q the least, in the norm of the mass matrix, so that phi(q) = 0 to round-off; leaves the factored matrix."""
     n, m = y.q.shape[0], y.lam.shape[0]
-    last, size = 1e300, 0.0
+    last = 1e300
     for i in range(CORRECTIONS):
         move(mech, k, y.t, y.q, y.v)
         forces(mech, k, y.lam, y.F, y.N, y.g)
@@ -39,9 +50,9 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
         if not largest < 1e300:
             return False
         if largest <= 4.0 * EPS * size or (i > 1 and largest > 0.5 * last):
-            return bool(largest <= CLOSED * size)
+            return is_closed(k, largest)
         last = largest
-    return bool(last <= CLOSED * size)
+    return is_closed(k, last)
 
 
 @block
