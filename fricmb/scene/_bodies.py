@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cache, lru_cache
-from math import isfinite
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -39,15 +38,16 @@ def _start(axes: str, values: tuple[Any, ...]) -> Mapping[str, Any]:
     return MappingProxyType(dict(zip(axes, values, strict=True)))
 
 
-def _is_start(values: Any, axes: str) -> bool:
-    """Whether values are in the form that bodies hold, as those of a body of which this one is a copy."""
-    if type(values) is not MappingProxyType or "".join(values) != axes:
-        return False
-    return all(type(value) is float and isfinite(value) for value in values.values())
-
-
 #: Bodies that start alike hold one mapping: of 100 000 blocks each its own would take 50 megabytes.
 _shared = lru_cache(maxsize=1024)(_start)
+
+
+def _is_start(values: Any, axes: str) -> bool:
+    """Whether values are a mapping that bodies share, checked before, as those of a body of which this is a copy."""
+    if type(values) is not MappingProxyType or len(values) != len(axes):
+        return False
+    held = tuple(values.values())
+    return all(type(value) is float for value in held) and _shared(axes, held) is values
 
 
 #: The letters of a string; one tuple for all that have the same.

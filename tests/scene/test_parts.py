@@ -1,7 +1,9 @@
 """Bodies, ends, elements: what they declare, and what they refuse."""
 
+import dataclasses
 import pickle
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -304,3 +306,19 @@ def test_a_driven_end_moves_like_one_of_the_same_name_and_motion():
     assert not belt(x=1.0).moves_like(belt(y=1.0))
     assert not belt(x=1.0).moves_like(fm.Driven("rail", velocity={"x": 1.0}))
     assert not belt(x=fm.t).moves_like(belt(x=2 * fm.t))
+
+
+def test_a_body_holds_its_start_and_not_the_dict_behind_a_view_of_it():
+    values = {"x": 1.0}
+    body = fm.Body("a", mass=1.0, position=MappingProxyType(values))
+    values["x"] = np.nan
+    assert body.position == {"x": 1.0}
+    again = dataclasses.replace(body, mass=2.0)
+    assert again.position is body.position
+
+
+def test_a_view_of_a_dict_is_checked_as_the_dict_is():
+    with pytest.raises(fm.SceneError, match="position has the key 1; accepted are 'x'"):
+        fm.Body("a", mass=1.0, position=MappingProxyType({1: 0.0}))
+    with pytest.raises(fm.SceneError, match="Body 'a': velocity"):
+        fm.Body("a", mass=1.0, velocity=MappingProxyType({"x": np.inf}))
