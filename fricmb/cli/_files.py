@@ -103,16 +103,16 @@ def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
 def _draw_by_two(pictures: Pictures) -> None:
     """Draw pictures, with a forked helper where one can be had, which inherits the solution: drawing takes longest.
 
-    Each takes the next that is left.  What the helper did not bring about is drawn here, so that an error is told once
-    and as any other is.
+    Each takes the next that is left.  What the two did not bring about is drawn at the end, so that an error of the
+    helper is told once and as any other is.
     """
-    taken, helper = _helper(pictures)
-    try:
-        _draw_in_turn(pictures, taken)
-        if helper is not None:
+    found = _helper(pictures)
+    if found is not None:
+        helper, taken = found
+        try:
+            _draw_in_turn(pictures, taken)
             helper.join(PATIENCE)
-    finally:
-        if helper is not None:
+        finally:
             helper.terminate()
             helper.join()
     for path, picture in pictures.items():
@@ -120,18 +120,18 @@ def _draw_by_two(pictures: Pictures) -> None:
             _draw(path, picture)
 
 
-def _helper(pictures: Pictures) -> tuple[Any, Any]:
-    """The number of pictures that are taken, shared with a process that draws them, too; None: there is none."""
+def _helper(pictures: Pictures) -> tuple[Any, Any] | None:
+    """A process that draws pictures, too, and the number of those that are taken; None where there can be none."""
     if sys.platform != "linux" or (os.cpu_count() or 1) < 2:
-        return None, None
+        return None
     context = multiprocessing.get_context("fork")
     try:
         taken = context.Value("i", 0)
         helper = context.Process(target=_draw_quietly, args=(pictures, taken), daemon=True)
         helper.start()
     except (OSError, ImportError, AssertionError):  # no semaphores here, or already somebody's helper
-        return None, None
-    return taken, helper
+        return None
+    return helper, taken
 
 
 def _draw_quietly(pictures: Pictures, taken: Any) -> None:
@@ -142,14 +142,16 @@ def _draw_quietly(pictures: Pictures, taken: Any) -> None:
 
 def _draw_in_turn(pictures: Pictures, taken: Any) -> None:
     """Take one picture after the other until all are taken."""
-    for i, (path, picture) in enumerate(pictures.items()):
-        if taken is not None:
-            with taken.get_lock():
-                mine = taken.value == i
-                taken.value += mine
-            if not mine:
-                continue
-        _draw(path, picture)
+    entries = list(pictures.items())
+    while (i := _take(taken)) < len(entries):
+        _draw(*entries[i])
+
+
+def _take(taken: Any) -> int:
+    """The next that nobody has taken."""
+    with taken.get_lock():
+        taken.value += 1
+        return int(taken.value) - 1
 
 
 def _draw(path: Path, picture: Callable[[], Figure]) -> None:

@@ -190,7 +190,9 @@ def _add_law(commands: _Commands) -> None:
     sub.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", dest="values", help="a parameter; may be repeated"
     )
-    sub.add_argument("--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)")
+    sub.add_argument(
+        "--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)"
+    )
     sub.add_argument(
         "--out", type=Path, default=Path("fricmb-out/laws"), metavar="DIR", help="folder (default: %(default)s)"
     )

@@ -2,39 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from typing import Any, TypeVar
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb.integrate.array_cache import cached_by_content
+
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
-_T = TypeVar("_T")
-
-#: Entries and rows up to which what follows from places alone is kept: matrices that differ in values need it as well.
-SMALL = 4096
-
-
-@lru_cache(maxsize=512)
-def _known(shape: tuple[int, int], first: bytes, second: bytes) -> dict[Any, Any]:
-    """What is known of places; never written to but to add something."""
-    return {}
-
-
-def _found(known: dict[Any, Any], key: Any, find: Callable[[], _T]) -> _T:
-    if key not in known:
-        known[key] = find()
-    found: _T = known[key]
-    return found
-
-
-def _known_of(shape: tuple[int, int], first: _Ints, second: _Ints) -> dict[Any, Any]:
-    if max(len(first), len(second)) > SMALL:
-        return {}
-    return _known(shape, first.tobytes(), second.tobytes())
 
 
 @dataclass(frozen=True)
@@ -58,8 +37,7 @@ class Csr:
         """From places and values; entries of one place are added up in the order given."""
         i, j = np.asarray(rows, dtype=np.int64), np.asarray(columns, dtype=np.int64)
         v = np.asarray(values, dtype=float)
-        known = _known_of(shape, i, j)
-        order, place, start, index = _found(known, "sorted", lambda: _sorted(i, j, shape))
+        order, place, start, index = _sorted(i, j, shape)
         total = np.bincount(place, v[order], len(index)) if len(v) else np.zeros(0)
         return cls(shape, start, index, np.asarray(total, dtype=float))
 
@@ -74,18 +52,12 @@ class Csr:
         dense = np.asarray(matrix, dtype=float)
         rows, columns = np.nonzero(dense)
         shape = dense.shape[0], dense.shape[1]
-        start = _found(_known_of(shape, rows, columns), "start", lambda: _starts(rows, shape[0]))
-        return cls(shape, start, columns, dense[rows, columns])
-
-    @cached_property
-    def _places(self) -> dict[Any, Any]:
-        """What is known of the places."""
-        return _known_of(self.shape, self.start, self.index)
+        return cls(shape, _starts(rows, shape[0]), columns, dense[rows, columns])
 
     @cached_property
     def rows(self) -> _Ints:
         """Row of every entry."""
-        return _found(self._places, "rows", lambda: np.repeat(np.arange(self.shape[0]), np.diff(self.start)))
+        return _rows(self.start)
 
     def dense(self) -> _Floats:
         """All of it.
@@ -108,14 +80,8 @@ class Csr:
     def block(self, rows: slice, columns: slice) -> Csr:
         """A contiguous part."""
         (r0, r1, _), (c0, c1, _) = rows.indices(self.shape[0]), columns.indices(self.shape[1])
-        i, shape = self.rows, (r1 - r0, c1 - c0)
-
-        def find() -> tuple[_Ints, _Ints, _Ints]:
-            keep = np.flatnonzero((i >= r0) & (i < r1) & (self.index >= c0) & (self.index < c1))
-            return keep, _starts(i[keep] - r0, shape[0]), self.index[keep] - c0
-
-        keep, start, index = _found(self._places, (r0, r1, c0, c1), find)
-        return Csr(shape, start, index, self.value[keep])
+        keep, start, index = _inside(self.start, self.index, (r0, r1), (c0, c1))
+        return Csr((r1 - r0, c1 - c0), start, index, self.value[keep])
 
     def diagonal(self) -> _Floats:
         """Entries on the diagonal."""
@@ -144,6 +110,10 @@ class Csr:
         return result
 
 
+# What follows from the places of entries alone: matrices that differ in values need it as well.
+
+
+@cached_by_content
 def _starts(rows: _Ints, count: int) -> _Ints:
     """Where each of so many rows begins, of the rows of entries."""
     start = np.zeros(count + 1, dtype=np.int64)
@@ -151,6 +121,13 @@ def _starts(rows: _Ints, count: int) -> _Ints:
     return start
 
 
+@cached_by_content
+def _rows(start: _Ints) -> _Ints:
+    """The reverse: row of every entry."""
+    return np.repeat(np.arange(len(start) - 1), np.diff(start))
+
+
+@cached_by_content
 def _sorted(i: _Ints, j: _Ints, shape: tuple[int, int]) -> tuple[_Ints, _Ints, _Ints, _Ints]:
     """Entries by rows: their order, place of each among the places, and these as starts and columns."""
     order = np.lexsort((j, i))
@@ -160,23 +137,27 @@ def _sorted(i: _Ints, j: _Ints, shape: tuple[int, int]) -> tuple[_Ints, _Ints, _
     return order, np.cumsum(first) - 1, _starts(i[first], shape[0]), j[first]
 
 
+@cached_by_content
+def _inside(
+    start: _Ints, index: _Ints, rows: tuple[int, int], columns: tuple[int, int]
+) -> tuple[_Ints, _Ints, _Ints]:
+    """Which entries are in a part, and where each of its rows begins, and their columns there."""
+    i = _rows(start)
+    keep = np.flatnonzero((i >= rows[0]) & (i < rows[1]) & (index >= columns[0]) & (index < columns[1]))
+    return keep, _starts(i[keep] - rows[0], rows[1] - rows[0]), index[keep] - columns[0]
+
+
 def on_one_pattern(matrices: Sequence[Csr], *also: tuple[_Ints, _Ints]) -> tuple[_Ints, _Ints, list[_Floats]]:
     """Matrices of one shape over their joint pattern, places ``also`` in it: start, index, values of each."""
     rows = np.concatenate([*(A.rows for A in matrices), *(i for i, _ in also)])
     columns = np.concatenate([*(A.index for A in matrices), *(j for _, j in also)])
-    known = _known_of(matrices[0].shape, rows, columns)
-    lengths = tuple([len(A.index) for A in matrices])
-
-    def find() -> tuple[_Ints, _Ints, list[_Ints]]:
-        pattern = Csr.of_entries(rows, columns, np.zeros(len(rows)), matrices[0].shape)
-        width = max(pattern.shape[1], 1)
-        key = pattern.rows * width + pattern.index
-        return pattern.start, pattern.index, [np.searchsorted(key, A.rows * width + A.index) for A in matrices]
-
-    start, index, places = _found(known, ("pattern", lengths), find)
-    values = [np.zeros(len(index)) for _ in matrices]
-    for A, value, place in zip(matrices, values, places, strict=True):
-        value[place] = A.value
+    order, place, start, index = _sorted(rows, columns, matrices[0].shape)
+    at = np.empty(len(order), dtype=np.int64)
+    at[order] = place
+    values, first = [np.zeros(len(index)) for _ in matrices], 0
+    for A, value in zip(matrices, values, strict=True):
+        value[at[first : first + len(A.index)]] = A.value
+        first += len(A.index)
     return start, index, values
 
 

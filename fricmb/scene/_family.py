@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import TypeVar
 
 from fricmb.scene._bodies import Body
+from fricmb.scene._other_values import MANY
 from fricmb.scene._part import Part
 from fricmb.scene._rigid import RigidBody
 from fricmb.scene._scene import Scene
@@ -15,8 +16,6 @@ _T = TypeVar("_T")
 #: Fields of bodies: where they start, and all numbers, by which no motion is named.
 STARTS = frozenset(("position", "velocity"))
 NUMBERS = STARTS | {"mass", "inertia"}
-#: Parts above which nothing is kept: putting something together is little beside running it.
-MANY = 500
 
 
 def of_same_parts(

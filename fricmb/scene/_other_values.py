@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from operator import is_
 from typing import TYPE_CHECKING, Any
 
 from fricmb.scene._bodies import Body
@@ -12,7 +13,7 @@ from fricmb.scene._part import GROUND, End, Part, original_of
 if TYPE_CHECKING:
     from fricmb.scene._scene import Scene
 
-#: Parts above which nothing is kept of who refers to whom.
+#: Parts above which scenes keep nothing for others of their family: putting it together is little beside a run.
 MANY = 500
 
 
@@ -79,8 +80,4 @@ def _is_numbers(old: Part, new: Part) -> bool:
         return False
     if one is Body:
         return bool(new.axes == old.axes)  # type: ignore[attr-defined]
-    return all(map(_is, old.ends(), new.ends())) and getattr(old, "dof_names", ()) == getattr(new, "dof_names", ())
-
-
-def _is(one: object, other: object) -> bool:
-    return one is other
+    return all(map(is_, old.ends(), new.ends())) and getattr(old, "dof_names", ()) == getattr(new, "dof_names", ())

@@ -9,7 +9,8 @@ from collections.abc import Callable, Hashable
 from typing import Any, Protocol, TypeVar
 
 from fricmb.scene import Part
-from fricmb.scene._family import MANY, STARTS, is_same_part
+from fricmb.scene._family import STARTS, is_same_part
+from fricmb.scene._other_values import MANY
 
 _P = TypeVar("_P", bound=Part)
 

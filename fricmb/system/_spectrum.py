@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fricmb.errors import SceneError
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.array_cache import cached_by_content
 
 
 def check_mass(M: Floats, dofs: Sequence[str]) -> None:

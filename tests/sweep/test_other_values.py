@@ -6,18 +6,14 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate import csr
-from fricmb.integrate.collocation import structure_blocks
-from fricmb.integrate.collocation.one_contact import constants
+from fricmb.integrate.array_cache import forget_results
 from fricmb.integrate.collocation.one_contact import workspace as one_contact
 from fricmb.integrate.constrained import pattern
-from fricmb.integrate.model import problem_structs, structure
+from fricmb.integrate.model import structure
 from fricmb.integrate.run import workspace
-from fricmb.integrate.taylor import prepare, prepare_groups
 from fricmb.plan import _same, make_plan
 from fricmb.plan._make import _make
 from fricmb.scene._family_of import forget_families
-from fricmb.system import _spectrum
 
 M = fm.models
 
@@ -66,13 +62,7 @@ def forget():
     forget_families()
     for store in (one_contact._store, workspace._store, pattern._store, _same._common, _same._known):
         store.clear()
-    for function in (
-        structure_blocks.blocks, problem_structs.softening, structure.dense_inverse, problem_structs._mobility_by_mass,
-        _spectrum.spectrum, structure_blocks._held, constants._port, prepare._widest, prepare._diagonals,
-        prepare_groups._groups_of, prepare_groups._labels_of, prepare_groups._places,
-    ):  # fmt: skip
-        function.forget()
-    csr._known.cache_clear()
+    forget_results()
     structure._places.cache_clear()
     structure._order.cache_clear()
 

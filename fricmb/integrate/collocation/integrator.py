@@ -151,7 +151,8 @@ def _trust(problem: Problem, safety: float) -> float:
             return 0.0
         return BY_SPEED if np.any(contacts.law != LAW_CONSTANT) else 1.0
 
-    return safety * once_per(contacts, "trust", part) or 1.0
+    trusted = once_per(contacts, "trust", part)
+    return safety * trusted if trusted else 1.0
 
 
 #: Tables and work arrays are kept with the problem, for one run at a time.

@@ -17,8 +17,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.array_cache import cached_by_content
 
 #: A pole of the state matrix with its eigenvector.
 Pole = tuple[complex, NDArray[np.complex128]]

@@ -81,9 +81,10 @@ def arrive(
 
 @kernel
 def reject(c: Control, h: float) -> int:
-    """Leave the state where it is; the next step is h."""
+    """Leave the state where it is; the next step is h, and those behind it grow slowly."""
     c.counts[1] += 1
     c.h = h
+    c.growth = 1.0
     return REJECTED
 
 
@@ -105,8 +106,6 @@ def radau_step(
         margins(mech, k, w, y, out, False)
         return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
     c.made = 0.0
-    # taken for a failure until the end of the step has been made
-    growth_before, c.growth = c.growth, 1.0
     if not try_step(mech, k, y, st, c, h):
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
@@ -120,7 +119,6 @@ def radau_step(
         return reject(c, h * max(0.2, factor))
     if not end_step(mech, k, w, y, end, st, c, h):
         return reject(c, 0.4 * h)
-    c.growth = growth_before
     if may_have_passed(mech, k, w, end, out, h):
         return reject(c, 0.5 * h)
     if margins(mech, k, w, end, out, False) <= 0.0:
@@ -134,7 +132,6 @@ def radau_step(
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
-            c.growth = 1.0
             return reject(c, 0.3 * c.h)
         may_have_passed(mech, k, w, end, out, h)
     record_step(mech, rec, y, end, st, c, h)

@@ -10,7 +10,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, slope_at
 from fricmb.integrate.constrained.moving import Moving
-from fricmb.integrate.constrained.problem_structs import Mech, Order, Place
+from fricmb.integrate.constrained.problem_structs import Mech, Order, Place, first_multiplier
 from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import NORMAL_LAW, Floats
@@ -171,7 +171,7 @@ def add_joints(mech: Mech, k: Moving, lam: Floats, F: Floats, L: Layers, full: b
     """Constraints and reactions; ``full``: with what changes with position (else the rows and columns of G alone)."""
     joint = mech.joint
     table = joint.table
-    n = mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - joint.row[-1]
+    n = first_multiplier(mech)
     for j in range(joint.n_x.shape[0]):
         n_x = call_joint(mech, k, j, lam)
         m = joint.row[j + 1] - joint.row[j]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.band import band_sizes
+from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
@@ -110,6 +111,12 @@ class Mech(Layout):
     order: Order
     breakpoints: Floats
     mass: Floats
+
+
+@kernel
+def first_multiplier(mech: Mech) -> int:
+    """Index of the first multiplier among the unknowns [v, lam, F, z]."""
+    return int(mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - mech.joint.row[-1])
 
 
 def mech_of(problem: Problem) -> Mech:

@@ -8,7 +8,7 @@ from fricmb.integrate.compile.band import factor_band
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
-from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.problem_structs import Mech, first_multiplier
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
@@ -56,12 +56,6 @@ def least_singular(mech: Mech, w: Instant, out: Watch, turns: int) -> float:
             out.weak_end[i] = 0.0 if mech.joint.dropped[i] != 0 else w.r[n + i]
         length = squared(out.weak_end)
     return float(length**-0.25) if length > 0.0 else 1.0
-
-
-@kernel
-def first_multiplier(mech: Mech) -> int:
-    """Index of the first multiplier among the unknowns."""
-    return int(mech.order.place.shape[0] - mech.port.row[-1] - mech.port.z_start[-1] - mech.joint.row[-1])
 
 
 @kernel

@@ -7,7 +7,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, slope_at
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row, place_slope
 from fricmb.integrate.constrained.moving import Moving
-from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.problem_structs import Mech, first_multiplier
 from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.friction_cone import cone_margin
 from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
@@ -171,7 +171,7 @@ def add_load(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, va
     n_x = call_joint(mech, k, j, lam)
     m = joint.row[j + 1] - joint.row[j]
     at = load_place(n_x, friction_at(n_x, m), directions(mech, c)) + 1
-    first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1] - joint.row[-1]
+    first = first_multiplier(mech)
     for i in range(m):
         add(mech.order, L.A1, row, first + joint.row[j] + i, value * k.out[at + i])
     if full:

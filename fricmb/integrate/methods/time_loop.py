@@ -35,6 +35,7 @@ def arrive(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows
     stop = set_window(clock, s.window, stop)
     code = settled(transition(packed, s, y, -1, False, r, old, out))
     clock.h = min(clock.usual, 0.1 * (stop - y.t))
+    clock.growth = np.inf
     return code
 
 
@@ -62,7 +63,6 @@ def drive(
             code = arrive(packed, s, y, r, old, out, clock, stop)
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
-            clock.growth = np.inf
             past.on = 0
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)

@@ -10,8 +10,8 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.problem import Ints
-from fricmb.integrate.run.array_cache import cached_by_content
 
 #: Fewer degrees of freedom than this are kept dense; so are bands wider than this part of n.
 SMALL, NARROW = 32, 0.15

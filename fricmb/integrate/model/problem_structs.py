@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
@@ -20,7 +21,6 @@ from fricmb.integrate.problem import (
     SparseLinear,
     Templates,
 )
-from fricmb.integrate.run.array_cache import cached_by_content
 
 
 class Table(Layout):

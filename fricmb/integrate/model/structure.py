@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.model.band_ordering import band_order
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, SparseLinear
-from fricmb.integrate.run.array_cache import cached_by_content
 
 
 class Structure(Layout):

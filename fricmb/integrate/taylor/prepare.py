@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.piece import Pattern
@@ -17,7 +18,6 @@ from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import Table, table_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
-from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.suits_taylor import against_taylor
 from fricmb.integrate.taylor import change  # noqa: F401  # defines blocks that are called by name alone

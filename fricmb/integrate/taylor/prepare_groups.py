@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.compile.piece import Pattern
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.model.problem_structs import Table, table_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_CONSTANT, Floats, Ints, Problem
-from fricmb.integrate.run.array_cache import cached_by_content
 from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.taylor.groups import SECOND, Groups
 from fricmb.integrate.taylor.layout import PLAN

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
@@ -18,7 +19,6 @@ from fricmb.integrate.compile.piece import Pattern, Piece
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Problem
-from fricmb.integrate.run.array_cache import cached_by_content
 
 #: Arrays under their names in :class:`Run`: blocks of the structure in slip and in stick, and what the contact has of
 #: them; letters are their sizes.

@@ -15,6 +15,15 @@ _T = TypeVar("_T")
 #: Results that are kept of one function, and bytes of arguments above which none is.
 MANY, LARGE = 32, 65_536
 
+#: Results of every such function.
+_kept: list[dict[object, object]] = []
+
+
+def forget_results() -> None:
+    """Keep nothing of what has been found, as when the program begins."""
+    for found in _kept:
+        found.clear()
+
 
 def cached_by_content(function: Callable[_P, _T]) -> Callable[_P, _T]:
     """The function with its last results kept, for small arrays; what it returns must never be written to.
@@ -22,6 +31,7 @@ def cached_by_content(function: Callable[_P, _T]) -> Callable[_P, _T]:
     Arguments are arrays, and other things that can be keys of a dict.
     """
     found: dict[object, _T] = {}
+    _kept.append(found)  # type: ignore[arg-type]
 
     @wraps(function)
     def call(*args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -39,5 +49,4 @@ def cached_by_content(function: Callable[_P, _T]) -> Callable[_P, _T]:
         found[key] = made
         return made
 
-    call.forget = found.clear  # type: ignore[attr-defined]  # for tests
     return call
