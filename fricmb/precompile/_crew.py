@@ -43,6 +43,11 @@ class Shares:
                 return longest.pop()
             return self._later.pop(0) if self._later else None
 
+    def drop(self) -> None:
+        """Let nobody begin another task."""
+        with self._lock:
+            self._left, self._later = [[] for _ in self._left], []
+
 
 class Crew:
     """Processes that load while their tasks are listed."""
@@ -60,6 +65,8 @@ class Crew:
     ) -> None:
         for process in self._processes:
             assert process.stdin is not None
+            if error is not None:
+                process.terminate()
             with suppress(BrokenPipeError):  # of a worker that died
                 process.stdin.close()
         self._stack.__exit__(kind, error, trace)
@@ -87,8 +94,12 @@ class Crew:
         threads = [threading.Thread(target=serve, args=(number,)) for number in range(len(self._processes))]
         for thread in threads:
             thread.start()
-        for thread in threads:
-            thread.join()
+        try:
+            for thread in threads:
+                thread.join()
+        except BaseException:  # Ctrl-C
+            shares.drop()
+            raise
         if failed:
             raise FricmbError(failed[0])
 
@@ -97,12 +108,15 @@ def _answer(process: subprocess.Popen[str], task: str) -> str:
     """What a worker says of a task; nothing where it died."""
     assert process.stdin is not None
     assert process.stdout is not None
-    with suppress(BrokenPipeError):
+    with suppress(BrokenPipeError, ValueError):  # it died, or was ended, and what leads to it is closed
         print(task, file=process.stdin, flush=True)
-    return process.stdout.readline()
+        return process.stdout.readline()
+    return ""
 
 
 def _worker() -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "fricmb.precompile._worker"]
     env = {**os.environ, **ALONE, "FRICMB_QUIET": "1"}
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=env)
+    # in a group of its own: Ctrl-C on the terminal is for this process alone, which then ends the others
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True, env=env, process_group=0)

@@ -1,8 +1,10 @@
 """Kernels compiled ahead of use: all of them, in several processes, found again where they were put."""
 
 import os
+import signal
 import subprocess
 import sys
+import threading
 
 import pytest
 
@@ -10,7 +12,7 @@ import fricmb as fm
 from fricmb.integrate.compile import cache_files
 from fricmb.integrate.compile.kernel import _entries
 from fricmb.integrate.compile.layout import argument_types
-from fricmb.precompile import _compile, _tasks, compile_all
+from fricmb.precompile import _compile, _crew, _tasks, compile_all
 from fricmb.precompile._crew import Crew, Shares
 
 TASKS = ["block find_open", "block mark_rest", "entry fricmb.system._evaluate:_each"]
@@ -40,6 +42,39 @@ def test_each_task_is_taken_once_and_the_idle_help_from_the_end():
     assert [shares.next(0) for _ in range(3)] == ["0", "1", "2"]
     assert [shares.next(0), shares.next(1), shares.next(0)] == ["6", "3", "5"]
     assert [shares.next(1), shares.next(1), shares.next(0)] == ["4", None, None]
+
+
+def test_after_ctrl_c_nobody_goes_on(monkeypatch):
+    told, broken, crews = [], [], []
+    monkeypatch.setattr(threading, "excepthook", broken.append)
+    echo = [sys.executable, "-c", "import sys\nfor line in sys.stdin: print('{}', flush=True)"]
+    pipe = subprocess.PIPE
+    monkeypatch.setattr(_crew, "_worker", lambda: subprocess.Popen(echo, stdin=pipe, stdout=pipe, text=True))
+
+    def report(task, answer):
+        told.append(task)
+        if len(told) == 3:
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        if len(told) >= 3:
+            ended.wait(10.0)
+
+    ended = threading.Event()
+
+    def work():
+        with Crew(2) as crew:
+            crews.append(crew)
+            try:
+                crew.work_off([f"{i}" for i in range(100)], report)
+            finally:
+                ended.set()
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    for thread in set(threading.enumerate()) - {threading.current_thread()}:
+        thread.join(10.0)
+    assert all(process.poll() is not None for process in crews[0]._processes)
+    assert len(told) < 6
+    assert not broken
 
 
 def test_what_is_for_later_comes_in_its_order_when_all_else_is_taken():
