@@ -233,7 +233,7 @@ def _add_bench(commands: _Commands) -> None:
     sub = _command(commands, "bench", "measure error against run time, or stability, of integrators", "_bench:bench")
     kinds = ("suite", "stability")
     sub.add_argument("what", nargs="?", choices=kinds, default="suite", help="what to measure (default: %(default)s)")
-    quick = "a few scenes and settings: half a minute to a minute, and once longer for what compiles"
+    quick = "a few scenes and settings: about half a minute, and once longer for what compiles"
     sub.add_argument("--quick", action="store_true", help=quick)
     sub.add_argument(
         "--scene", action="append", default=[], metavar="NAME", help="only this scene of the suite; may be repeated"
