@@ -109,7 +109,9 @@ def run_in_processes(
 
 def _look(workers: list[_Worker], limit: float | None, runs: Mapping[int, Mapping[str, Any]]) -> list[tuple[int, Any]]:
     """Wait for something to come in; workers that died or took too long are ended and leave the list."""
-    found = []
+    found: list[tuple[int, Any]] = []
+    if not workers:  # the last has been ended: to wait for nothing takes all the time there is
+        return found
     pipes = {worker.pipe: worker for worker in workers}
     for pipe in connection.wait(list(pipes), timeout=_LOOK if limit is None else min(_LOOK, limit / 4)):
         worker = pipes[pipe]  # type: ignore[index]

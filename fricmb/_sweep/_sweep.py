@@ -41,9 +41,11 @@ def sweep(
     reduce : callable, optional
         ``reduce(sol)`` runs in the worker, and what it returns takes the place of the solution: send back what you need
         rather than all of it.
-    workers : int, concurrent.futures.Executor or dask.distributed.Client, optional
+    workers : int, "threads", concurrent.futures.Executor or dask.distributed.Client, optional
         Number of processes (1: in this one; default: the cores), or what runs them.  A function or a law that is
-        defined in a script can be sent to processes that are forked, or that import the script.
+        defined in a script can be sent to processes that are forked, or that import the script.  With "threads", as
+        many as there are cores, nothing is sent: ``reduce`` and laws may be defined anywhere, and solutions stay where
+        they were made; what is done in Python, a third of a short run, is done by one at a time.
     progress : bool
         Show a bar on the terminal.
     store : path, optional

@@ -1,4 +1,4 @@
-"""Where the runs of a sweep are made: in this process, in others on this machine, or on a dask cluster."""
+"""Where the runs of a sweep are made: in this process or its threads, in others on this machine, on a dask cluster."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from fricmb._simulate import simulate
+from fricmb._simulate._blas import blas_threads
 from fricmb._sweep._processes import lost, run_in_processes
+from fricmb._sweep._threads import run_in_threads
 from fricmb.errors import FricmbError, IntegrationError, SceneError
 from fricmb.integrate.compile.cache_files import say
 from fricmb.solution import Solution
@@ -34,28 +36,32 @@ class Job:
         return sol if self.reduce is None else self.reduce(sol)
 
 
+#: What asks for threads of this process, as many as there are cores.
+THREADS = "threads"
 #: Outcomes as they come in: number of the run and its result.
 Outcomes = Iterator[tuple[int, Any]]
 
 
 def outcomes(job: Job, runs: Mapping[int, dict[str, Any]], workers: Any, limit: float | None = None) -> Outcomes:
-    """Make the runs with ``workers``: None (as many processes as cores), a number, an Executor or a dask Client.
+    """Make the runs with ``workers``: None (as many processes as cores), a number, "threads", an Executor or a Client.
 
     ``limit``: seconds that a run may take, in processes of this machine.
     """
     if not runs:
         return iter(())
-    if limit is not None and (isinstance(workers, Executor) or _is_dask_client(workers)):
+    if limit is not None and (_is_threads(workers) or isinstance(workers, Executor) or _is_dask_client(workers)):
         raise SceneError("run_limit: only processes that the sweep starts itself can be ended; leave workers out")
     if isinstance(workers, Executor):
         return _executor(job, runs, workers)
     if _is_dask_client(workers):
         return _dask(job, runs, workers)
+    if _is_threads(workers):
+        return _threads(job, runs)
     if workers is None:
         workers = _cores()
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise SceneError(
-            f"workers: got {workers!r}; expected None, a number of processes (at least 1), an Executor of "
+            f"workers: got {workers!r}; expected None, a number of processes (at least 1), {THREADS!r}, an Executor of "
             "concurrent.futures or a dask.distributed.Client"
         )
     workers = min(workers, len(runs))
@@ -69,6 +75,15 @@ def _cores() -> int:
 def _here(job: Job, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
     for i, parameters in runs.items():
         yield i, job.run(parameters)
+
+
+def _is_threads(workers: Any) -> bool:
+    return isinstance(workers, str) and workers == THREADS
+
+
+def _threads(job: Job, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
+    with blas_threads(job.scene):  # of the process, so for all runs at once
+        yield from run_in_threads(job.run, runs, _cores())
 
 
 def _executor(job: Job, runs: Mapping[int, dict[str, Any]], executor: Executor) -> Outcomes:

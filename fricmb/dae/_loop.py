@@ -16,7 +16,8 @@ from fricmb.dae._foreign import Compiled, call, lapack
 from fricmb.dae._matrix import Banded, Dense
 from fricmb.dae._stepper import advance
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.stop import stopped, watched
+from fricmb.integrate.run.stop import watched
+from fricmb.integrate.run.stopped import stopped
 
 _ELSEWHERE, _DENSE, _BANDED = 0, 1, 2
 _N, _LOWER, _UPPER, _HEIGHT, _ONE, _TRANS, _INFO = range(7)  # entries of the 32-bit integers that LAPACK reads

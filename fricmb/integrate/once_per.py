@@ -1,8 +1,9 @@
-"""What is made of arrays once, and found again with the same arrays."""
+"""What is made of arrays once, and found again with the same arrays: by all who read it, or by one at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Any, TypeVar
 
@@ -31,3 +32,19 @@ def once_per(arrays: Kept, key: Any, make: Callable[[], _T]) -> _T:
         kept[key] = make()
     value: _T = kept[key]
     return value
+
+
+@contextmanager
+def lent_per(arrays: Kept, key: Any, make: Callable[[], _T]) -> Iterator[_T]:
+    """What was made under ``key`` for these very arrays, to be written to: nobody else has it meanwhile.
+
+    Another thread, or a run that is made inside this one, gets its own.  It is given back as it is left; after an error
+    it is not.
+    """
+    free: list[_T] = once_per(arrays, key, list)
+    try:
+        found = free.pop()  # of several threads one gets it
+    except IndexError:
+        found = make()
+    yield found
+    free.append(found)

@@ -21,7 +21,8 @@ from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.problem import Start
 from fricmb.integrate.run import memory
-from fricmb.integrate.run.stop import Watch, stopped, watched, watching
+from fricmb.integrate.run.stop import Watch, watched, watching
+from fricmb.integrate.run.stopped import stopped
 from fricmb.system import build
 
 METHODS = ("auto", "bdf", "radau", "collocation", "taylor", "timestepping", "bdf2-paper")

@@ -13,7 +13,7 @@ from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.once_per import once_per
+from fricmb.integrate.once_per import lent_per, once_per
 from fricmb.integrate.problem import Floats, Problem, Templates
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 
@@ -145,14 +145,9 @@ def exact_lent(problem: Problem, s: int, safety: float, exact_up_to: float | Non
 
     Its tables are kept for the next run, where workspaces are lent as they were when they were made.
     """
-    free: list[Exact] = once_per(problem, ("exact", s, exact_up_to), list)
-    try:
-        found = free.pop()  # of several threads one gets it
-    except IndexError:
-        found = _exact(problem, s)
-    found.safety = safety
-    found.stiff_at = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
-    found.cap = np.inf
-    found.low[:] = 0.0
-    yield found
-    free.append(found)
+    with lent_per(problem, ("exact", s, exact_up_to), lambda: _exact(problem, s)) as found:
+        found.safety = safety
+        found.stiff_at = Z_EXACT[s] * 1.0001 if exact_up_to is None else exact_up_to
+        found.cap = np.inf
+        found.low[:] = 0.0
+        yield found

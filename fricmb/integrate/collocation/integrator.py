@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
@@ -121,14 +120,13 @@ class Collocation(Integrator):
         memory: float | None = None,
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
-        with _running:
-            s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
-            span = t_end - start.t
-            # where tolerances are loose a step may still not err by more than 0.5 %
-            safety = min(_trust(problem, self.safety), 0.005 / tolerance.rtol)
-            if self.general or not is_single(problem) or is_stiff(problem, s, span):
-                return run_general(problem, start, t_end, tolerance, s, safety, self.exact_up_to, progress, memory)
-            return _run_single(problem, start, t_end, tolerance, s, safety, progress, memory)
+        s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
+        span = t_end - start.t
+        # where tolerances are loose a step may still not err by more than 0.5 %
+        safety = min(_trust(problem, self.safety), 0.005 / tolerance.rtol)
+        if self.general or not is_single(problem) or is_stiff(problem, s, span):
+            return run_general(problem, start, t_end, tolerance, s, safety, self.exact_up_to, progress, memory)
+        return _run_single(problem, start, t_end, tolerance, s, safety, progress, memory)
 
 
 #: Part of ``safety`` where friction depends on slip speed: on masses tied by stiff springs, in the plane and on the
@@ -153,10 +151,6 @@ def _trust(problem: Problem, safety: float) -> float:
 
     trusted = once_per(contacts, "trust", part)
     return safety * trusted if trusted else 1.0
-
-
-#: Tables and work arrays are kept with the problem, for one run at a time.
-_running = threading.Lock()
 
 
 def nodes_for(rtol: float) -> int:

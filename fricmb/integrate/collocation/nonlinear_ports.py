@@ -21,7 +21,7 @@ from fricmb.integrate.model.forces import Scratch, evaluate
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats3
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 

@@ -1,4 +1,4 @@
-"""Compilation of kernels: two decorators, so that every kernel is compiled alike and keeps its Python type."""
+"""Compilation of kernels: decorators, so that every kernel is compiled alike and keeps its Python type."""
 
 from __future__ import annotations
 
@@ -27,7 +27,19 @@ def kernel(function: _Function) -> _Function:
 
 def entry(function: _Function) -> _Function:
     """Compile ``function`` on its first call from Python; kept in the disk cache with all that it calls."""
-    wrap = njit(error_model="numpy", no_cfunc_wrapper=True, pipeline_class=MachineCompiler)
+    return _entry(function, nogil=False)
+
+
+def run_entry(function: _Function) -> _Function:
+    """Compile an entry that may take long: other threads of Python go on meanwhile.
+
+    Arrays that it writes to must be those of one run, never kept where another thread finds them.
+    """
+    return _entry(function, nogil=True)
+
+
+def _entry(function: _Function, *, nogil: bool) -> _Function:
+    wrap = njit(error_model="numpy", no_cfunc_wrapper=True, nogil=nogil, pipeline_class=MachineCompiler)
     compiled = cached_on_disk(wrap(function))
     _entries[f"{function.__module__}:{function.__name__}"] = compiled
     return cast(_Function, compiled)

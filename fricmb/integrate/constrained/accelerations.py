@@ -26,7 +26,7 @@ from fricmb.integrate.constrained.slip_rows import add_stick
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.forces import element_powers, evaluate
 from fricmb.integrate.problem import NORMAL_LAW, STICK, Floats
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 
 #: What of friction the matrix of an instant holds.
 NONE, STUCK, ALL = 0, 1, 2

@@ -24,7 +24,7 @@ from fricmb.integrate.constrained.problem_structs import Mech, mech_of, mechanis
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
 from fricmb.integrate.problem import Complexes2, Floats, Floats2, Pivots, Problem
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.tableau import Tableau
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.band import spread_of_pivots
-from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.compile.kernel import run_entry
 from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
 from fricmb.integrate.constrained.bdf_history import Formula, start_past
@@ -38,10 +38,10 @@ from fricmb.integrate.run.outcomes import (
     FULL,
     HANDOVER,
 )
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 
 
-@entry
+@run_entry
 def begin(
     mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, given: bool, small: float
 ) -> int:
@@ -87,7 +87,7 @@ def begin(
     return DONE
 
 
-@entry
+@run_entry
 def drive(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
     rec: Record, part: Codes, past: Differences, formula: Formula,

@@ -19,7 +19,7 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.event_functions import find_changing_contact, margin
 from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.compile.kernel import entry, run_entry
 from fricmb.integrate.contact.mode_decision import find_open, mark_rest, settle
 from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, keep_modes, record_changes
@@ -17,7 +17,7 @@ from fricmb.integrate.output.recorder import AFTER, Rows, record
 from fricmb.integrate.problem import SLIP, Floats, Floats2, Problem
 
 
-@entry
+@run_entry
 def begin(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, given: bool, out: Rows) -> int:
     """Modes at the start of a run: from D^-1 a against the cone where g = 0, not from the velocity; see ``settle``.
 

@@ -22,7 +22,7 @@ from fricmb.integrate.model.law_values import coefficient, point_along
 from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Problem
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.contact_unknowns import PortState, port_state
 

@@ -6,7 +6,7 @@ Kinkaid, O'Reilly and Papadopoulos (2005), Eqs. (12) to (14); see :mod:`~fricmb.
 from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.methods.attempt_step import incomplete
@@ -20,7 +20,7 @@ from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.one_step import newton_tolerances, prepare_at
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stage_predictor import contacts_from_start
@@ -100,7 +100,7 @@ def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> b
     return changed
 
 
-@entry
+@run_entry
 def drive_paper(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, last: Last, out: Rows, h: float,
     t_end: float,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.contact.rest_problem import Rest
 from fricmb.integrate.contact.transition import Before, transition
 from fricmb.integrate.methods.attempt_step import Clock, advance, settled
@@ -18,7 +18,7 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.run.breakpoints import reached, set_window
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.step_matrix import forget
 
@@ -45,7 +45,7 @@ def crowded(out: Rows, n_s: int, nc: int) -> bool:
     return bool(out.used[0] + 2 * n_s + 4 > out.kind.shape[0] or out.used[1] + nc > out.event.shape[0])
 
 
-@entry
+@run_entry
 def drive(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
     past: Differences, guard: BdfGuard, r: Rest, old: Before, out: Rows, clock: Clock,

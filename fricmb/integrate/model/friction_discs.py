@@ -14,7 +14,7 @@ from fricmb.integrate.model.friction_cone import friction_size
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.run.room_protocols import Mobility
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 
 #: Gradients taken at most, residual at which they end and at which they will do, in parts of the largest force.
 MOST, FINE, COARSE = 20000, 1e-13, 1e-7

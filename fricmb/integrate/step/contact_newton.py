@@ -15,7 +15,7 @@ from fricmb.integrate.compile.lu import lu_factor, lu_solve
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_convergence import creep, force_change, smooth_miss, speed_change
 from fricmb.integrate.step.contact_unknowns import PortState, evaluate_ports
 

@@ -17,7 +17,7 @@ from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats, Floats2
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_newton import some_stick
 from fricmb.integrate.step.contact_unknowns import PortState
 

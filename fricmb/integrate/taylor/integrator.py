@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
@@ -17,7 +16,7 @@ from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.suits_taylor import fastest
 from fricmb.integrate.taylor.layout import GOES_ON
 from fricmb.integrate.taylor.network import OF_RUN, Net
-from fricmb.integrate.taylor.prepare import net_of, no_samples, refusal
+from fricmb.integrate.taylor.prepare import net_lent, no_samples, refusal
 from fricmb.integrate.taylor.prepare_groups import has_planar
 from fricmb.integrate.taylor.starting_modes import settle_start
 from fricmb.integrate.taylor.step_loop import (
@@ -99,9 +98,8 @@ class Taylor(Integrator):
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         degree = self.degree or degree_for(tolerance.rtol)
-        with running:
-            net = net_of(problem, degree)
-            net = set_start(problem, net, start, t_end, tolerance, self.reach, self.crowd)
+        with net_lent(problem, degree) as lent:
+            net = set_start(problem, lent, start, t_end, tolerance, self.reach, self.crowd)
             if t_eval is not None:
                 empty = no_samples(problem.n, problem.m, len(t_eval))
                 net = with_arrays(net, **{**empty, "times": np.ascontiguousarray(t_eval, dtype=float)})
@@ -109,10 +107,6 @@ class Taylor(Integrator):
             marks = Checkpoints(problem.n)
             code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
             return _trajectory(problem, net, degree, marks, code, t_eval)
-
-
-#: Arrays are kept with the problem, for one run at a time.
-running = threading.Lock()
 
 
 def set_start(

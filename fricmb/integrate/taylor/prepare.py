@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from functools import cache, lru_cache
 from typing import Any
 
@@ -16,7 +17,7 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr, on_one_pattern
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.model.problem_structs import Table, table_of
-from fricmb.integrate.once_per import once_per
+from fricmb.integrate.once_per import lent_per, once_per
 from fricmb.integrate.problem import Floats, Ints, Linear, Problem
 from fricmb.integrate.run.workspace import empty_arrays
 from fricmb.integrate.suits_taylor import against_taylor
@@ -147,10 +148,10 @@ def _fit() -> Floats:
     return np.vstack([np.linalg.inv((powers[:, None] / (POINTS - 1)) ** powers), np.zeros((1, POINTS))])
 
 
-def net_of(problem: Problem, degree: int) -> Net:
-    """The arrays of a run with polynomials of this degree, all but what is kept of it; made once."""
+def net_lent(problem: Problem, degree: int) -> AbstractContextManager[Net]:
+    """The arrays of a run with polynomials of this degree, all but what is kept of it."""
     load_blocks(*BLOCKS)
-    return once_per(problem, ("taylor", degree), lambda: _net(problem, degree))
+    return lent_per(problem, ("taylor", degree), lambda: _net(problem, degree))
 
 
 def _net(problem: Problem, P: int) -> Net:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
 from fricmb.integrate.taylor.account import displacement, lose_sliding
 from fricmb.integrate.taylor.groups import SECOND
@@ -166,7 +166,7 @@ def settle(net: Net, given: bool) -> None:
             keep_event(net, net.time, c, kind)
 
 
-@entry
+@run_entry
 def settle_start(net: Net) -> None:
     """Modes at the start of a run."""
     set_window(net)

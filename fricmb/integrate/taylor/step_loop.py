@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import STICK
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.taylor.account import pay_groups
 from fricmb.integrate.taylor.change import taylor_change
 from fricmb.integrate.taylor.event_heap import pop_due, push_due
@@ -172,7 +172,7 @@ def list_may_be_full(net: Net) -> bool:
     return bool(has_planes(net) and net.n_events + net.mode.shape[0] > net.events.shape[0])
 
 
-@entry
+@run_entry
 @long_loops
 def drive_taylor(net: Net, t_pause: float, most: int) -> int:
     """Step until the end, until an array is full, until t_pause, or until ``most`` steps are done."""

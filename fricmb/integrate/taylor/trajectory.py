@@ -12,7 +12,7 @@ from fricmb.integrate.compile.exchange import numbers_of, put_numbers, with_arra
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
 from fricmb.integrate.run.stop import watched
 from fricmb.integrate.taylor.network import Net
-from fricmb.integrate.taylor.prepare import net_of, no_samples
+from fricmb.integrate.taylor.prepare import net_lent, no_samples
 from fricmb.integrate.taylor.prepare_groups import has_planar
 from fricmb.integrate.taylor.step_loop import PAUSE, drive_taylor
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
@@ -118,20 +118,17 @@ class TaylorRun(Trajectory):
     def _again(self, t: Floats, left: Codes) -> Samples:
         """Run again through rising times."""
         problem = self.problem
-        net = net_of(problem, self._degree)
-        if len(t) == 0:
-            return _samples(problem, with_arrays(net, **no_samples(problem.n, problem.m)), slice(0, 0))
-        from fricmb.integrate.taylor.integrator import running
-
-        with running:
+        with net_lent(problem, self._degree) as lent:
+            if len(t) == 0:
+                return _samples(problem, with_arrays(lent, **no_samples(problem.n, problem.m)), slice(0, 0))
             state = self._state_before(float(t[0]))
             for name in STATE:
                 if name != "stops":
-                    getattr(net, name)[:] = state[name]
-            put_numbers(net, state["numbers"])
+                    getattr(lent, name)[:] = state[name]
+            put_numbers(lent, state["numbers"])
             last = len(self.transitions.t)
             net = with_arrays(
-                net, stops=state["stops"], events=np.zeros((last + problem.m + 1, 3)),
+                lent, stops=state["stops"], events=np.zeros((last + problem.m + 1, 3)),
                 steps=np.zeros((2 * len(self._steps) + STRIDE, 2)),  # pauses at marks may end steps, too
                 **{**no_samples(problem.n, problem.m, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip

@@ -6,7 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.timestepping.band import add_contacts, assemble, factorise, solve, times_matrix
 from fricmb.integrate.timestepping.descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
 from fricmb.integrate.timestepping.friction_discs import all_flat, hold_skipped, keep_piece, project, same_piece

@@ -7,7 +7,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.problem import Floats, Floats2
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.timestepping.descent import HALVINGS, LEAPS, NEWTON, falls, judge_step, leaps_pay
 from fricmb.integrate.timestepping.friction_discs import all_flat, hold_skipped, keep_piece, project, same_piece
 from fricmb.integrate.timestepping.room import Run

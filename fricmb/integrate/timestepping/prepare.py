@@ -109,9 +109,8 @@ def _contact_arrays(problem: Problem) -> dict[str, Any]:
     varies = contacts.normal != NORMAL_CONSTANT
     loop, rank = loops_of(problem)
     return {
-        "loop": loop, "rank": rank, "held": np.zeros(len(rank), np.int64), "spare": np.zeros(len(rank), np.int64),
-        "row": contacts.row, "w_start": W.start, "w_dof": W.index, "w_coef": W.value, "belt": contacts.w,
-        "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "law": contacts.law,
+        "loop": loop, "rank": rank, "row": contacts.row, "w_start": W.start, "w_dof": W.index, "w_coef": W.value,
+        "belt": contacts.w, "wu_start": Wu.start, "wu_signal": Wu.index, "wu_coef": Wu.value, "law": contacts.law,
         "mu_s": contacts.mu_s, "mu_0": contacts.mu_0, "N": np.where(varies, 0.0, contacts.N),
         "var": varies.astype(np.int8),
         "acts": (contacts.normal == NORMAL_LAW).astype(np.int8), "n_start": Wn.start, "n_dof": Wn.index,
@@ -142,6 +141,7 @@ def run_of(problem: Problem, contacts: str | None, capacity: int) -> Run:
         "lu": z((slots, n * (2 * band + 1))), "of": z((slots, 3 * nc + 1)), "used": z(slots, i),
         "Y": z((slots if k else 0, k, n)), "D": z((slots if k else 0, k, k)), "J": z(k * k),
         "sizes": z(4, np.int32), "pivots": z(max(1, m), np.int32), "stops": z(1), "s": scratch_of(problem),
+        **{name: z(len(statics["rank"]), i) for name in ("held", "spare")},
         "part": z(n, i), "part_of": z(nc, i), "largest": z((1, 3)), "events": z(1, i),
         **no_rows(n, m, nc, capacity),
     }  # fmt: skip

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.timestepping.friction_discs import residual
 from fricmb.integrate.timestepping.newton_band import newton_band
 from fricmb.integrate.timestepping.newton_condensed import newton_condensed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.timestepping.free_motion import set_signals, set_window
@@ -104,7 +104,7 @@ def relative_velocities(run: Run, fine: float) -> None:
                 run.g[HERE, a] = 0.0
 
 
-@entry
+@run_entry
 def begin(run: Run, given: bool) -> None:
     """Signals, relative velocities and modes at the start."""
     set_window(run, 0)

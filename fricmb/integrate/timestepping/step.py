@@ -17,7 +17,7 @@ from fricmb.integrate.problem import (
     SLIP,
     STICK,
 )
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.timestepping.free_motion import (
     add_normals,
     add_responses,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.compile.kernel_library import long_loops
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.step_control import ladder, step_factor
 from fricmb.integrate.timestepping.free_motion import set_window
 from fricmb.integrate.timestepping.layout import DRIVES, HERE, MIDDLE, NO_NUMBER, SOUND, THERE, WHOLE
@@ -94,7 +94,7 @@ def arrive(run: Run, t: float) -> None:
     run.time = t
 
 
-@entry
+@run_entry
 @long_loops
 def drive(run: Run) -> int:
     """Step until the end, or until there is no space for rows or transitions."""

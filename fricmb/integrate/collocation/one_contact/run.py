@@ -30,9 +30,9 @@ from fricmb.integrate.collocation.one_contact.step import (
 )  # fmt: skip
 from fricmb.integrate.collocation.one_contact.stick import release_time
 from fricmb.integrate.compile.block import block
-from fricmb.integrate.compile.kernel import entry, kernel
+from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
 #: Why a run came back: at its end; no space for rows; for a progress report; or what went wrong.
@@ -186,7 +186,7 @@ def stick_phase(run: Run, t_end: float) -> int:
     return DONE
 
 
-@entry
+@run_entry
 def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float) -> int:
     """Run from the state until the end, or until there is no space for the rows of another phase."""
     stalled = 0

@@ -12,7 +12,7 @@ import math
 from fricmb.integrate.collocation.block_motion import fundamental
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.run.stop import stopped
+from fricmb.integrate.run.stopped import stopped
 
 
 @kernel
