@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from typing import Protocol
 
 import numpy as np
 
@@ -34,13 +35,23 @@ def powers(problem: Problem, start: Floats, rate: Floats, t: Floats, q: Floats, 
 #: a little more, so that the limit is there.
 POINTS = ((0.05, 3), (0.2, 4), (0.5, 5), (1.0, 6), (2.0, 8), (3.0, 10), (4.0, 11), (6.0, 14), (8.4, 16), (16.0, 22))
 
-_gauss = cache(np.polynomial.legendre.leggauss)
+gauss = cache(np.polynomial.legendre.leggauss)
+
+
+class Shortcut(Protocol):
+    """A shorter way over a part of the pieces."""
+
+    def advance(self, states: States, row: Ints, begin: Floats, end: Floats, found: Floats) -> Floats:
+        """Add the integrals over the first part of each piece to ``found`` (2, n); returns where the rest begins."""
 
 
 def integrals(
-    states: States, power: Callable[..., Floats], row: Ints, begin: Floats, end: Floats, fastest: float
+    states: States, power: Callable[..., Floats], row: Ints, begin: Floats, end: Floats, fastest: float, at_once: int
 ) -> Floats:
-    """Integrals (2, n) of the powers from ``begin`` to ``end`` after the start of rows, by Gauss's formula."""
+    """Integrals (2, n) of the powers from ``begin`` to ``end`` after the start of rows, by Gauss's formula.
+
+    Of a long run there are more points than memory holds: states are asked for at some ``at_once`` of them together.
+    """
     result = np.zeros((2, len(row)))
     length = end - begin
     shorter = -np.inf
@@ -50,27 +61,34 @@ def integrals(
         shorter = longest
         if not len(chosen):
             continue
-        x, w = _gauss(points)
+        x, w = gauss(points)
         pieces = np.maximum(1, np.ceil(length[chosen] * fastest / longest)).astype(np.int64)
-        which = np.repeat(np.arange(len(chosen)), pieces)
-        number = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-        piece = (length[chosen] / pieces)[which]
-        tau = begin[chosen][which, None] + piece[:, None] * (number[:, None] + 0.5 * (x + 1.0))
-        weight = 0.5 * piece[:, None] * w
-        values = power(*states(np.repeat(row[chosen][which], points), tau.ravel())) * weight.ravel()
-        for i in range(2):
-            result[i, chosen] = np.bincount(np.repeat(which, points), values[i], len(chosen))
+        before = np.cumsum(pieces) - pieces
+        total, step = int(pieces.sum()), max(1, at_once // points)
+        for first in range(0, total, step):
+            number = np.arange(first, min(first + step, total))
+            which = np.searchsorted(before, number, side="right") - 1
+            piece = (length[chosen] / pieces)[which]
+            tau = begin[chosen][which, None] + piece[:, None] * ((number - before[which])[:, None] + 0.5 * (x + 1.0))
+            weight = 0.5 * piece[:, None] * w
+            values = power(*states(np.repeat(row[chosen][which], points), tau.ravel())) * weight.ravel()
+            for i in range(2):
+                result[i, chosen] += np.bincount(np.repeat(which, points), values[i], len(chosen))
     return result
 
 
-def from_row_starts(states: States, power: Callable[..., Floats], row: Ints, tau: Floats, fastest: float) -> Floats:
+def from_row_starts(
+    states: States, power: Callable[..., Floats], short: Shortcut, row: Ints, tau: Floats, fastest: float, at_once: int
+) -> Floats:
     """Integrals (2, n) from the start of each row to ``tau`` after it, from one time within a row to the next."""
     order = np.lexsort((tau, row))
     at, until = row[order], tau[order]
     first = np.ones(len(at), dtype=bool)
     first[1:] = at[1:] != at[:-1]
     since = np.where(first, 0.0, np.append(0.0, until[:-1]))
-    pieces = integrals(states, power, at, since, until, fastest)
+    pieces = np.zeros((2, len(at)))
+    rest = short.advance(states, at, since, until, pieces)
+    pieces += integrals(states, power, at, rest, until, fastest, at_once)
     result = np.empty_like(pieces)
     for i in range(2):
         # sums of their own for each row: the difference of sums over all rows would not be monotone

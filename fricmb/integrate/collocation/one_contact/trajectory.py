@@ -9,13 +9,17 @@ import numpy as np
 
 from fricmb.integrate.collocation.exact_room import has_ledger
 from fricmb.integrate.collocation.one_contact.constants import linear_part, stick_forces, structure
+from fricmb.integrate.collocation.one_contact.held import HeldLedger
 from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, powers
 from fricmb.integrate.collocation.one_contact.prepare import Rows, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
 from fricmb.integrate.compile.lanes import padded
-from fricmb.integrate.problem import Floats, Ints, Problem, Start
+from fricmb.integrate.problem import STICK, Floats, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
+
+#: Positions, and as many velocities, that are asked for together on the way to energies.
+NUMBERS = 1_000_000
 
 
 class SingleRun(Trajectory):
@@ -141,15 +145,18 @@ class SingleRun(Trajectory):
             return np.zeros((2, len(row)))
         held = structure(self.problem).piece.arrays
         fastest = float(np.sqrt(np.abs(held["w2"])).max(initial=0.0)) + float(np.abs(held["damp"]).max(initial=0.0))
-        since = partial(from_row_starts, self._power_states, partial(powers, self.problem, start, rate))
+        at_once = max(1000, NUMBERS // max(1, self.problem.n))
+        short = HeldLedger(self.problem, self._rows.kinds[: self._n_rows, 0] == STICK, fastest, at_once)
+        power = partial(powers, self.problem, start, rate)
+        since = partial(from_row_starts, self._power_states, power, short, fastest=fastest, at_once=at_once)
         tau = np.maximum(tau, 0.0)
         if self._totals is not None:
-            return self._totals[:, row] + since(row, tau, fastest)
+            return self._totals[:, row] + since(row, tau)
         # the first time the ends of all rows are asked for along with these times: one pass over the run
         k = self._n_rows
         begin = self._rows.steps[:k, 0] + self._rows.steps[:k, 1]
         length = np.maximum(np.append(begin[1:], self.end.t) - begin, 0.0)
-        found = since(np.append(np.arange(k), row), np.append(length, tau), fastest)
+        found = since(np.append(np.arange(k), row), np.append(length, tau))
         self._totals = np.cumsum(np.hstack([np.zeros((2, 1)), found[:, :k]]), axis=1)
         return self._totals[:, row] + found[:, k:]
 
