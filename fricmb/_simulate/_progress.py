@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from typing import Any
 
 Progress = Callable[[float], None]
+#: Told how many pieces of work are done, and the name of the one under way.
+Told = Callable[[int, str], None]
 
 
 @contextmanager
@@ -44,6 +46,46 @@ def bar(total: int, unit: str, what: str, shown: bool, *, done: int = 0) -> Iter
 
     with tqdm(total=total, initial=done, unit=unit, desc=what, **bar_options()) as made:
         yield made
+
+
+@contextmanager
+def named_bar(total: int, what: str, shown: bool) -> Iterator[Told]:
+    """A bar over pieces of work that are as unlike as their names: drawn whenever one begins, full at the end.
+
+    Parameters
+    ----------
+    total : int
+        Number of pieces.
+    what : str
+        Of which they are pieces.
+    shown : bool
+
+    Yields
+    ------
+    callable
+        To be told how many pieces are done, and the name of the one under way.
+    """
+    if not shown:
+        yield _say_nothing
+        return
+    from tqdm import tqdm
+
+    class Bar(tqdm):  # type: ignore[type-arg]
+        monitor_interval = 0  # no thread: processes may be forked while it is shown
+
+    form = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} [{elapsed}]{postfix}"
+    with Bar(total=total, desc=what, bar_format=form, **bar_options()) as made:
+
+        def tell(done: int, name: str) -> None:
+            made.n = min(done, total)
+            made.set_postfix_str(name)
+
+        yield tell
+        tell(total, "")
+
+
+def _say_nothing(done: int, name: str) -> None:
+    """What is told where no bar is shown."""
 
 
 def bar_options() -> dict[str, Any]:

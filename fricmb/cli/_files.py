@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import signal
 import sys
+import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -20,30 +22,45 @@ from fricmb.cli._output import replace_together
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from fricmb._simulate._progress import Told
+
     Pictures = dict[Path, Callable[[], Figure]]
 
 
-#: All that a run may draw.
+#: Data of a run, and all that it may draw.
+DATA = ("summary.json", "solution.npz", "solution.csv", "events.csv")
 PICTURES = ("velocities", "phase", "energy", "transitions", "force")
-#: Seconds that one waits for the other process with nothing left to draw.
-PATIENCE = 30.0
+#: Seconds that one waits for the other process with nothing left to draw, and for each second that drawing took here.
+PATIENCE, PATIENCE_EACH = 30.0, 5.0
+#: Seconds between two looks at what is there.
+LOOK = 0.2
 #: Kinds of files they are written as.
 FORMATS = ("png", "svg", "pdf")
 
 
-def write_all(sol: fm.Solution, folder: Path, summary: str, *, plots: str | None) -> list[str]:
+def pieces(sol: fm.Solution, plots: str | None) -> int:
+    """How many files :func:`write_all` writes."""
+    return len(DATA) + (0 if plots is None else len(PICTURES) if sol.contact_names else len(PICTURES) - 2)
+
+
+def write_all(
+    sol: fm.Solution, folder: Path, summary: str, *, plots: str | None, told: Told = lambda done, name: None
+) -> list[str]:
     """Write summary, data and pictures of the format ``plots`` (None: no pictures); returns the names of the files.
 
-    Those of an earlier run are replaced together, once all have been written, and its other pictures go.
+    Those of an earlier run are replaced together, once all have been written, and its other pictures go.  ``told``
+    is told how many are written, and which is next.
     """
 
     def write(new: Path) -> list[str]:
-        (new / "summary.json").write_text(summary)
-        sol.save(new / "solution.npz")
-        write_csv(sol, new / "solution.csv")
-        write_events(sol, new / "events.csv")
-        names = ["summary.json", "solution.npz", "solution.csv", "events.csv"]
-        return names + (write_pictures(sol, new, plots) if plots else [])
+        writers: tuple[Callable[[Path], object], ...] = (
+            lambda path: path.write_text(summary), sol.save, partial(write_csv, sol), partial(write_events, sol),
+        )  # fmt: skip
+        for done, (name, writer) in enumerate(zip(DATA, writers, strict=True)):
+            told(done, name)
+            writer(new / name)
+        drawn = write_pictures(sol, new, plots, lambda done, name: told(len(DATA) + done, name)) if plots else []
+        return [*DATA, *drawn]
 
     return replace_together(folder, write, tuple(f"{name}.{kind}" for name in PICTURES for kind in FORMATS))
 
@@ -80,7 +97,7 @@ def write_events(sol: fm.Solution, path: Path) -> None:
         file.writelines(f"{event.t!r},{event.contact},{event.kind}\n" for event in sol.events)
 
 
-def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
+def write_pictures(sol: fm.Solution, folder: Path, kind: str, told: Told) -> list[str]:
     """Velocities, phase planes, forces with their cones, transitions, energy."""
     import matplotlib as mpl
 
@@ -96,28 +113,43 @@ def write_pictures(sol: fm.Solution, folder: Path, kind: str) -> list[str]:
     if sol.contact_names:
         pictures[folder / f"transitions.{kind}"] = plots.transitions
         pictures[folder / f"force.{kind}"] = partial(plots.force, sol.contact_names[0])
-    _draw_by_two(pictures)
+    _draw_by_two(pictures, told)
     return [path.name for path in pictures]
 
 
-def _draw_by_two(pictures: Pictures) -> None:
+def _draw_by_two(pictures: Pictures, told: Told = lambda done, name: None) -> None:
     """Draw pictures, with a forked helper where one can be had, which inherits the solution: drawing takes longest.
 
     Each takes the next that is left.  What the two did not bring about is drawn at the end, so that an error of the
     helper is told once and as any other is.
     """
     found = _helper(pictures)
+    begin = time.monotonic()
     if found is not None:
         helper, taken = found
         try:
-            _draw_in_turn(pictures, taken)
-            helper.join(PATIENCE)
+            _draw_in_turn(pictures, taken, told)
+            now = time.monotonic()
+            _wait(helper, pictures, now + PATIENCE + PATIENCE_EACH * (now - begin), told)
         finally:
             helper.terminate()
             helper.join()
     for path, picture in pictures.items():
         if not path.exists():
+            told(_there(pictures), path.name)
             _draw(path, picture)
+
+
+def _wait(helper: Any, pictures: Pictures, until: float, told: Told) -> None:
+    """Wait for the helper, and tell of what it does."""
+    while helper.is_alive() and time.monotonic() < until:
+        told(_there(pictures), ", ".join(path.name for path in pictures if not path.exists()))
+        helper.join(LOOK)
+
+
+def _there(pictures: Pictures) -> int:
+    """How many pictures have been written."""
+    return sum(path.exists() for path in pictures)
 
 
 def _helper(pictures: Pictures) -> tuple[Any, Any] | None:
@@ -128,7 +160,12 @@ def _helper(pictures: Pictures) -> tuple[Any, Any] | None:
     try:
         taken = context.Value("i", 0)
         helper = context.Process(target=_draw_quietly, args=(pictures, taken), daemon=True)
-        helper.start()
+        # Ctrl-C reaches all processes of a terminal: the helper never takes it, who waits for it ends it
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            helper.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
     except (OSError, ImportError, AssertionError):  # no semaphores here, or already somebody's helper
         return None
     return helper, taken
@@ -137,13 +174,14 @@ def _helper(pictures: Pictures) -> tuple[Any, Any] | None:
 def _draw_quietly(pictures: Pictures, taken: Any) -> None:
     """Draw in turn; where that fails the picture is drawn again by who waits, and told there."""
     with contextlib.suppress(Exception):
-        _draw_in_turn(pictures, taken)
+        _draw_in_turn(pictures, taken, lambda done, name: None)
 
 
-def _draw_in_turn(pictures: Pictures, taken: Any) -> None:
+def _draw_in_turn(pictures: Pictures, taken: Any, told: Told) -> None:
     """Take one picture after the other until all are taken."""
     entries = list(pictures.items())
     while (i := _take(taken)) < len(entries):
+        told(_there(pictures), entries[i][0].name)
         _draw(*entries[i])
 
 

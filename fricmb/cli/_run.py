@@ -8,16 +8,20 @@ import math
 import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 import fricmb as fm
-from fricmb.cli._files import write_all
+from fricmb._simulate._progress import named_bar
+from fricmb.cli._files import pieces, write_all
 from fricmb.cli._load import Loaded, load
 from fricmb.cli._output import finite, print_aside, stdout_to_stderr
 from fricmb.cli._summary import as_json, as_text
 from fricmb.errors import IntegrationError, Interrupted, SceneError
+
+if TYPE_CHECKING:
+    from fricmb.audit import Audit
 
 
 def run(options: argparse.Namespace) -> int:
@@ -34,6 +38,7 @@ def _run(options: argparse.Namespace) -> int:
     t_end = _t_end(options, loaded)
     folder = options.out or Path("fricmb-out") / loaded.label
     folder.mkdir(parents=True, exist_ok=True)
+    shown = sys.stderr.isatty() and not (options.json or options.quiet)
     failure: IntegrationError | Interrupted | None = None
     try:
         sol = fm.simulate(
@@ -44,32 +49,55 @@ def _run(options: argparse.Namespace) -> int:
             step=options.step,
             time_limit=options.time_limit,
             t_eval=_grid(options.points, t_end),
-            progress=sys.stderr.isatty() and not (options.json or options.quiet),
+            progress=shown,
         )
     except (IntegrationError, Interrupted) as error:
         if error.partial is None:
             raise
         sol, failure = error.partial, error
-    summary = as_json(sol, failure)
-    audit = sol.audit() if options.audit else None
-    if audit is not None:
-        summary["audit"] = {"ok": audit.ok, "rtol": audit.rtol, "checks": [_row(check) for check in audit.checks]}
-    text = json.dumps(finite(summary), indent=2, allow_nan=False) + "\n"
-    written = write_all(sol, folder, text, plots=None if options.no_plots else options.format)
+    found = _results(sol, failure, folder, options, shown)
     if options.json:
-        print_aside(text)
-    elif options.quiet:
-        if audit is not None:
-            print(audit)
-    else:
+        print_aside(found.text)
+    elif not options.quiet:
         print(as_text(sol))
-        if audit is not None:
-            print(audit)
-        print(f"written      {folder}{'/' if folder.name else ''}: {', '.join(written)}")
+    if found.audit is not None and not options.json:
+        print(found.audit)
+    if not (options.json or options.quiet):
+        print(f"written      {folder}{'/' if folder.name else ''}: {', '.join(found.written)}")
     if failure is not None:
         print(f"fricmb: {' '.join(str(failure).split())}; what was computed until then is in {folder}", file=sys.stderr)
         return 130 if isinstance(failure, Interrupted) else 3
     return 0
+
+
+class _Results(NamedTuple):
+    """The summary as JSON, the audit that was asked for, and the names of the files."""
+
+    text: str
+    audit: Audit | None
+    written: list[str]
+
+
+def _results(
+    sol: fm.Solution,
+    failure: IntegrationError | Interrupted | None,
+    folder: Path,
+    options: argparse.Namespace,
+    shown: bool,
+) -> _Results:
+    """Energies, audit and files, with a bar of their own: of a long run they may take longer than it did."""
+    plots = None if options.no_plots else options.format
+    before = 2 if options.audit else 1
+    with named_bar(before + pieces(sol, plots), "results", shown) as told:
+        told(0, "energies")
+        summary, audit = as_json(sol, failure), None
+        if options.audit:
+            told(1, "audit")
+            audit = sol.audit()
+            summary["audit"] = {"ok": audit.ok, "rtol": audit.rtol, "checks": [_row(check) for check in audit.checks]}
+        text = json.dumps(finite(summary), indent=2, allow_nan=False) + "\n"
+        written = write_all(sol, folder, text, plots=plots, told=lambda done, name: told(before + done, name))
+    return _Results(text, audit, written)
 
 
 def _row(check: Any) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import signal
 import sys
 import time
 
@@ -76,3 +77,66 @@ def test_without_a_second_process_all_are_drawn_here(tmp_path, monkeypatch):
     pictures = {tmp_path / f"{i}.png": picture for i in range(3)}
     _files._draw_by_two(pictures)
     assert all(path.exists() for path in pictures)
+
+
+@by_two
+def test_ctrl_c_does_not_reach_the_other_process(tmp_path, capfd):
+    """All processes of a terminal get the signal; the one that waits tells of it and ends the other."""
+    here = os.getpid()
+
+    def struck():
+        time.sleep(0.2)
+        if os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGINT)
+            (tmp_path / "struck").touch()
+        return picture()
+
+    _files._draw_by_two({tmp_path / f"{i}.png": struck for i in range(4)})
+    assert (tmp_path / "struck").exists()
+    assert capfd.readouterr().err == ""
+
+
+@by_two
+def test_ctrl_c_here_ends_the_other_process_too(tmp_path, capfd):
+    here = os.getpid()
+
+    def interrupted():
+        if os.getpid() == here:
+            raise KeyboardInterrupt
+        time.sleep(60.0)
+
+    with pytest.raises(KeyboardInterrupt):
+        _files._draw_by_two({tmp_path / f"{i}.png": interrupted for i in range(3)})
+    assert not multiprocessing.active_children()
+    assert capfd.readouterr().err == ""
+
+
+@by_two
+def test_the_other_process_is_given_time_by_how_long_drawing_takes(tmp_path, monkeypatch):
+    """What it was still drawing was thrown away and drawn again, where a picture took longer than one waited."""
+    monkeypatch.setattr(_files, "PATIENCE", 0.0)
+    monkeypatch.setattr(_files, "PATIENCE_EACH", 100.0)
+    here, drawn = os.getpid(), tmp_path / "drawn"
+
+    def slow():
+        time.sleep(0.2 if os.getpid() == here else 0.7)
+        with drawn.open("a") as out:
+            out.write(f"{os.getpid()}\n")
+        return picture()
+
+    _files._draw_by_two({tmp_path / f"{i}.png": slow for i in range(4)})
+    processes = drawn.read_text().split()
+    assert len(processes) == 4
+    assert len(set(processes)) == 2
+
+
+@by_two
+def test_it_is_told_how_many_pictures_are_there(tmp_path):
+    told = []
+    pictures = {tmp_path / f"{i}.png": noted(tmp_path / "drawn") for i in range(5)}
+    _files._draw_by_two(pictures, lambda done, name: told.append((done, name)))
+    counts = [done for done, _ in told]
+    assert counts == sorted(counts)
+    assert counts[0] == 0
+    assert counts[-1] <= 5
+    assert all(set(name.split(", ")) <= {path.name for path in pictures} for _, name in told if name)
