@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
+from fricmb.plot._fine import at_once
 from fricmb.plot._style import THIN, finish, paint, remark
 from fricmb.plot._units import Units
 
@@ -91,17 +92,33 @@ def _draw_plane(sol: Solution, contact: str, ax: Axes, units: Units, *, legend: 
     finish(ax, x=f"force along {first} [{units.force}]", y=f"along {second} [{units.force}]", legend=legend)
 
 
-def phases(sol: Solution, contact: str) -> tuple[Floats, NDArray[np.int8]]:
-    """Bounds (n+1,) and modes (n,) of the stretches between the events of a contact."""
-    bounds = np.array([sol.t_start, *(event.t for event in sol.events if event.contact == contact), sol.t_end])
-    return bounds, sol.at(0.5 * (bounds[:-1] + bounds[1:])).mode(contact)
+def phases(sol: Solution) -> list[tuple[Floats, NDArray[np.int8]]]:
+    """Bounds (n+1,) and modes (n,) of the stretches between the events of each contact.
+
+    All contacts are looked up together: a long run would be gone through for each of them.  Only scenes whose samples
+    are large are looked at in parts.
+    """
+    own: dict[str, list[float]] = {name: [] for name in sol.contact_names}
+    for event in sol.events:
+        if event.contact in own:
+            own[event.contact].append(event.t)
+    bounds = [np.array([sol.t_start, *times, sol.t_end]) for times in own.values()]
+    ends = np.cumsum([each.size - 1 for each in bounds])
+    middles = np.concatenate([np.zeros(0), *(0.5 * (each[:-1] + each[1:]) for each in bounds)])
+    mode, step = np.empty(middles.size, dtype=np.int8), at_once(sol)
+    for first in range(0, middles.size, step):
+        seen, last = sol.at(middles[first : first + step]), min(first + step, middles.size)
+        low, high = np.searchsorted(ends, (first, last - 1), side="right").tolist()
+        for k in range(low, high + 1):
+            mine = slice(max(first, ends[k] - bounds[k].size + 1), min(last, ends[k]))
+            mode[mine] = seen.mode(sol.contact_names[k])[mine.start - first : mine.stop - first]
+    return [(each, mode[end - each.size + 1 : end]) for each, end in zip(bounds, ends, strict=True)]
 
 
 def draw_modes(sol: Solution, ax: Axes, span: tuple[float, float]) -> None:
     """A bar for each contact: filled where it sticks, hatched where it is open."""
     names, opens, sticks, held = sol.contact_names, False, False, False
-    for row, name in enumerate(names):
-        bounds, mode = phases(sol, name)
+    for row, (name, (bounds, mode)) in enumerate(zip(names, phases(sol), strict=True)):
         opens, sticks = opens or bool((mode == OPEN).any()), sticks or bool((mode == STICK).any())
         rest = sol.rest_spans(name)
         held = held or bool(rest.size)
@@ -156,8 +173,7 @@ def draw_phases(sol: Solution, ax: Axes, units: Units, span: tuple[float, float]
 def _spans(sol: Solution, span: tuple[float, float]) -> tuple[Floats, Floats, NDArray[np.int8]]:
     """Beginning, length and mode of all phases that begin in a stretch of the run, or hold at its start."""
     found = []
-    for name in sol.contact_names:
-        bounds, mode = phases(sol, name)
+    for bounds, mode in phases(sol):
         inside = (bounds[1:] > span[0]) & (bounds[:-1] < span[1])
         found.append((bounds[:-1][inside], np.diff(bounds)[inside], mode[inside]))
     begin, length, mode = (np.concatenate(column) for column in zip(*found, strict=True))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 #: What is looked at in a run: arrays (n_t,).
 Signals = Callable[["Solution"], list[Floats]]
+#: The run at so many times from one on to another.
+Look = Callable[[float, float, int], "Solution"]
 #: Points of a curve over the whole of what is drawn, beside those that the solution has.
 POINTS = 60_000
 #: Numbers that a refined run holds at most, whatever the size of the scene, and points that a curve has at least.
@@ -66,8 +69,22 @@ def refined(sol: Solution, t_start: float | None = None, t_end: float | None = N
 
 def _most(sol: Solution, wanted: int) -> int:
     """As many points as wanted, fewer for a scene so large that its curves would fill the memory."""
-    rows = 2 * len(sol.dof_names) + 6 * len(sol.contact_names)
-    return max(min(wanted, _NUMBERS // max(1, rows)), min(wanted, _LEAST))
+    return max(min(wanted, at_once(sol)), min(wanted, _LEAST))
+
+
+def at_once(sol: Solution) -> int:
+    """At how many times a run of this size may be seen together."""
+    return max(1, _NUMBERS // max(1, 2 * len(sol.dof_names) + 6 * len(sol.contact_names)))
+
+
+def looks(sol: Solution) -> Look:
+    """The run at evenly spread times, looked up once for all signals that ask for the same."""
+
+    @cache
+    def look(begin: float, end: float, count: int) -> Solution:
+        return sol.at(np.linspace(begin, end, count))
+
+    return look
 
 
 def reversals(x: Floats, least: float) -> int:
@@ -83,16 +100,19 @@ def reversals(x: Floats, least: float) -> int:
     return turns
 
 
-def period_of(sol: Solution, signals: Signals, t_start: float, t_end: float) -> float | None:
+def period_of(
+    sol: Solution, signals: Signals, t_start: float, t_end: float, look: Look | None = None
+) -> float | None:
     """Mean period of the swings of signals that can be seen beside the largest of them; None where none swings.
 
-    Taken from the last steps of the stretch, which resolve whatever swings.
+    Taken from the last steps of the stretch, which resolve whatever swings.  ``look``: that of others who ask, too.
     """
+    look = look or looks(sol)
     steps = np.unique(sol.t if sol.has_rows else sol.run.row_motion().samples.t)
     steps = steps[(steps >= t_start) & (steps <= t_end)]
     begin = max(t_start, float(steps[-_STEPS])) if steps.size > _STEPS else t_start
     for low in (begin, t_start):
-        seen = sol.at(np.linspace(low, t_end, _most(sol, _SAMPLES)))
+        seen = look(low, t_end, _most(sol, _SAMPLES))
         values = sorted(signals(seen), key=np.ptp, reverse=True)[:_COUNTED]
         largest = float(np.ptp(values[0])) if values else 0.0
         turns = max(reversals(x, _SWING * largest) for x in values) if largest > 0.0 else 0
@@ -102,17 +122,18 @@ def period_of(sol: Solution, signals: Signals, t_start: float, t_end: float) -> 
 
 
 def window_of(
-    sol: Solution, signals: Signals, t_start: float, t_end: float, *, swings: float
+    sol: Solution, signals: Signals, t_start: float, t_end: float, *, swings: float, look: Look | None = None
 ) -> tuple[float, float] | None:
     """A stretch of so many swings: the last in which they are half as large as the largest; None for a few swings."""
-    period = period_of(sol, signals, t_start, t_end)
+    look = look or looks(sol)
+    period = period_of(sol, signals, t_start, t_end, look)
     if period is None or swings * period >= t_end - t_start:
         return None
     length = swings * period
     ends = np.linspace(t_end, t_start + length, min(25, max(2, int((t_end - t_start) / length))))
     sizes = []
     for end in ends.tolist():
-        seen = sol.at(np.linspace(end - length, end, 200))
+        seen = look(end - length, end, 200)
         sizes.append(max(float(np.ptp(x)) for x in signals(seen)))
     end = float(ends[np.argmax(np.array(sizes) >= _ALIVE * max(sizes))])
     return end - length, end

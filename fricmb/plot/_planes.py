@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
-from fricmb.plot._fine import Floats, period_of, refined, window_of
+from fricmb.plot._fine import Floats, looks, period_of, refined, window_of
 from fricmb.plot._style import THIN, finish, paint
 from fricmb.plot._units import Units, unit_of, unit_of_rate
 from fricmb.plot._velocities import SOLID
@@ -77,10 +77,11 @@ def _curve(sol: Solution, curve: Curve, span: tuple[float, float], ax: Axes) -> 
     def signals(seen: Solution) -> list[Floats]:
         return list(curve(seen) / size[:, None])
 
-    period = period_of(sol, signals, *span)
+    look = looks(sol)
+    period = period_of(sol, signals, *span, look)
     near = None
     if period is not None and (span[1] - span[0]) / period > SOLID:
-        near = window_of(sol, signals, *span, swings=_LAST)
+        near = window_of(sol, signals, *span, swings=_LAST, look=look)
     if near is None:
         ax.plot(*values, color=paint().stick, linewidth=0.7)
         return

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fricmb.plot._fine import Floats, period_of, refined, window_of
+from fricmb.plot._fine import Floats, looks, period_of, refined, window_of
 from fricmb.plot._style import NAMED_CURVES, figure_of, finish, line, name_figure, paint, panels, remark
 from fricmb.plot._units import Units, is_angle, is_direction, unit_of_rate
 
@@ -128,14 +128,15 @@ def _window(
     """The stretch that is enlarged: the one asked for, or some swings of the fastest panel where it is too full."""
     if isinstance(zoom, tuple):
         return zoom
-    periods = [(period_of(sol, panel.values, *span), panel) for panel in found]
+    look = looks(sol)
+    periods = [(period_of(sol, panel.values, *span, look), panel) for panel in found]
     known = [(period, panel) for period, panel in periods if period is not None]
     if not known:
         return None
     period, panel = min(known, key=lambda one: one[0])
     if zoom is None and (span[1] - span[0]) / period <= SOLID:
         return None
-    return window_of(sol, panel.values, *span, swings=SWINGS)
+    return window_of(sol, panel.values, *span, swings=SWINGS, look=look)
 
 
 def _two_columns(count: int, title: str) -> list[list[Axes]]:

@@ -152,8 +152,7 @@ def _bounds(sol: Solution, names: list[str]) -> dict[str, Any]:
 def _stuck(sol: Solution) -> dict[str, list[list[float]]]:
     """Stretches of stick by contact."""
     found = {}
-    for name in sol.contact_names:
-        bounds, mode = phases(sol, name)
+    for name, (bounds, mode) in zip(sol.contact_names, phases(sol), strict=True):
         found[name] = [[float(bounds[i]), float(bounds[i + 1])] for i in np.flatnonzero(mode == STICK)]
     return found
 

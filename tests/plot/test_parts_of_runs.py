@@ -10,7 +10,8 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 
 import fricmb as fm
-from fricmb.plot._contact import draw_phases
+from fricmb.plot import _fine
+from fricmb.plot._contact import draw_phases, phases
 from fricmb.plot._fine import period_of, reversals, window_of
 from fricmb.plot._style import _SHEETS
 
@@ -118,6 +119,7 @@ def test_one_phase_of_round_off_does_not_span_the_axis():
     modes = np.array([1, 0, 1, 0, 1], dtype=np.int8)
     sol = SimpleNamespace(
         contact_names=("c",),
+        dof_names=(),
         t_start=0.0,
         t_end=4.0,
         events=[SimpleNamespace(t=t, contact="c") for t in times[1:-1]],
@@ -186,3 +188,32 @@ def test_theme_follows_the_page(belt):
         assert plt.rcParams["lines.linewidth"] == 0.9
     with pytest.raises(fm.FricmbError, match="light"):
         fm.plot.use("night")
+
+
+@pytest.mark.parametrize("numbers", [50_000_000, 1000])
+def test_phases_of_all_contacts_are_looked_up_together(numbers, monkeypatch):
+    """A run by Taylor steps is gone through again for each look: once, not once a contact."""
+    sol, looked = fm.simulate(fm.models.stick_slip_chain(n=5), t_end=60.0), []
+    at = type(sol).at
+    monkeypatch.setattr(type(sol), "at", lambda sol, t: looked.append(len(t)) or at(sol, t))
+    monkeypatch.setattr(_fine, "_NUMBERS", numbers)
+    found = phases(sol)
+    whole, most = sum(looked), max(1, numbers // (2 * 5 + 6 * 5))
+    assert len(looked) == -(-whole // most)
+    assert len(found) == 5
+    for name, (bounds, mode) in zip(sol.contact_names, found, strict=True):
+        assert bounds[1:-1].tolist() == [event.t for event in sol.events if event.contact == name]
+        assert np.array_equal(mode, at(sol, 0.5 * (bounds[:-1] + bounds[1:])).mode(name))
+
+
+def test_phases_without_contacts():
+    assert phases(fm.simulate(fm.models.car_axis(), t_end=0.1)) == []
+
+
+def test_panels_share_what_they_look_at(monkeypatch):
+    """Whether the swings of a panel are too many to be told apart is asked of each: the run is seen once for all."""
+    sol, looked = fm.simulate(fm.models.turntable(), t_end=3.0), []
+    at = type(sol).at
+    monkeypatch.setattr(type(sol), "at", lambda sol, t: looked.append(tuple(t)) or at(sol, t))
+    plt.close(sol.plot.velocities())
+    assert len(looked) == len(set(looked))
