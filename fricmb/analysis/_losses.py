@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._quadrature import cumulated, grid, nodes, refined
 from fricmb.errors import unknown_name
 from fricmb.integrate.problem import NORMAL_LAW
 from fricmb.scene import Contact, Element, MatrixElement, ModalBody, Scene
@@ -19,10 +20,8 @@ from fricmb.system._evaluate import arguments, evaluate
 if TYPE_CHECKING:
     from fricmb.solution import Solution
 
-#: Nodes and weights on 0 to 1 of the rule on each stretch between two times.
-_NODES, _WEIGHTS = (0.5 * (x + 1) if i == 0 else 0.5 * x for i, x in enumerate(np.polynomial.legendre.leggauss(4)))
-#: The run is cut into this many stretches at least.
-_STRETCHES = 4000
+#: A power (n_t,) at the times at which a run is seen.
+Power = Callable[["Solution"], Floats]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,32 +58,12 @@ class EnergyLedger:
 
     def __init__(self, sol: Solution) -> None:
         self.sol = sol
-        self.t = _grid(sol)
-        self._at = sol.at(_nodes(self.t).ravel())
-        self.friction = {name: self._cumulate(self._friction_power(name)) for name in sol.contact_names}
-        self.damping = {name: self._cumulate(power[None])[0] for name, power in self._damping_powers()}
-
-    def _cumulate(self, power: Floats) -> Floats:
-        """Integrals (k, n_t) from the start of powers (k, n_nodes) at the nodes."""
-        steps = np.diff(self.t) * (power.reshape(len(power), -1, len(_WEIGHTS)) @ _WEIGHTS)
-        total: Floats = np.concatenate([np.zeros((len(power), 1)), np.cumsum(steps, axis=1)], axis=1)
-        return total
-
-    def _friction_power(self, contact: str) -> Floats:
-        return -self._at.force(contact) * self._at.relative_velocity(contact)
-
-    def _damping_powers(self) -> Iterator[tuple[str, Floats]]:
-        seen = self._at
-        scene = self.sol.run.pieces[-1].mechanics.placed  # type: ignore[attr-defined]
-        for part in scene.parts:
-            if isinstance(part, Element | ModalBody | MatrixElement):
-                power = _element_power(scene, part, seen)
-            elif isinstance(part, Contact) and part.normal_kind == "law":
-                power = _pressing_power(self.sol, part.name, seen)
-            else:
-                continue
-            if power is not None and power.any():
-                yield part.name, power
+        damping = dict(_damping_powers(sol))
+        self.t = refined(sol, grid(sol), partial(_sums, list(damping.values())), "energy_ledger")
+        seen = sol.at(nodes(self.t))
+        self.friction = {name: cumulated(self.t, _friction_power(seen, name)) for name in sol.contact_names}
+        powers = ((name, power(seen)) for name, power in damping.items())
+        self.damping = {name: cumulated(self.t, power[None])[0] for name, power in powers if power.any()}
 
     def phases(self, contact: str) -> list[Phase]:
         """Stretches of a contact between its transitions, with what each lost."""
@@ -133,18 +112,20 @@ def energy_ledger(sol: Solution) -> EnergyLedger:
     Raises
     ------
     AnalysisError
-        For a run that was joined from different scenes.
+        For a run that was joined from different scenes, or that vibrates too often to be followed.
 
     Notes
     -----
     Powers are integrated by Gauss's rule of four nodes on the stretches between the accepted steps and transitions, cut
-    to at least 4000; the sums agree with ``sol.energy`` to the accuracy of the run.
+    to at least 4000, and again until cutting them changes nothing: a method may step over many vibrations at once.  The
+    sums agree with ``sol.energy`` to the accuracy of the run.
     """
-    _one_scene(sol, "energy_ledger")
+    one_scene(sol, "energy_ledger")
     return EnergyLedger(sol)
 
 
-def _one_scene(sol: Solution, who: str) -> None:
+def one_scene(sol: Solution, who: str) -> None:
+    """Raise AnalysisError for a run that was joined from different scenes."""
     scenes = [piece.origin.scene for piece in sol.run.pieces]
     if any(scene != scenes[0] for scene in scenes[1:]):
         raise AnalysisError(f"{who}: the run was joined from different scenes; take them one by one")
@@ -171,42 +152,58 @@ def motion_of(system: System, seen: Solution) -> tuple[Floats, Floats]:
     return seen.q[places], seen.v[places]
 
 
-def _grid(sol: Solution) -> Floats:
-    """Accepted steps and transitions, long ones cut."""
-    t = np.unique(np.concatenate([piece.row_motion().t for piece in sol.run.pieces]))
-    longest = (t[-1] - t[0]) / _STRETCHES
-    parts = np.maximum(1, np.ceil(np.diff(t) / longest)).astype(np.int64)
-    first = np.cumsum(parts) - parts
-    inside = np.arange(parts.sum()) - np.repeat(first, parts)
-    cut = np.repeat(t[:-1], parts) + inside * np.repeat(np.diff(t) / parts, parts)
-    return np.append(cut, t[-1])
+def _sums(damping: list[Power], seen: Solution) -> Floats:
+    """What friction and damping take (2, n_t) in all."""
+    found = np.zeros((2, seen.t.size))
+    for name in seen.contact_names:
+        found[0] += _friction_power(seen, name).sum(axis=0)
+    for power in damping:
+        found[1] += power(seen)
+    return found
 
 
-def _nodes(t: Floats) -> Floats:
-    """Nodes (n_t - 1, 4) of the rule on each stretch."""
-    return t[:-1, None] + np.diff(t)[:, None] * _NODES
+def _friction_power(seen: Solution, contact: str) -> Floats:
+    return -seen.force(contact) * seen.relative_velocity(contact)
 
 
-def _element_power(scene: Any, part: Any, seen: Solution) -> Floats | None:
+def _damping_powers(sol: Solution) -> Iterator[tuple[str, Power]]:
+    """What takes energy by damping, by name."""
+    scene = sol.run.pieces[-1].mechanics.placed  # type: ignore[attr-defined]
+    for part in scene.parts:
+        if isinstance(part, Element | ModalBody | MatrixElement):
+            power = _element_power(scene, part, sol)
+        elif isinstance(part, Contact) and part.normal_kind == "law":
+            power = _pressing_power(sol, part.name)
+        else:
+            continue
+        if power is not None:
+            yield part.name, power
+
+
+def _element_power(scene: Any, part: Any, sol: Solution) -> Power | None:
     """Dissipated power (n,) of one element: of a scene that holds it and its ends alone."""
     small = _alone(scene, part)
     if small is None:
         return None
     system = build(small)
     problem = system.problem
-    if any(name not in seen.names.dof_index for name in system.dof_names):
+    if any(name not in sol.names.dof_index for name in system.dof_names):
         return None  # left out of the run: it does not move
-    q, v = motion_of(system, seen)
-    u = system.signals(seen.t)
-    rates = np.concatenate([v, u[1]])
-    power: Floats = np.einsum("it,it->t", rates, problem.linear.Cx @ rates)
-    elements = problem.elements
-    X = np.concatenate([seen.t[None], q, v, u[0], u[1]])
-    for k in range(len(elements.table.address)):
-        n_f = int(elements.f_start[k + 1] - elements.f_start[k])
-        x = arguments(elements.table, k, X)
-        at = n_f * (1 + x.shape[1])
-        power = power + evaluate(elements.table, k, x, at + 3)[at + 1]
+
+    def power(seen: Solution) -> Floats:
+        q, v = motion_of(system, seen)
+        u = system.signals(seen.t)
+        rates = np.concatenate([v, u[1]])
+        found: Floats = np.einsum("it,it->t", rates, problem.linear.Cx @ rates)
+        elements = problem.elements
+        X = np.concatenate([seen.t[None], q, v, u[0], u[1]])
+        for k in range(len(elements.table.address)):
+            n_f = int(elements.f_start[k + 1] - elements.f_start[k])
+            x = arguments(elements.table, k, X)
+            at = n_f * (1 + x.shape[1])
+            found = found + evaluate(elements.table, k, x, at + 3)[at + 1]
+        return found
+
     return power
 
 
@@ -235,16 +232,20 @@ def _with_ends(scene: Any, owners: set[str], part: Any) -> Any:
     return small
 
 
-def _pressing_power(sol: Solution, contact: str, seen: Solution) -> Floats | None:
+def _pressing_power(sol: Solution, contact: str) -> Power | None:
     """Dissipated power of a damped normal-force law: -(N - N0 + dV/de) e'."""
     system = whole_system(sol, "energy_ledger")
     contacts = system.problem.contacts
     k = system.contact_names.index(contact)
     if contacts.normal[k] != NORMAL_LAW:
         return None
-    u = system.signals(seen.t)
-    X = np.concatenate([seen.t[None], *motion_of(system, seen), u[0], u[1]])
-    x = arguments(contacts.normal_table, k, X)
-    out = evaluate(contacts.normal_table, k, x, 5)
-    power: Floats = -(np.maximum(out[0], 0.0) - contacts.N0[k] + out[4]) * x[:, 1]
+
+    def power(seen: Solution) -> Floats:
+        u = system.signals(seen.t)
+        X = np.concatenate([seen.t[None], *motion_of(system, seen), u[0], u[1]])
+        x = arguments(contacts.normal_table, k, X)
+        out = evaluate(contacts.normal_table, k, x, 5)
+        found: Floats = -(np.maximum(out[0], 0.0) - contacts.N0[k] + out[4]) * x[:, 1]
+        return found
+
     return power

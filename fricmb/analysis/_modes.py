@@ -10,7 +10,8 @@ from scipy.linalg import eigh
 
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._linearise import stiffness_without_friction
-from fricmb.analysis._losses import EnergyLedger, energy_ledger, motion_of, whole_system
+from fricmb.analysis._losses import motion_of, one_scene, whole_system
+from fricmb.analysis._quadrature import cumulated, grid, nodes, refined
 from fricmb.analysis._steady import SteadySliding
 from fricmb.system import System
 
@@ -99,7 +100,7 @@ def modal_energy(sol: Solution, *, around: SteadySliding | None = None) -> Modal
     Modes are those of the mass matrix and the symmetric stiffness at the equilibrium, contact stiffness included,
     without friction.  Frequencies that are round-off or belong to negative stiffness count as 0.
     """
-    ledger = energy_ledger(sol)
+    one_scene(sol, "modal_energy")
     system = whole_system(sol, "modal_energy")
     if around is not None and around.system.dof_names != system.dof_names:
         raise AnalysisError("modal_energy: around is the equilibrium of another scene")
@@ -109,24 +110,29 @@ def modal_energy(sol: Solution, *, around: SteadySliding | None = None) -> Modal
     K = stiffness_without_friction(system, q0, np.zeros(n))
     values, shapes = eigh(K, system.problem.linear.M)
     omega = np.sqrt(np.where(values > 1e-13 * np.abs(values).max(initial=0.0), values, 0.0))
-    return _flows(system, ledger, omega, shapes, q0, F0)
+    return _flows(system, sol, omega, shapes, q0, F0)
 
 
-def _flows(system: System, ledger: EnergyLedger, omega: Floats, shapes: Floats, q0: Floats, F0: Floats) -> ModalEnergy:
-    """Modal energies at the ledger's times and the integrals of powers between them."""
+def _flows(system: System, sol: Solution, omega: Floats, shapes: Floats, q0: Floats, F0: Floats) -> ModalEnergy:
+    """Modal energies at times between which powers are smooth, and the integrals of powers between them."""
     problem, n = system.problem, system.problem.n
-    q, v = motion_of(system, ledger.sol.at(ledger.t))
-    eta, rate = shapes.T @ problem.linear.M @ (q - q0[:, None]), shapes.T @ problem.linear.M @ v
+    to_modes = shapes.T @ problem.linear.M
+
+    def powers(seen: Solution) -> Floats:
+        """What friction brings and damping takes (2 n, n_t), by mode."""
+        v = motion_of(system, seen)[1]
+        F = np.concatenate([seen.force(name) for name in system.contact_names] or [np.zeros((0, seen.t.size))])
+        pull = shapes.T @ problem.contacts.W @ (F - F0[:, None])
+        drag = shapes.T @ problem.linear.Cx[:n, :n] @ v
+        return np.vstack([pull, drag]) * np.tile(to_modes @ v, (2, 1))
+
+    t = refined(sol, grid(sol), powers, "modal_energy")
+    q, v = motion_of(system, sol.at(t))
+    eta, rate = to_modes @ (q - q0[:, None]), to_modes @ v
     energy = 0.5 * (rate**2 + (omega[:, None] * eta) ** 2)
-    nodes = ledger._at
-    v = motion_of(system, nodes)[1]
-    speed = shapes.T @ problem.linear.M @ v
-    F = np.concatenate([nodes.force(name) for name in system.contact_names] or [np.zeros((0, nodes.t.size))])
-    pull = shapes.T @ problem.contacts.W @ (F - F0[:, None])
-    drag = shapes.T @ problem.linear.Cx[:n, :n] @ v
-    friction, damping = ledger._cumulate(speed * pull), ledger._cumulate(speed * drag)
+    friction, damping = np.split(cumulated(t, powers(sol.at(nodes(t)))), 2)
     return ModalEnergy(
-        t=ledger.t,
+        t=t,
         omega=omega,
         shapes=shapes,
         dofs=system.dof_names,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.analysis import energy_ledger, modal_energy, steady_sliding
+from fricmb.analysis import _quadrature, energy_ledger, modal_energy, steady_sliding
 
 from .test_steady_sliding import two_modes
 
@@ -23,6 +23,25 @@ def test_sums_are_those_of_the_run(brake):
     assert set(ledger.damping) == {"c1x", "c1y", "c2y"}
     assert "lining" in str(ledger)
     assert "c1x" in str(ledger)
+
+
+@pytest.mark.parametrize("t_end", [2.0, 200.0])
+def test_what_rings_out_within_one_long_step_is_followed(t_end):
+    """The pad sticks after 0.03, and rings out a thousand times as fast as the rest of the run is long."""
+    sol = fm.simulate(fm.models.pad_rotor(), t_end=t_end, rtol=1e-8)
+    ledger = energy_ledger(sol)
+    assert sum(loss[-1] for loss in ledger.damping.values()) == pytest.approx(sol.energy.damping_loss[-1], rel=1e-7)
+    assert ledger.friction["c1"][:, -1].sum() == pytest.approx(sol.energy.friction_loss[-1], rel=1e-7)
+    modes = modal_energy(sol)  # nothing is driven, and modes are coupled by friction and damping alone
+    assert np.abs(modes.other).max() < 1e-7 * modes.energy.max()
+    assert modes.damping[:, -1].sum() == pytest.approx(sol.energy.damping_loss[-1], rel=1e-7)
+
+
+def test_more_than_can_be_followed_is_refused(monkeypatch):
+    monkeypatch.setattr(_quadrature, "_NUMBERS", 1)
+    sol = fm.simulate(fm.models.pad_rotor(), t_end=20.0, rtol=1e-8)
+    with pytest.raises(fm.analysis.AnalysisError, match="energy_ledger: from t = 0 to 20 too much vibrates"):
+        energy_ledger(sol)
 
 
 def test_phases_add_up(brake):
