@@ -13,9 +13,13 @@ from fricmb.scene import Scene
 from fricmb.sensitivity._dual import Dual
 from fricmb.values import Declaration, Parameter, is_expression, parameters_in, value_of
 
-#: Part by which a number is changed to find a slope, a power of 2; shares of it, weights of Richardson's difference.
+#: Part by which a number is changed to find a slope, a power of 2; shares of it, with weights: Richardson's difference
+#: about the value, and, where it may be no smaller or no larger (no damping, say), differences of the same order to one
+#: side.
 _LITTLE = 2.0**-10
 _WEIGHTS = ((1.0, -1.0 / 6.0), (0.5, 4.0 / 3.0), (-0.5, -4.0 / 3.0), (-1.0, 1.0 / 6.0))
+_AHEAD = ((0.0, -25.0 / 3.0), (0.25, 16.0), (0.5, -12.0), (0.75, 16.0 / 3.0), (1.0, -1.0))
+_BEHIND = tuple((-share, -weight) for share, weight in _AHEAD)
 #: Stands for all initial values.
 STATE = "state"
 
@@ -94,16 +98,24 @@ class Seeds:
     def varied(self, part: Any) -> dict[int, list[tuple[float, Any]]]:
         """By column of the parameters that a part holds: that part at other values, with weights.
 
-        Weighted sums of what they say are Richardson's differences, to 1e-9: exact for what is linear in a parameter.
+        Weighted sums of what they say are differences to 1e-9: exact for what is linear in a parameter.
         """
-        found = {}
-        for name in dict.fromkeys(self.touch(part)):
-            p = float(value_of(self.scene.parameters[name]))
-            h = _LITTLE * (abs(p) or 1.0)
-            found[self.columns[name]] = [
-                (weight / h, self.scene.with_parameters({name: p + share * h})[part.name]) for share, weight in _WEIGHTS
-            ]
-        return found
+        return {self.columns[name]: self._others(part, name) for name in dict.fromkeys(self.touch(part))}
+
+    def _others(self, part: Any, name: str) -> list[tuple[float, Any]]:
+        """The part at values about that of a parameter, or to one side of it, with weights."""
+        p = float(value_of(self.scene.parameters[name]))
+        h = _LITTLE * (abs(p) or 1.0)
+        refused: list[SceneError] = []
+        for weights in (_WEIGHTS, _AHEAD, _BEHIND):
+            try:
+                return [
+                    (weight / h, self.scene.with_parameters({name: p + share * h})[part.name])
+                    for share, weight in weights
+                ]
+            except SceneError as error:
+                refused.append(error)
+        raise SceneError(f"sensitivities: {name!r} can be neither larger nor smaller than {p:g}: {refused[0]}")
 
 
 def _slope(value: Any, parameter: Parameter) -> float:

@@ -43,13 +43,15 @@ def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
     """What a unit of every input, held for the step, changes in velocities, each by its own scale.
 
     What has never moved, as friction holds it, has no scale but what friction could do: its force is resolved to a part
-    of the limit.
+    of the limit.  So has what moved by the round-off of others, as when one of them comes to rest.
     """
     ex = one.exact
     top = widest(acc.v)
     for i in range(y.q.shape[0]):
         scale = max(acc.v[i], abs(y.v[i]), acc.floor_v[i])
-        one.scale[i] = scale if scale > 2.0 * acc.floor_v[i] else max(scale, h * held_at_rest(packed, y, one, i))
+        if scale <= max(2.0 * acc.floor_v[i], 1e-10 * top):
+            scale = max(scale, h * held_at_rest(packed, y, one, i))
+        one.scale[i] = scale
     for c in range(ex.b1.shape[0]):
         worst = 0.0
         for i in range(y.q.shape[0]):
@@ -184,7 +186,7 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     if one.last_t == y.t and h <= one.last_h:
         guess_forces(packed, y, one, h / one.last_h)
     weigh_inputs(packed, y, one, acc, h)
-    newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
+    newton_tolerances(packed, acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     if ex.c1.shape[0] > y.g.shape[0]:
         solved = exact_ports(packed, s, y, one, acc, slot)

@@ -73,7 +73,7 @@ def solve_with(
     for i in range(y.q.shape[0]):
         st.V[0, i] = y.v[i]
     contacts_from_start(packed, y, w, 0)
-    newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
+    newton_tolerances(packed, acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     return solve_stages(packed, one.tab, s, one.fac, st, w, mode, one.tol, one.scale) > 0
 

@@ -76,7 +76,7 @@ def solve_formula(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
                 w.g[0, a] += packed.ports.W[i, a] * (past.guess[n + i] - y.v[i])
             w.r[0, k] += w.n[0, a] * w.g[0, a]
     part = min(1e-3, 0.02 * h * past.unit)
-    newton_tolerances(acc, h, y, one.tol, one.scale, part)
+    newton_tolerances(packed, acc, h, y, one.tol, one.scale, part)
     one.counts[2] += 1
     return solve_stages(packed, one.tab, s, one.fac, st, w, y.mode, one.tol, one.scale) > 0
 

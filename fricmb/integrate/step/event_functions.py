@@ -146,11 +146,13 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, speed: float, k: in
             return -value
     if packed.ports.law[k] == LAW_SMOOTH:
         return value
+    unit = 1.0  # of a normal force beside which the other one is measured
     if y.mode[k] == SLIP:
         other = speed
+        unit = max(y.size[packed.ports.row[k]], abs(speed)) / max(y.N[k], abs(value), 1e-290)
     else:
         other = cone_margin(packed.ports, packed.laws, k, s, end.F, end.N[k])
-    if other < value:
+    if packed.ports.var[k] < 0 or other < unit * value:
         found[1] = 0.0
         return float(other)
     return value

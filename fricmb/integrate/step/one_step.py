@@ -19,9 +19,19 @@ from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_matrix import prepare
 
 
+#: Part of the round-off of velocities that a step is solved to.
+BARE = 0.1
+
+
 @kernel
-def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float) -> None:
-    """Accuracy to which a step is solved: of velocities (n,), of relative ones and states ``tol`` (n_c + n_z,)."""
+def newton_tolerances(
+    packed: Packed, acc: Accuracy, h: float, y: State, tol: Floats, scale: Floats, part: float
+) -> None:
+    """Accuracy to which a step is solved: of velocities (n,), of relative ones and states ``tol`` (n_c + n_z,).
+
+    What is held at rest has no velocity but round-off of the forces on it (see ``step_error``): to ask for less than
+    that is to ask for what no step can give.
+    """
     top = widest(acc.v)
     relative = max(part * acc.rtol, 1e-14)
     moving = 0.0
@@ -29,10 +39,13 @@ def newton_tolerances(acc: Accuracy, h: float, y: State, tol: Floats, scale: Flo
         # what only begins to move is measured by what it may reach within the step
         here = max(acc.v[i], abs(y.v[i]) + h * abs(y.a[i]), acc.floor_v[i], 1e-10 * top, 1e-290)
         moving = max(moving, here)
-        scale[i] = relative * here
+        scale[i] = max(relative * here, BARE * acc.grain[i])
     n_c = acc.r.shape[0]
     for k in range(n_c):
         tol[k] = relative * max(acc.r[k], 1e-8 * moving, acc.noise, 1e-290)
+        for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+            for i in range(scale.shape[0]):
+                tol[k] = max(tol[k], BARE * abs(packed.ports.W[i, a]) * acc.grain[i])
     for a in range(y.z.shape[0]):
         tol[n_c + a] = relative * max(acc.z[a], abs(y.z[a]) + h * abs(y.zd[a]))
 
@@ -90,7 +103,7 @@ def radau_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
         st.t[i] = y.t + tab.c[i] * h
         for j in range(tab.c.shape[0]):
             st.hA[i, j] = h * tab.A[i, j]
-    newton_tolerances(acc, h, y, one.tol, one.scale, 1e-3)
+    newton_tolerances(packed, acc, h, y, one.tol, one.scale, 1e-3)
     found = start_on_last(packed, y, tab, st, w, one.last_t, one.last_h, h) and solve(packed, s, y, one)
     if not found:
         start_at_rest(packed, y, tab, st, w, h)
