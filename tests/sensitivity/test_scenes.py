@@ -171,3 +171,14 @@ def test_many_states():
     assert set(found) == set(names)
     assert max(found.values()) < 1e3, found
     assert len(fm.simulate(scene, t_end=1.5).events) > 5
+
+
+def test_a_number_that_may_be_no_smaller():
+    """Of x = exp(-d w t) (cos + d sin) the slope at d = 0 is sin w t - w t cos w t; d may not be negative."""
+    w, t, name = 2.0, np.linspace(0.0, 5.0, 11), "plate.damping_ratios"
+    plate = fm.ModalBody(
+        "plate", frequencies=[w], damping_ratios=0.0, shapes={"tip": [[1.0]]}, axes="x", position={"mode1": 1.0}
+    )
+    sol = fm.simulate(fm.Scene("s", [plate]), t_end=5.0, rtol=1e-10, t_eval=t, sensitivities=[name])
+    expected = np.sin(w * t) - w * t * np.cos(w * t)
+    assert sol.sensitivity("plate.mode1", name) == pytest.approx(expected, abs=1e-7)
