@@ -181,7 +181,7 @@ def drift(packed: Packed, one: OneStep, end: State, i: int) -> float:
 
 @kernel
 def scales_of_step(packed: Packed, y: State, end: State, one: OneStep, acc: Accuracy) -> None:
-    """Running maxima over an accepted step; what sticks drifts between the nodes of a step, and has not moved by that."""
+    """Running maxima over an accepted step: by what drifts in stick, between its nodes, nothing has moved."""
     for i in range(y.q.shape[0]):
         acc.q[i] = max(acc.q[i], abs(y.q[i]), abs(end.q[i]))
         acc.v[i] = max(acc.v[i], abs(y.v[i]))

@@ -18,7 +18,6 @@ from fricmb.integrate.step.stages import Stages, solve_stages
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_matrix import prepare
 
-
 #: Part of the round-off of velocities that a step is solved to.
 BARE = 0.1
 
