@@ -284,6 +284,7 @@ def test_a_result_that_finds_no_room_ends_the_run(monkeypatch):
     held = iter(np.arange(0.0, 1e12, 1e9))
     monkeypatch.setattr(memory, "EVERY", 0.0)
     monkeypatch.setattr(memory, "taken", lambda: next(held))
+    monkeypatch.setattr(memory.Footprint, "_seen", (-1e9, None))  # nobody has looked
     monkeypatch.setattr(memory, "available", lambda: 3e9)
     with pytest.raises(fm.IntegrationError, match=r"taken .* GB and only 3 GB are left") as caught:
         fm.simulate(endless(), t_end=1e8, method="radau")

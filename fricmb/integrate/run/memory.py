@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 import time
 from pathlib import Path
+from typing import ClassVar
 
 #: Seconds between two looks.
 EVERY = 0.5
 #: Bytes below which nobody asks.
 SMALL = 2.5e8
+#: Seconds in which no process takes so much: what was read so long ago is good enough to begin with.
+RECENT = 0.05
 
 
 def available() -> float | None:
@@ -37,7 +40,7 @@ def available() -> float | None:
 def taken() -> float | None:
     """Bytes that this process holds; None: unknown."""
     try:
-        with open("/proc/self/statm", "rb", buffering=0) as file:  # every run asks: a tenth of one that does nothing
+        with open("/proc/self/statm", "rb", buffering=0) as file:
             return float(file.read(200).split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError, AttributeError):
         pass
@@ -54,9 +57,16 @@ def taken() -> float | None:
 class Footprint:
     """Memory that a run has taken so far; to put together what it holds takes as much again at the end."""
 
+    #: When memory was looked at last, and what there was: a look takes a tenth of a run that does nothing.
+    _seen: ClassVar[tuple[float, float | None]] = (-1e9, None)
+
     def __init__(self) -> None:
-        self._start = taken()
-        self._next = time.monotonic() + EVERY
+        now = time.monotonic()
+        when, self._start = Footprint._seen
+        if now > when + RECENT:
+            self._start = taken()
+            Footprint._seen = now, self._start
+        self._next = now + EVERY
 
     def excess(self) -> str | None:
         """Why the run has to end for want of memory, or None."""
