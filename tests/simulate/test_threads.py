@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import threading
 import time
@@ -113,3 +114,18 @@ def test_what_is_lent_belongs_to_one_at_a_time():
     with lent_per(kept, "rows", list) as first, lent_per(kept, "rows", list) as second:
         assert spoilt is not first
         assert spoilt is not second
+
+
+LEAVES = """
+import threading, time
+import fricmb as fm
+from tests.simulate.test_ended import endless
+fm.simulate(endless(), t_end=1.0, method="radau")
+threading.Thread(target=lambda: fm.simulate(endless(), t_end=1e9, method="radau"), daemon=True).start()
+time.sleep(0.3)
+"""
+
+
+def test_a_program_ends_while_a_thread_of_it_is_in_a_run():
+    done = subprocess.run([sys.executable, "-c", LEAVES], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
