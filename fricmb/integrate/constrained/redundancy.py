@@ -17,6 +17,8 @@ from fricmb.integrate.problem import Floats, Ints, Problem, Start
 
 #: Singular values this small beside the largest count as 0.
 RANK = 1e-9
+#: Change of the constraints' directions in a position that counts as nearby, and tries to find one.
+NEARBY, TRIES = 1e-3, 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,12 +120,28 @@ def _nearby(problem: Problem, start: Start, J: Any, weight: Floats) -> Any:
     direction = weight * free
     if np.abs(free).max() < 1e-9:
         return J
-    length = 1e-3 * max(float(np.abs(start.q).max(initial=0.0)), 1e-300) / np.abs(direction).max()
+    step = _short_way(problem, start, J, weight, direction)
     try:
-        _, there = closed(problem, m, start.t, start.q + length * direction, start.v, weight)
+        _, there = closed(problem, m, start.t, start.q + step, start.v, weight)
     except SceneError:
         return J
     return unit_rows(there.G, weight)[0]
+
+
+def _short_way(problem: Problem, start: Start, J: Any, weight: Floats, direction: Floats) -> Floats:
+    """The part of a motion that changes J, whose rows are of length 1, by some NEARBY.
+
+    Coordinates themselves tell nothing of that: lengths and angles are among them, in any units.
+    """
+    length = NEARBY * max(float(np.abs(start.q).max(initial=0.0)), 1e-300) / np.abs(direction).max()
+    for _ in range(TRIES):
+        there = unit_rows(constraints_at(problem, start.t, start.q + length * direction, start.v).G, weight)[0]
+        change = float(abs(there - J).max())
+        if 0.3 * NEARBY <= change <= 3.0 * NEARBY:
+            break
+        length *= min(max(NEARBY / max(change, 1e-300), 1e-3), 1e3)
+    step: Floats = length * direction
+    return step
 
 
 def singular_joints(problem: Problem, t: float, q: Floats, v: Floats) -> list[str]:

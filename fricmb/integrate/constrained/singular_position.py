@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.band import factor_band
+from fricmb.integrate.compile.band import factor_band, spread_of_pivots
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
@@ -29,6 +29,38 @@ NEAR, APPROACH = 0.6, 0.7
 ROUND_OFF = 20.0 * EPS
 #: Part by which it changes before its rate is counted anew: what is less may be round-off, in short steps.
 NOTED = 1e-3
+#: Spread of the pivots, without units, at which constraints depend on one another where a run starts: the square of the
+#: least singular value is in it, and round-off of 1e-16.
+DEPENDENT = 1e-14
+
+
+@kernel
+def starts_dependent(mech: Mech, w: Instant) -> bool:
+    """Whether constraints depend on one another in the instant's matrix (layers ``w.L``); ``w.ab`` is overwritten.
+
+    Masses, inertias and lengths stand side by side in it, and pivots would say most about the units.  So velocities
+    are counted in units of equal kinetic energy, and rows of G in such that G M^-1 G' has a diagonal of ones; friction,
+    which has none of these rows, is left out.
+    """
+    order, scale = mech.order, w.x
+    n, size, half, length = first_multiplier(mech), order.place.shape[0], order.sizes[1], order.sizes[3]
+    scale[:] = 0.0
+    for i in range(n):
+        scale[order.place[i]] = 1.0 / np.sqrt(mech.mass[i])
+    for r in range(mech.joint.row[-1]):
+        at, square = order.place[n + r], 0.0
+        for j in range(max(at - half, 0), min(at + half + 1, size)):
+            square += (w.L.A1[j * length + 2 * half + at - j] * scale[j]) ** 2
+        w.r[r] = 1.0 / np.sqrt(square) if square > 0.0 else 0.0
+    for r in range(mech.joint.row[-1]):
+        scale[order.place[n + r]] = w.r[r]
+    for j in range(size):
+        for i in range(max(j - half, 0), min(j + half + 1, size)):
+            at = j * length + 2 * half + i - j
+            w.ab[at] = (w.L.A0[at] + w.L.A1[at]) * scale[i] * scale[j]
+        if scale[j] == 0.0:
+            w.ab[j * length + 2 * half] = 1.0
+    return not factor_band(w.ab, w.pivots, order.sizes) or spread_of_pivots(w.ab, order.sizes) < DEPENDENT
 
 
 @kernel

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fricmb.integrate.compile.band import spread_of_pivots
 from fricmb.integrate.compile.kernel import run_entry
 from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
@@ -18,7 +17,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, crowded
-from fricmb.integrate.constrained.singular_position import start_watch
+from fricmb.integrate.constrained.singular_position import start_watch, starts_dependent
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import let_go
@@ -49,9 +48,9 @@ def begin(
     set_window(c, k.s.window, y.t + 4e-16 * abs(y.t) + 1e-300)
     if not project_velocities(mech, k, w, y, False, False):
         return FAIL_SINGULAR
-    if spread_of_pivots(w.ab, mech.order.sizes) < 1e-14:
-        return FAIL_SINGULAR
     start_watch(mech, w, out, 0.0)
+    if starts_dependent(mech, w):
+        return FAIL_SINGULAR
     mark_rest(mech, y, small, part)
     if given:
         for i in range(part.shape[0]):

@@ -1,0 +1,87 @@
+"""Metamorphic: a mechanism in other units, or of another size, moves alike."""
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+
+#: Units of mass and length in those of kg and m; sizes are such that periods stay.
+UNITS = {
+    "g mm": (1e3, 1e3), "t mm": (1e-3, 1e3), "kg um": (1.0, 1e6), "ug m": (1e9, 1.0), "kt m": (1e-6, 1.0),
+    "kg km": (1.0, 1e-3), "1/1000 of the size": (1e-9, 1e-3), "MEMS": (1e-12, 1e-4),
+}  # fmt: skip
+
+
+def pendulum(M=1.0, L=1.0):
+    return fm.models.dry_pendulum(
+        mass=1.3 * M, inertia=0.2 * M * L**2, length=0.7 * L, radius=0.05 * L, gravity=9.81 * L
+    )
+
+
+def bob(M=1.0, L=1.0):
+    inertia = tuple(x * M * L**2 for x in (0.03, 0.05, 0.02))
+    arm = tuple(x * L for x in (0.1, 0.05, -0.3))
+    return fm.models.dry_ball_joint(mass=2.0 * M, inertia=inertia, arm=arm, radius=0.02 * L, gravity=9.81 * L)
+
+
+@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("model", [pendulum, bob], ids=["pendulum", "ball joint"])
+def test_units_say_nothing_of_the_motion(model, units):
+    base, other = (fm.simulate(model(*u), t_end=2.0, rtol=1e-8) for u in ((1.0, 1.0), UNITS[units]))
+    assert other.stats.n_steps == pytest.approx(base.stats.n_steps, abs=2)
+    assert [e.kind for e in other.events] == [e.kind for e in base.events]
+    np.testing.assert_allclose([e.t for e in other.events], [e.t for e in base.events], rtol=1e-11)
+    # what is scaled alike: angles, or entries of the axes
+    grid = np.linspace(0.0, 2.0, 21)
+    free = np.abs(base.q).max(axis=1) > 1e-6
+    alike = np.isclose(np.abs(other.q).max(axis=1), np.abs(base.q).max(axis=1), rtol=1e-6) & free
+    assert alike.any()
+    np.testing.assert_allclose(other.at(grid).q[alike], base.at(grid).q[alike], atol=1e-10)
+
+
+def flat_parallelogram(M, L, lean):
+    """Two legs of equal length and what ties their heads; in one line with the ground it may go on in two ways."""
+    c, s = np.cos(lean), np.sin(lean)
+    legs = [
+        fm.RigidBody(f"leg{i}", mass=M, inertia=0.1 * M * L**2, position=((i + 0.5 * c) * L, 0.5 * s * L), angle=lean,
+                     points={"foot": (-0.5 * L, 0.0), "head": (0.5 * L, 0.0)})
+        for i in range(2)
+    ]  # fmt: skip
+    top = fm.RigidBody(
+        "top", mass=M, inertia=0.3 * M * L**2, position=((0.5 + c) * L, s * L),
+        points={"h0": (-0.5 * L, 0.0), "h1": (0.5 * L, 0.0)},
+    )  # fmt: skip
+    feet = [fm.Revolute(f"foot{i}", legs[i].point("foot"), fm.ground_point(i * L, 0.0)) for i in range(2)]
+    heads = [fm.Revolute(f"head{i}", top.point(f"h{i}"), legs[i].point("head")) for i in range(2)]
+    return fm.Scene("parallelogram", [*legs, top, *feet, *heads])
+
+
+def upright_crank(M, L, lean):
+    """A crank and a rod as long as it, at right angles to the line of the slider, which then stands on the axis."""
+    c, s = np.sin(lean), np.cos(lean)
+    turn, I = 0.5 * np.pi - lean, 0.1 * M * L**2
+    crank = fm.RigidBody("crank", mass=M, inertia=I, position=(0.5 * c * L, 0.5 * s * L), angle=turn,
+                         points={"axis": (-0.5 * L, 0.0), "end": (0.5 * L, 0.0)})  # fmt: skip
+    rod = fm.RigidBody("rod", mass=M, inertia=I, position=(1.5 * c * L, 0.5 * s * L), angle=-turn,
+                       points={"pin": (-0.5 * L, 0.0), "slider": (0.5 * L, 0.0)})  # fmt: skip
+    origin = fm.ground_point(0.0, 0.0)
+    joints = (
+        fm.Revolute("axis", crank.point("axis"), origin), fm.Revolute("pin", rod.point("pin"), crank.point("end")),
+        fm.RollerOnLine("slider", rod.point("slider"), origin, angle=0.0),
+    )  # fmt: skip
+    return fm.Scene("crank and rod", [crank, rod, *joints])
+
+
+@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("scene", [flat_parallelogram, upright_crank])
+def test_a_singular_start_is_refused_in_all_units_and_one_next_to_it_is_not(scene, units):
+    with pytest.raises(fm.FricmbError, match="singular position"):
+        fm.simulate(scene(*UNITS[units], 0.0), t_end=1e-3)
+    assert fm.simulate(scene(*UNITS[units], 0.01), t_end=1e-3).stats.n_steps > 0
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_a_start_that_is_all_but_singular_is_refused_alike(units):
+    """The rank of the constraints is whole there, to round-off."""
+    with pytest.raises(fm.FricmbError, match="singular position"):
+        fm.simulate(upright_crank(*UNITS[units], 1e-8), t_end=1e-3)
