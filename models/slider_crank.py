@@ -55,7 +55,8 @@ def slider_crank(
     turn = -speed * crank * cos(angle) / (rod * cos(lean))
     bars = _bars(crank, rod, masses, angle, speed, lean, turn)
     pushed = -speed * crank * sin(angle) + turn * rod * sin(lean)
-    slider = fm.RigidBody("slider", mass=masses[2], inertia=1e-3, position=(end, 0.0), velocity=(pushed, 0.0))
+    turns_by = masses[2] * crank**2 / 8  # it never turns: any inertia serves that scales with masses and lengths
+    slider = fm.RigidBody("slider", mass=masses[2], inertia=turns_by, position=(end, 0.0), velocity=(pushed, 0.0))
     checked = fm.parameter("pin", pin).value  # refused by name also where no friction uses it
     radius = checked if friction is not None else 0.0
     first, second = bars

@@ -85,3 +85,31 @@ def test_a_start_that_is_all_but_singular_is_refused_alike(units):
     """The rank of the constraints is whole there, to round-off."""
     with pytest.raises(fm.FricmbError, match="singular position"):
         fm.simulate(upright_crank(*UNITS[units], 1e-8), t_end=1e-3)
+
+
+def crank_with_friction(M=1.0, L=1.0):
+    return fm.models.slider_crank(
+        crank=0.1 * L, rod=0.3 * L, masses=(M, 0.6 * M, 0.8 * M), speed=30.0, gravity=9.81 * L, pin=0.01 * L,
+        friction=fm.laws.Coulomb(mu_s=0.2),
+    )  # fmt: skip
+
+
+def moves_as(base, other):
+    """Both have the same events, and end alike."""
+    assert [(e.contact, e.kind) for e in other.events] == [(e.contact, e.kind) for e in base.events]
+    np.testing.assert_allclose([e.t for e in other.events], [e.t for e in base.events], atol=1e-6)
+    assert other["crank.angle"][-1] == pytest.approx(base["crank.angle"][-1], rel=1e-6)
+
+
+def test_a_loop_with_friction_moves_alike_in_all_units():
+    base = fm.simulate(crank_with_friction(), t_end=0.5, rtol=1e-8)
+    for units in UNITS.values():
+        moves_as(base, fm.simulate(crank_with_friction(*units), t_end=0.5, rtol=1e-8, time_limit=60.0))
+
+
+@pytest.mark.parametrize("inertia", [1e-9, 1e-13, 1e-15])
+def test_a_body_that_cannot_turn_may_have_hardly_any_inertia(inertia):
+    """What friction in its pin could turn the slider by, were there no guide, is no measure of accelerations."""
+    scene = crank_with_friction()
+    light = fm.simulate(scene.with_parameters({"slider.inertia": inertia}), t_end=0.5, rtol=1e-8, time_limit=60.0)
+    moves_as(fm.simulate(scene, t_end=0.5, rtol=1e-8), light)

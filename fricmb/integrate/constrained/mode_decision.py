@@ -42,6 +42,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     """
     n_c = y.mode.shape[0]
     count, anew = 0, True
+    k.answer[:] = -1.0
     mark_loops(mech, k, y, part)
     freely = forced < 0
     for c in range(n_c):
@@ -60,7 +61,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     for _ in range(4 * count + 4):
         if not ease(mech, k, w, y):
             break
-        worst = find_wrong(mech, k, y, part, forced)
+        worst = find_wrong(mech, k, w, y, part, forced)
         if worst < 0:
             # what breaks away takes along whom it will; what arrives may have been released for another's sake
             if freely and not hold_again(mech, k, w, y, part):
@@ -76,9 +77,9 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
 
 
 @kernel
-def find_wrong(mech: Mech, k: Moving, y: State, part: Codes, forced: int) -> int:
+def find_wrong(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> int:
     """The port whose mode is to be changed next; -1 where all hold.  What comes to rest goes before what has rested."""
-    scale = largest_acceleration(mech, k, y)
+    scale = largest_acceleration(mech, k, w, y)
     worst, most = -1, 0.0
     for c in range(y.mode.shape[0]):
         if at_rest(mech, y, c, part):
@@ -110,7 +111,7 @@ def hold_again(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool
             continue
         forces, reactions, directions, mode = y.F.copy(), y.lam.copy(), y.n.copy(), y.mode[c]
         hold(mech, y, c, False)
-        changed = not ease(mech, k, w, y) or find_wrong(mech, k, y, part, -1) >= 0
+        changed = not ease(mech, k, w, y) or find_wrong(mech, k, w, y, part, -1) >= 0
         if changed:
             y.mode[c] = mode
             y.F[:], y.lam[:], y.n[:] = forces, reactions, directions

@@ -81,7 +81,7 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
                     y.n[mech.port.row[c]] = 1.0 if digit == 1 else -1.0
         if twice or not (ease(mech, k, w, y) or (patient and solved_by_shares(mech, k, w, y))):
             continue
-        scale = largest_acceleration(mech, k, y)
+        scale = largest_acceleration(mech, k, w, y)
         holds = True
         for c in range(n_c):
             if not at_rest(mech, y, c, part):

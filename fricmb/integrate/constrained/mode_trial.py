@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import react
+from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, react, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, SLIGHT, aim, lack, lightness, plane, slip_speed, spare
@@ -21,6 +21,8 @@ SLACK = 1e-10
 CREEP, CREEP_IN_LOOPS = 1e-12, 1e-9
 #: Steps from the forces that hold to those of slip, where directions of slip are to be found.
 STEPS_OUT = 6
+#: Slip accelerations that friction could bring beside those there are, for which joints are asked.
+FAR_MORE = 10.0
 
 
 @kernel
@@ -110,14 +112,44 @@ def set_out(mech: Mech, y: State) -> None:
 
 
 @kernel
-def largest_acceleration(mech: Mech, k: Moving, y: State) -> float:
-    """Scale of slip accelerations: those there are, and those that friction could bring."""
+def answer_at(mech: Mech, k: Moving, w: Instant, y: State, first: int, last: int) -> None:
+    """Changes of slip velocities by unit forces in rows first to last, joints holding, into ``k.answer``.
+
+    From the kinetic energy of the motion: where a joint blocks one, the round-off of that counts by its square.
+    """
+    n, m, linear = y.q.shape[0], y.lam.shape[0], mech.linear
+    if not instant_matrix(mech, k, w, y, NONE):
+        return
+    for a in range(first, last):
+        w.r[:] = 0.0
+        w.r[n + m + a] = 1.0
+        solve_instant(mech, w)
+        k.answer[a] = 0.0
+        for e in range(linear.M.shape[0]):
+            k.answer[a] += linear.M[e] * w.r[linear.Mi[e]] * w.r[linear.Mj[e]]
+
+
+@kernel
+def largest_acceleration(mech: Mech, k: Moving, w: Instant, y: State) -> float:
+    """Scale of slip accelerations: those there are, and those that friction could bring.
+
+    Joints are asked for only where friction could bring far more without them: a light body that they keep from turning
+    would make everything else look like round-off.
+    """
     value = 1e-290
     for i in range(y.a.shape[0]):
         value = max(value, abs(y.a[i]))
     row = mech.port.row
+    for a in range(y.ga.shape[0]):
+        value = max(value, abs(y.ga[a]))
+    there = value
     for c in range(y.mode.shape[0]):
         for a in range(row[c], row[c + 1]):
-            light = lightness(mech, k, c, a - row[c], y.lam, mech.mass)
-            value = max(value, abs(y.ga[a]), abs(y.F[a]) * light)
+            could = abs(y.F[a]) * lightness(mech, k, c, a - row[c], y.lam, mech.mass)
+            if could > FAR_MORE * there:
+                if k.answer[a] < 0.0:
+                    answer_at(mech, k, w, y, row[c], row[c + 1])
+                if k.answer[a] >= 0.0:
+                    could = min(could, abs(y.F[a]) * k.answer[a])
+            value = max(value, could)
     return value

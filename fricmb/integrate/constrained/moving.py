@@ -27,6 +27,8 @@ class Moving(Layout):
     ``borne_before``;
     ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
     matrices for slip of 0, which leaves forces along directions that joints block open;
+    ``answer`` (m_p,) changes of slip velocities by unit forces there, joints holding, of the instant at which modes are
+    being decided; below 0: not known;
     ``way`` (m_p,) the motion in which contacts in loops give way, ``looped`` (n_c,) 1 of those that cannot slip alone.
     """
 
@@ -50,6 +52,7 @@ class Moving(Layout):
     borne: float
     borne_before: float
     slight: Floats
+    answer: Floats
     way: Floats
     looped: Codes
 
@@ -93,5 +96,5 @@ def moving_of(problem: Problem) -> Moving:
         np.zeros(size.n_x), np.zeros(size.n_out), np.zeros(m.n_y), np.zeros(n_u + 1),
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
         np.zeros(problem.n_c), 1.0, 1.0, 0.0, 0, 0.0, 0.0, np.zeros(problem.n_c),
-        np.zeros(problem.m), np.zeros(problem.n_c, np.int8),
+        np.zeros(problem.m), np.zeros(problem.m), np.zeros(problem.n_c, np.int8),
     )  # fmt: skip
