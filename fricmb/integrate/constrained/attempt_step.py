@@ -9,6 +9,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.event_functions import violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
 from fricmb.integrate.constrained.law_defect import law_defect
+from fricmb.integrate.constrained.load_defect import load_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -110,7 +111,9 @@ def radau_step(
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         return reject(c, 0.4 * h)
-    error = max(error_of(c, y, st), law_defect(mech, k, y, st, c, h) / asked(c))
+    find_kinks(mech, k, y, st, out)
+    between = max(law_defect(mech, k, y, st, c, h), load_defect(mech, k, w, y, st, c, out, h))
+    error = max(error_of(c, y, st), between / asked(c))
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
         return reject(c, 0.4 * h)
@@ -127,7 +130,6 @@ def radau_step(
             record_step(mech, rec, y, end, st, c, h)
             copy_state(end, y)
         return FAIL_MARGIN
-    find_kinks(mech, k, y, st, out)
     worst = violated(mech, k, out, y, end, st)
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)

@@ -35,15 +35,11 @@ def put_rates(y: State, st: Stages, rates: Floats2, h: float) -> None:
 
 
 @kernel
-def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> bool:
-    """Slip velocities and loads at the stages after the last of Newton's changes; False where no law is smooth."""
-    smooth = False
-    for p in range(y.mode.shape[0]):
-        smooth = smooth or mech.port.law[p] == LAW_SMOOTH
-    for i in range(st.tab.c.shape[0] if smooth else 0):
+def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
+    """Slip velocities and loads at the stages after the last of Newton's changes."""
+    for i in range(st.tab.c.shape[0]):
         move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
         forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
-    return smooth
 
 
 @block
@@ -51,8 +47,12 @@ def law_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float
     """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the stages."""
     port, tab = mech.port, st.tab
     worst = 0.0
-    if not bring_up_to_date(mech, k, y, st, h):
+    smooth = False
+    for p in range(y.mode.shape[0]):
+        smooth = smooth or port.law[p] == LAW_SMOOTH
+    if not smooth:
         return worst
+    bring_up_to_date(mech, k, y, st, h)
     put_rates(y, st, c.rates, h)
     for i in range(y.v.shape[0]):
         c.inertia[i] = (c.mass[i] * st.scale[i]) ** 2

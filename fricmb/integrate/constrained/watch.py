@@ -26,7 +26,8 @@ class Watch(Layout):
     stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
     of open joints, ``opened`` how many there are; ``bends`` (n_j,), ``kinked`` (n_c,), ``kink``, ``side`` (m,):
-    see ``load_kinks``; ``top_slip``, ``top_force``, ``top_position`` running maxima.
+    see ``load_kinks``; ``top_slip``, ``top_force``, ``top_position`` running maxima;
+    ``missed`` (n_c,): see ``load_defect``.
     """
 
     margin: Floats
@@ -63,6 +64,7 @@ class Watch(Layout):
     top_force: float
     top_position: float
     lam: Floats
+    missed: Floats
 
 
 def watch_of(problem: Problem, stages: int) -> Watch:
@@ -79,5 +81,5 @@ def watch_of(problem: Problem, stages: int) -> Watch:
         np.zeros(stages + 1), np.zeros(len(m.joints.port)),
         0, np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), 0.0, 0.0, 0.0,
-        np.zeros(m.n_rows + 1),
+        np.zeros(m.n_rows + 1), np.zeros(problem.n_c),
     )  # fmt: skip
