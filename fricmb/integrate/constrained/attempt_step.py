@@ -6,7 +6,8 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.event_functions import violated
+from fricmb.integrate.constrained.accelerations import largest
+from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
 from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_defect import load_defect
@@ -36,6 +37,8 @@ from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, next_step, step_
 
 #: Shortest step, as a part of the span.
 SMALLEST = 1e-14
+#: Shortest step behind a change of modes, as a part of the time in which velocities change.
+RESTART = 5e-4
 
 
 @kernel
@@ -78,6 +81,17 @@ def arrive(
     if rec.used[0] > 0:
         rec.after[rec.used[0] - 1] = 1
     return CHANGED if code == DONE else code
+
+
+@kernel
+def set_restart(c: Control, y: State) -> None:
+    """First step behind a change of modes, if that before it is a trifle: slip that came to rest there asked for that.
+
+    Steps get as short as round-off on the way to rest, and Newton's changes at such ones are nothing else.
+    """
+    rate = largest(y.a)
+    if rate > 0.0:
+        c.h = max(c.h, RESTART * min(largest(c.v) / rate, c.longest))
 
 
 @kernel
@@ -136,6 +150,8 @@ def radau_step(
         if h == 0.0:
             return reject(c, 0.3 * c.h)
         may_have_passed(mech, k, w, end, out, h)
+    else:
+        worst = has_come_to_rest(mech, k, out, y, end)
     record_step(mech, rec, y, end, st, c, h)
     if h == left:
         end.t = stop
@@ -158,5 +174,6 @@ def radau_step(
         rec.after[rec.used[0] - 1] = 1
         c.growth = np.inf
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
+        set_restart(c, y)
         return CHANGED if code == DONE else code
     return ACCEPTED

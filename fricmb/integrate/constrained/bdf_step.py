@@ -14,7 +14,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.attempt_step import grow
 from fricmb.integrate.constrained.bdf_history import Formula, put
-from fricmb.integrate.constrained.event_functions import violated
+from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -220,7 +220,8 @@ def multistep(
     find_kinks(mech, k, y, st, out)
     passed = may_have_passed(mech, k, w, end, out, h)
     unique = margins(mech, k, w, end, out, False) > 0.0
-    if passed or not unique or violated(mech, k, out, y, end, st) >= 0:
+    changes = violated(mech, k, out, y, end, st) >= 0 or has_come_to_rest(mech, k, out, y, end) >= 0
+    if passed or not unique or changes:
         return HANDOVER
     for i in range(y.work.shape[0]):
         for l in range(st.tab.c.shape[0]):

@@ -124,6 +124,23 @@ def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages
 
 
 @kernel
+def has_come_to_rest(mech: Mech, k: Moving, out: Watch, y: State, end: State) -> int:
+    """The trigger of slip in several directions that a step from y has brought to rest by its end, or -1.
+
+    Of such slip round-off is left, and no direction from which a further step could go through rest.
+    """
+    row = mech.port.row
+    for c in range(end.mode.shape[0]):
+        if end.mode[c] != SLIP or not plane(mech, c) or lack(end.N[c], k.borne) > 0.0:
+            continue
+        speed = magnitude(row, c, end.g)
+        slows = speed < magnitude(row, c, y.g) and slip_speed(row, c, end.n, end.F, end.ga) < 0.0
+        if slows and speed <= 10.0 * grain(mech, out, 2 * c, end):
+            return 2 * c
+    return -1
+
+
+@kernel
 def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
     """Whether trigger j is what its values say between the stages: neither an open joint's nor one almost without load.
 

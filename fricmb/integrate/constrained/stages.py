@@ -185,6 +185,25 @@ def newton_change(mech: Mech, st: Stages) -> None:
 
 #: Newton's iterations in a step before it is given up.
 ITERATIONS = 12
+#: Round-off of velocities in a Newton change, beside what the kinetic energy at the stages could bring.
+NOISE = 1e-15
+
+
+@kernel
+def is_noise(mech: Mech, st: Stages) -> bool:
+    """Whether the last changes of velocities are round-off: one that hardly moves has that of those it is tied to.
+
+    A short step begins so near its solution that nothing converges any more.
+    """
+    energy = 0.0
+    for i in range(st.V.shape[0]):
+        for a in range(st.V.shape[1]):
+            energy = max(energy, mech.mass[a] * st.V[i, a] ** 2)
+    for i in range(st.V.shape[0]):
+        for a in range(st.V.shape[1]):
+            if not abs(st.R[i, a]) <= NOISE * np.sqrt(energy / mech.mass[a]):
+                return False
+    return True
 
 
 @block
@@ -224,7 +243,11 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
                 stage_positions(y, st, h, i)
             return iteration + 1
         if iteration > 0 and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
-            return 0
+            if not is_noise(mech, st):
+                return 0
+            for i in range(s):
+                stage_positions(y, st, h, i)
+            return iteration + 1
         last = change
     return 0
 
