@@ -24,6 +24,7 @@ from fricmb.integrate.step.law_defect import law_defect
 from fricmb.integrate.step.one_step import update_port_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
+from fricmb.integrate.step.slow_slip import slow_slip_defect
 from fricmb.integrate.step.step_error import state_error
 
 #: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
@@ -139,6 +140,7 @@ def exact_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     tol = one.exact.safety * acc.rtol
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
     off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
+    off = max(off, slow_slip_defect(packed, s, y, one, acc, h))
     error = max(error, off / acc.rtol, too_long(growth(packed, s, y, one, h), one.tab.c.shape[0]))
     end = one.exact.end
     error = max(error, jump_error(packed, s, y, y.t + h, y.q + end[0], y.v + end[1], acc, h))

@@ -7,6 +7,8 @@ tails of their polynomials need not show.
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.forces import Scratch
@@ -93,25 +95,47 @@ def felt(packed: Packed, y: State, acc: Accuracy, a: int) -> float:
 
 
 @kernel
+def put_felt(packed: Packed, y: State, acc: Accuracy, k: int, weight: Floats) -> None:
+    """``felt`` of the rows of contact k into ``weight`` (3,)."""
+    first = packed.ports.row[k]
+    for a in range(first, packed.ports.row[k + 1]):
+        weight[a - first] = felt(packed, y, acc, a)
+
+
+@kernel
+def smooth_defect(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, j: int, line: Floats, gap: float,
+    h: float, weight: Floats,
+) -> float:  # fmt: skip
+    """Largest error, by its own scale, that smooth law k, asked by ``line``, leaves in a gap before node j of a step h.
+
+    ``weight``: see ``put_felt``.
+    """
+    ports, w = packed.ports, one.w
+    first, z0 = ports.row[k], ports.z_start[k]
+    worst = 0.0
+    load = max(by_line(line, y.N[k], w.N, k), 0.0) if y.mode[k] != OPEN else 0.0
+    ask_between(ports, packed.laws, s, k, line, y.g, w.g, load, y.z, w.z)
+    for a in range(ports.row[k + 1] - first):
+        off = force_off(ports, s, k, a, line, y.F, w.F, ports.D[first + a, first + a], gap, h)
+        worst = max(worst, gap * off * weight[a])
+    for a in range(ports.z_start[k + 1] - z0):
+        size = max(acc.z[z0 + a], abs(y.z[z0 + a]), abs(w.z[j, z0 + a]), one.noise_z[z0 + a], 1e-290)
+        worst = max(worst, rate_off(ports, s, k, a, line, y.zd, w.zd, gap) / size)
+    return worst
+
+
+@kernel
 def law_defect(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
     """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the nodes."""
-    ports, c, w = packed.ports, one.tab.c, one.w
+    c = one.tab.c
     worst = 0.0
     for k in range(y.mode.shape[0]):
-        if ports.law[k] != LAW_SMOOTH:
+        if packed.ports.law[k] != LAW_SMOOTH:
             continue
-        z0 = ports.z_start[k]
+        weight = np.empty(3)
+        put_felt(packed, y, acc, k, weight)
         for j in range(c.shape[0]):
             gap = h * (c[j] - (c[j - 1] if j > 0 else 0.0))
-            line = one.tab.mid[j]
-            load = max(by_line(line, y.N[k], w.N, k), 0.0) if y.mode[k] != OPEN else 0.0
-            ask_between(ports, packed.laws, s, k, line, y.g, w.g, load, y.z, w.z)
-            for a in range(ports.row[k + 1] - ports.row[k]):
-                D = ports.D[ports.row[k] + a, ports.row[k] + a]
-                off = force_off(ports, s, k, a, line, y.F, w.F, D, gap, h)
-                if off > 0.0:
-                    worst = max(worst, gap * off * felt(packed, y, acc, ports.row[k] + a))
-            for a in range(ports.z_start[k + 1] - z0):
-                size = max(acc.z[z0 + a], abs(y.z[z0 + a]), abs(w.z[j, z0 + a]), one.noise_z[z0 + a], 1e-290)
-                worst = max(worst, rate_off(ports, s, k, a, line, y.zd, w.zd, gap) / size)
+            worst = max(worst, smooth_defect(packed, s, y, one, acc, k, j, one.tab.mid[j], gap, h, weight))
     return worst

@@ -18,6 +18,7 @@ from fricmb.integrate.step.law_defect import law_defect
 from fricmb.integrate.step.one_step import state_noise
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
+from fricmb.integrate.step.slow_slip import slow_slip_defect
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 #: Relative round-off of a number.
@@ -100,6 +101,7 @@ def radau_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
         size_q = max(size_q, acc.floor_q[i], 1e-10 * top_q, h * size_v)
         worst = max(worst, abs(e_v) / size_v, abs(e_q) / size_q)
     worst = max(worst, state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
+    worst = max(worst, slow_slip_defect(packed, s, y, one, acc, h))
     worst = max(worst / acc.rtol, too_long(growth(packed, s, y, one, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     return float(max(worst, unseen_force(packed, y, one, acc, h)))

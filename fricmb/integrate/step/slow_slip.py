@@ -1,0 +1,189 @@
+"""Laws without stick where slip is slow or turns within a step: a peak or a corner of the law between two nodes.
+
+Most of what a law of slip speed does it does near r = 0: a regularised law turns its force over there.  A step that
+passes there fast, sets out from there or ends there, may have all of that between two nodes, where no polynomial
+through the nodes shows it.  And slip speed that turns between two nodes may pass a corner of the law and come back.
+So the law is asked on both sides of where slip is slowest, or turns, at distances that are quartered until what
+happens still nearer cannot matter any more.  What the force is off from its polynomial, times the distance, adds up
+to the impulse that the step has missed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.state import State
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
+from fricmb.integrate.step.crossing import evaluate, polynomial
+from fricmb.integrate.step.law_defect import put_felt, smooth_defect
+from fricmb.integrate.step.one_step_room import Accuracy, OneStep
+from fricmb.integrate.step.tableau import Tableau
+
+#: Part of the slip speed at the one node below which slip is slow at the other.
+SLOW = 0.5
+#: Part of the tolerance by which slip speed has to change, where it turns, for the law to be asked there.
+FLAT = 1e-3
+#: Part of the tolerance that what is not looked at may reach; times the forces at the nodes that a law may be there.
+UNSEEN, ABOVE = 0.5, 2.0
+#: By what distances are shortened; how often at most, as steps of the search for a turn, found to that part of a gap.
+NEARER, TIMES, WITHIN = 0.25, 40, 1e-12
+
+
+@kernel
+def line_at(tab: Tableau, x: float, line: Floats) -> None:
+    """Weights (s+1,) of the values at 0 and the nodes in that of their polynomial at x, as the lines of a tableau.
+
+    Lagrange's: the product of the distances to all other points, over what it is at the point itself.
+    """
+    c, n = tab.c, tab.c.shape[0]
+    before = 1.0
+    for i in range(n + 1):
+        line[i] = tab.basis[n, i] * before
+        before *= x - (c[i - 1] if i > 0 else 0.0)
+    behind = 1.0
+    for i in range(n, -1, -1):
+        line[i] *= behind
+        behind *= x - (c[i - 1] if i > 0 else 0.0)
+
+
+@kernel
+def approach(slip: Floats2, d: int, x: float) -> float:
+    """Half the rate of r^2 at x, of the series ``slip`` (3, s+1) of a slip velocity in d directions."""
+    value = 0.0
+    for a in range(d):
+        g, slope, _ = evaluate(slip[a], x)
+        value += g * slope
+    return float(value)
+
+
+@kernel
+def turn(slip: Floats2, d: int, low: float, high: float) -> float:
+    """Where slip speed turns between two neighbouring nodes, at which it goes in opposite senses.
+
+    By straight lines, where an end that stays twice counts half (Illinois).
+    """
+    first, last = approach(slip, d, low), approach(slip, d, high)
+    within, x, moved = WITHIN * (high - low), low, 0
+    for _ in range(TIMES):
+        before = x
+        x = (low * last - high * first) / (last - first)
+        if abs(x - before) <= within:
+            break
+        rate = approach(slip, d, x)
+        if (rate < 0.0) == (last < 0.0):
+            first *= 0.5 if moved > 0 else 1.0
+            high, last, moved = x, rate, 1
+        else:
+            last *= 0.5 if moved < 0 else 1.0
+            low, first, moved = x, rate, -1
+    return x
+
+
+@kernel
+def speed(slip: Floats2, d: int, x: float) -> float:
+    """Slip speed at x."""
+    value = 0.0
+    for a in range(d):
+        value += evaluate(slip[a], x)[0] ** 2
+    return float(value**0.5)
+
+
+@kernel
+def largest_force(packed: Packed, y: State, one: OneStep, k: int) -> float:
+    """Largest force of contact k at the start of a step and at its nodes."""
+    value = magnitude(packed.ports.row, k, y.F)
+    for j in range(one.w.F.shape[0]):
+        value = max(value, magnitude(packed.ports.row, k, one.w.F[j]))
+    return float(value)
+
+
+@kernel
+def missed(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, j: int, x: float, way: float, h: float,
+    line: Floats, weight: Floats,
+) -> float:  # fmt: skip
+    """Sum of what law k misses at x + way/4, x + way/16, ... of the step h, before node j.
+
+    As an error by its own scale; ``weight``: see ``put_felt``; ``line``: space.
+    """
+    most = max(weight[0], weight[1], weight[2])
+    least = UNSEEN * acc.rtol / max(ABOVE * largest_force(packed, y, one, k) * most * h, 1e-290)
+    total = 0.0
+    for _ in range(TIMES):
+        way *= NEARER
+        if abs(way) < least:
+            break
+        line_at(one.tab, x + way, line)
+        gap = h * abs(way)
+        total += smooth_defect(packed, s, y, one, acc, k, j, line, gap, h, weight)
+    return total
+
+
+@kernel
+def around(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, j: int, x: float, h: float, line: Floats,
+    weight: Floats,
+) -> float:  # fmt: skip
+    """Sum of what law k misses on both sides of x between node j and the one before it."""
+    c = one.tab.c
+    low = c[j - 1] if j > 0 else 0.0
+    off = 0.0
+    if x > low:
+        off += missed(packed, s, y, one, acc, k, j, x, low - x, h, line, weight)
+    if x < c[j]:
+        off += missed(packed, s, y, one, acc, k, j, x, c[j] - x, h, line, weight)
+    return off
+
+
+@kernel
+def contact_missed(
+    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, h: float, slip: Floats2, line: Floats,
+    weight: Floats,
+) -> float:  # fmt: skip
+    """Largest error between two neighbouring nodes where slip of contact k is slow or turns.
+
+    ``weight``: see ``put_felt``; negative where that is not known yet.
+    """
+    ports, c = packed.ports, one.tab.c
+    d = ports.row[k + 1] - ports.row[k]
+    worst = 0.0
+    low, last, rate = 0.0, magnitude(ports.row, k, y.g), approach(slip, d, 0.0)
+    for j in range(c.shape[0]):
+        here, next_rate = magnitude(ports.row, k, one.w.g[j]), approach(slip, d, c[j])
+        x = -1.0
+        if rate * next_rate < 0.0:
+            x = turn(slip, d, low, c[j])
+            if abs(speed(slip, d, x) - (min(last, here) if rate < 0.0 else max(last, here))) < FLAT * acc.rtol * here:
+                x = -1.0
+        elif min(last, here) < SLOW * max(last, here):
+            x = low if last < here else c[j]
+        if x >= 0.0:
+            if weight[0] < 0.0:
+                weight[:3] = 0.0
+                put_felt(packed, y, acc, k, weight)
+            worst = max(worst, around(packed, s, y, one, acc, k, j, x, h, line, weight))
+        low, last, rate = c[j], here, next_rate
+    return worst
+
+
+@kernel
+def slow_slip_defect(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Largest error, by its own scale, of what laws without stick do between nodes where slip is slow or turns."""
+    ports, n_s = packed.ports, one.tab.c.shape[0]
+    worst = 0.0
+    for k in range(y.mode.shape[0]):
+        if ports.law[k] != LAW_SMOOTH or y.mode[k] == OPEN:
+            continue
+        space = np.empty((5, n_s + 1))
+        first = ports.row[k]
+        for a in range(first, ports.row[k + 1]):
+            for j in range(n_s):
+                one.margin[j] = one.w.g[j, a]
+            polynomial(one.tab, y.g[a], one.margin, space[2 + a - first])
+        space[0, 0] = -1.0
+        worst = max(worst, contact_missed(packed, s, y, one, acc, k, h, space[2:], space[1], space[0]))
+    return worst
