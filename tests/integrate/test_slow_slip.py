@@ -59,3 +59,17 @@ def test_a_short_dip_below_the_corner_of_a_law_is_seen(dips, method, rtol):
     scene, grid, (q, v) = dips
     solution = fm.simulate(scene, t_end=6.0, rtol=rtol, method=method, t_eval=grid)
     assert largest_error(solution, q, v) < 5 * rtol
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+def test_the_peak_of_a_law_behind_a_reversal_is_seen(method):
+    # slip passes v_s within 1e-4 of a period; a step over it loses the impulse of the peak at each of ten reversals
+    grid = np.linspace(0.0, 4.0, 101)
+    body = fm.Body("b", mass=1.0, position={"x": 3.63}, velocity={"x": -1e-9})
+    law = fm.laws.Stribeck(mu_s=0.8, mu_k=0.66, v_s=0.0016)
+    parts = [fm.Spring("k", body, axis="x", stiffness=4.3), fm.Contact("c", body, law=law, normal_force=1.0)]
+    scene = fm.Scene("s", [body, *parts])
+    series = fm.simulate(scene, t_end=4.0, rtol=1e-11, method="taylor", t_eval=grid)
+    for rtol in (1e-6, 1e-7, 1e-8):
+        solution = fm.simulate(scene, t_end=4.0, rtol=rtol, method=method, t_eval=grid)
+        assert largest_error(solution, series.q[0], series.v[0]) < 3 * rtol

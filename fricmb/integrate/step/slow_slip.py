@@ -1,11 +1,11 @@
-"""Laws without stick where slip is slow or turns within a step: a peak or a corner of the law between two nodes.
+"""Laws of slip speed where slip is slow or turns within a step: a peak or a corner of the law between two nodes.
 
-Most of what a law of slip speed does it does near r = 0: a regularised law turns its force over there.  A step that
-passes there fast, sets out from there or ends there, may have all of that between two nodes, where no polynomial
-through the nodes shows it.  And slip speed that turns between two nodes may pass a corner of the law and come back.
-So the law is asked on both sides of where slip is slowest, or turns, at distances that are quartered until what
-happens still nearer cannot matter any more.  What the force is off from its polynomial, times the distance, adds up
-to the impulse that the step has missed.
+Most of what a law of slip speed does it does near r = 0: a regularised law turns its force over, a coefficient that
+falls with speed has its peak.  A step that passes there fast, sets out from there or ends there, may have all of that
+between two nodes, where no polynomial through the nodes shows it.  And slip speed that turns between two nodes may pass
+a corner of the law and come back.  So the law is asked on both sides of where slip is slowest, or turns, at distances
+that are quartered until what happens still nearer cannot matter any more.  What the force is off from its polynomial,
+times the distance, adds up to the impulse that the step has missed.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, Floats, Floats2
 from fricmb.integrate.step.crossing import evaluate, polynomial
-from fricmb.integrate.step.law_defect import put_felt, smooth_defect
+from fricmb.integrate.step.law_defect import ROUND_OFF, put_felt, smooth_defect
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.tableau import Tableau
+from fricmb.integrate.step.tableau import Tableau, by_line
 
 #: Part of the slip speed at the one node below which slip is slow at the other.
 SLOW = 0.5
@@ -93,6 +93,24 @@ def speed(slip: Floats2, d: int, x: float) -> float:
 
 
 @kernel
+def coefficient_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, line: Floats) -> float:
+    """What friction of contact k, whose law is a coefficient, is off from the polynomial of its size."""
+    ports, w = packed.ports, one.w
+    r = 0.0
+    for a in range(ports.row[k], ports.row[k + 1]):
+        r += by_line(line, y.g[a], w.g, a) ** 2
+    N = max(by_line(line, y.N[k], w.N, k), 0.0)
+    top = magnitude(ports.row, k, y.F)
+    size = line[0] * top
+    for j in range(w.F.shape[0]):
+        here = magnitude(ports.row, k, w.F[j])
+        size += line[j + 1] * here
+        top = max(top, here)
+    mu = coefficient(ports, packed.laws, k, s, r**0.5, N)[0]
+    return float(max(abs(mu * N - size) - ROUND_OFF * top, 0.0))
+
+
+@kernel
 def largest_force(packed: Packed, y: State, one: OneStep, k: int) -> float:
     """Largest force of contact k at the start of a step and at its nodes."""
     value = magnitude(packed.ports.row, k, y.F)
@@ -119,7 +137,10 @@ def missed(
             break
         line_at(one.tab, x + way, line)
         gap = h * abs(way)
-        total += smooth_defect(packed, s, y, one, acc, k, j, line, gap, h, weight)
+        if packed.ports.law[k] == LAW_SMOOTH:
+            total += smooth_defect(packed, s, y, one, acc, k, j, line, gap, h, weight)
+        else:
+            total += gap * coefficient_off(packed, s, y, one, k, line) * most
     return total
 
 
@@ -155,7 +176,7 @@ def contact_missed(
     for j in range(c.shape[0]):
         here, next_rate = magnitude(ports.row, k, one.w.g[j]), approach(slip, d, c[j])
         x = -1.0
-        if rate * next_rate < 0.0:
+        if rate < 0.0 < next_rate or (rate > 0.0 > next_rate and ports.law[k] == LAW_SMOOTH):
             x = turn(slip, d, low, c[j])
             if abs(speed(slip, d, x) - (min(last, here) if rate < 0.0 else max(last, here))) < FLAT * acc.rtol * here:
                 x = -1.0
@@ -171,12 +192,19 @@ def contact_missed(
 
 
 @kernel
+def asked(packed: Packed, y: State, k: int) -> bool:
+    """Whether friction of contact k follows its slip speed."""
+    law = packed.ports.law[k]
+    return bool(y.mode[k] != OPEN if law == LAW_SMOOTH else law != LAW_CONSTANT and y.mode[k] == SLIP)
+
+
+@kernel
 def slow_slip_defect(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
-    """Largest error, by its own scale, of what laws without stick do between nodes where slip is slow or turns."""
+    """Largest error, by its own scale, of what laws of slip speed do between nodes where slip is slow or turns."""
     ports, n_s = packed.ports, one.tab.c.shape[0]
     worst = 0.0
     for k in range(y.mode.shape[0]):
-        if ports.law[k] != LAW_SMOOTH or y.mode[k] == OPEN:
+        if not asked(packed, y, k):
             continue
         space = np.empty((5, n_s + 1))
         first = ports.row[k]
