@@ -73,3 +73,16 @@ def test_the_peak_of_a_law_behind_a_reversal_is_seen(method):
     for rtol in (1e-6, 1e-7, 1e-8):
         solution = fm.simulate(scene, t_end=4.0, rtol=rtol, method=method, t_eval=grid)
         assert largest_error(solution, series.q[0], series.v[0]) < 3 * rtol
+
+
+def test_a_law_much_steeper_than_the_tolerance_of_velocities_does_not_make_steps_creep():
+    # aging at rest: slip of 1e-9 is where the force is, and 1e-5 is what velocities may be wrong by at rtol 1e-2
+    body, belt = fm.Body("b", mass=1.0, velocity={"x": 0.3}), fm.Driven("belt", velocity={"x": 0.3})
+    law, grid = fm.laws.RateAndState.example(), np.linspace(0.0, 6.0, 61)
+    parts = [fm.Spring("k", body, axis="x", stiffness=10.0), fm.Contact("c", body, belt, law=law, normal_force=2.0)]
+    scene = fm.Scene("s", [body, belt, *parts])
+    tight = fm.simulate(scene, t_end=6.0, rtol=1e-10, method="collocation", t_eval=grid)
+    for rtol in (1e-2, 1e-3, 1e-4, 1e-5):
+        solution = fm.simulate(scene, t_end=6.0, rtol=rtol, method="radau", t_eval=grid)
+        assert solution.stats.n_steps + solution.stats.n_rejected < 300
+        assert largest_error(solution, tight.q[0], tight.v[0]) < rtol

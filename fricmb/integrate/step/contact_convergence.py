@@ -11,6 +11,8 @@ from fricmb.integrate.step.contact_unknowns import PortState
 
 #: Part of the tolerance of velocities that the force of a law's state may move a contact by without being looked at.
 UNFELT = 1e-6
+#: Part of its largest value to which the force of a smooth law is found; least part of the tolerance asked for so.
+KNOWN, FINEST = 1e-5, 1e-6
 #: Round-off of forces, in parts of their size, that redundant contacts may go on to exchange.
 LAST_DIGITS = 1e-15
 
@@ -127,6 +129,23 @@ def state_miss(ports: Ports, w: PortState, hA: Floats2, tol: Floats, i: int, k: 
 
 
 @kernel
+def speed_allowed(w: PortState, tol: float, i: int, a: int) -> float:
+    """Residual of slip speed that a smooth law may leave on row a at stage i: the tolerance, or a part of what it does.
+
+    In a short step a force that is quite wrong moves nothing by more than the tolerance.  But a law that turns over
+    within less than that then leaves slip on any side of rest, and the next steps have to get away from there.
+    """
+    mi = w.Fin.shape[1]
+    done = 0.0
+    for c in range(w.F.shape[1]):
+        force = 0.0
+        for j in range(w.F.shape[0]):
+            force = max(force, abs(w.F[j, c]))
+        done += force * abs(w.G[i * mi + a, i * mi + c])
+    return float(min(tol, max(KNOWN * done, FINEST * tol)))
+
+
+@kernel
 def smooth_miss(ports: Ports, w: PortState, hA: Floats2, mode: Codes, tol: Floats) -> float:
     """Largest residual in ``rhs`` of the equations of smooth laws, in units of what is allowed.
 
@@ -141,7 +160,7 @@ def smooth_miss(ports: Ports, w: PortState, hA: Floats2, mode: Codes, tol: Float
             if ports.law[k] != LAW_SMOOTH:
                 continue
             for a in range(ports.row[k], ports.row[k + 1]):
-                off = abs(w.rhs[i * u1 + a]) / max(tol[k], round_off(w, i, mi, a, w.g[i, a]))
+                off = abs(w.rhs[i * u1 + a]) / max(speed_allowed(w, tol[k], i, a), round_off(w, i, mi, a, w.g[i, a]))
                 miss = max(miss, off) if off < np.inf else np.inf
             for a in range(ports.z_start[k], ports.z_start[k + 1]):
                 off = state_miss(ports, w, hA, tol, i, k, a, abs(w.rhs[i * u1 + m + a]))
