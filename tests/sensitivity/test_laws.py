@@ -12,6 +12,8 @@ from .differences import said, shares_off
 _LEFT_OUT = {"Contensou"}
 #: Of many elements, whose kinks cost a step each.
 _COSTLY = {"ElastoPlastic", "GeneralisedMaxwellSlip", "Iwan", "Leuven"}
+#: Where the force jumps ``radau`` leaves some 1e-6 at every tolerance: no ground for differences of runs.
+_METHODS = {"Karnopp": "collocation"}
 _SITUATIONS = ("reversal", "stick-slip")
 _RTOL = 1e-8
 
@@ -28,9 +30,9 @@ def _of(name: str, situation: str):
 def test_law(name, situation):
     """To a thousand tolerances of the largest derivative, or a note says to how much."""
     scene, names = _of(name, situation)
-    t_end = SITUATIONS[situation].t_end
-    sol = fm.simulate(scene, t_end=t_end, rtol=_RTOL, sensitivities=names)
-    off = shares_off(sol, names, enough=1e3 * _RTOL, t_end=t_end)
+    given = {"t_end": SITUATIONS[situation].t_end, "method": _METHODS.get(name, "auto")}
+    sol = fm.simulate(scene, rtol=_RTOL, sensitivities=names, **given)
+    off = shares_off(sol, names, enough=1e3 * _RTOL, **given)
     assert off
     assert max(off.values()) < max(said(sol), default=1e3 * _RTOL), (off, sol.stats.notes)
 
