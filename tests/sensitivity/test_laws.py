@@ -12,7 +12,7 @@ from .differences import said, shares_off
 _LEFT_OUT = {"Contensou"}
 #: Of many elements, whose kinks cost a step each.
 _COSTLY = {"ElastoPlastic", "GeneralisedMaxwellSlip", "Iwan", "Leuven"}
-#: Where the force jumps ``radau`` leaves some 1e-6 at every tolerance: no ground for differences of runs.
+#: Of a state that makes no force for a while ``radau`` leaves 1e-5, at every tolerance: no ground for differences.
 _METHODS = {"Karnopp": "collocation"}
 _SITUATIONS = ("reversal", "stick-slip")
 _RTOL = 1e-8
