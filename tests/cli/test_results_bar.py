@@ -47,6 +47,7 @@ def test_a_scene_without_contacts_has_fewer_pictures(capsys, monkeypatch, tmp_pa
 
 @pytest.mark.parametrize("option", ["--quiet", "--json"])
 def test_it_can_be_silenced(capsys, monkeypatch, tmp_path, option):
+    monkeypatch.setenv("FRICMB_QUIET", "")  # what --quiet sets goes with the test
     on_a_terminal(monkeypatch)
     assert main([*RUN, option, "--no-plots", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().err == ""
