@@ -264,6 +264,40 @@ def test_what_a_handler_raises_comes_out_of_a_hanging_kernel():
         signal.signal(signal.SIGALRM, before)
 
 
+@entry
+def ask(times):
+    """How many of so many questions are answered with yes."""
+    yes = 0
+    for _ in range(int(times)):
+        yes += stopped()
+    return yes
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_a_kernel_that_is_not_watched_takes_no_signal():
+    """It would swallow what the handler raised, and answer yes from then on, in runs that nobody ends."""
+
+    class Mine(Exception):
+        pass
+
+    def handler(number, frame):
+        raise Mine
+
+    def later():
+        while True:
+            assert ask(3e6) == 0
+
+    watched(ask, 1.0)  # compiled, and this thread has words
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(Mine):
+            later()
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert ask(1000.0) == 0
+
+
 def test_threads_have_limits_of_their_own():
     found = {}
 

@@ -32,8 +32,9 @@ SHARED = KEY + 1
 #: (nanoseconds); type, value and traceback of an exception that was fetched.
 FLAG, COUNT, DUE, RAISED = range(4)
 OWN = RAISED + 3
-#: Questions between two looks at the clock; nanoseconds between two calls into Python.
-QUESTIONS, EVERY = 4, 50_000_000
+#: Questions between two looks at the clock; nanoseconds between two calls into Python; when one is due in a kernel that
+#: is not watched, as where rows are sampled: what a signal's handler raised would be lost there.
+QUESTIONS, EVERY, NEVER = 4, 50_000_000, 1 << 62
 _SYMBOL = "fricmb_shared_words"
 _shared = np.zeros(SHARED, dtype=np.int64)
 llvmlite.binding.add_symbol(_SYMBOL, _shared.ctypes.data)
@@ -180,5 +181,6 @@ def own_words() -> Ints:
     words: Ints | None = getattr(_local, "words", None)
     if words is None:
         words = _local.words = np.zeros(OWN, dtype=np.int64)
+        words[DUE] = NEVER
         _keep(words.ctypes.data)
     return words
