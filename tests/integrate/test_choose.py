@@ -217,3 +217,34 @@ def test_few_contacts_that_taylor_steps_cannot_finish_keep_their_accuracy(monkey
     sol = fm.simulate(scene, t_end=5.0)
     assert sol.stats.method == "bdf"
     np.testing.assert_allclose(sol.q[:, -1], good.q[:, -1], rtol=1e-12)
+
+
+def full(n):
+    """As many masses as that, each tied to each other one, one of them on a belt."""
+    shapes = np.linalg.qr(np.random.default_rng(0).standard_normal((n, n)))[0]
+    K = shapes @ np.diag(np.linspace(1.0, n / 2, n) ** 2) @ shapes.T
+    bodies = [fm.Body(f"b{i}", mass=1.0) for i in range(n)]
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    ties = fm.MatrixElement("ties", [f"b{i}.x" for i in range(n)], K=0.5 * (K + K.T))
+    return fm.Scene("full", [*bodies, belt, ties, fm.Contact("c", bodies[0], belt, law=COULOMB, normal_force=1.0)])
+
+
+def bar(n):
+    """A bar by its modes, its end on a belt."""
+    body = fm.ModalBody(
+        "bar", frequencies=np.arange(1.0, n + 1.0), damping_ratios=0.002, shapes={"tip": np.ones((1, n))}, axes="x"
+    )
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    return fm.Scene("bar", [body, belt, fm.Contact("c", body.point("tip"), belt, law=COULOMB, normal_force=1.0)])
+
+
+@pytest.mark.parametrize(
+    ("scene", "method"),
+    [
+        pytest.param(bar(200), "collocation", id="modes: Taylor steps took 30 times as long"),
+        pytest.param(full(120), "collocation", id="all coupled: Taylor steps took 80 times as long"),
+        pytest.param(row(150, COULOMB, contacts=1), "taylor", id="a narrow band, whose modes take longer to find"),
+    ],
+)
+def test_one_contact_on_many_degrees_of_freedom(scene, method):
+    assert fm.simulate(scene, t_end=0.1).stats.method == method

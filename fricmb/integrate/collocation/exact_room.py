@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
-from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks, inverse_mass
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.once_per import lent_per, once_per
@@ -94,7 +94,7 @@ HELD_NUMBERS = 3_000_000
 def _exact(problem: Problem, s: int) -> Exact:
     n, forms, part, table = problem.n, port_forms(problem), free_blocks(problem), nodes(s)
     b, n_in, n_o = len(part.w2), forms.B.shape[1], len(forms.by_v)
-    Minv = np.linalg.inv(problem.linear.M) if n else np.zeros((0, 0))
+    Minv = inverse_mass(problem.linear.M)
     c = np.stack([forms.by_q @ part.q_u + forms.by_v @ part.v_u, forms.by_q @ part.q_v + forms.by_v @ part.v_v])
     by = np.stack([(part.force_0 @ forms.B).T, (part.force_1 @ forms.B).T])
     for weights in (c, by):

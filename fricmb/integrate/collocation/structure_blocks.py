@@ -6,6 +6,7 @@ that the stuck motion zeta (``zeta' = w``) brings no inertia coupling.  (eta, et
     u' = v + e0,   v' = -w2 u - d v + e1,
 
 modes where damping is proportional (then forces enter v alone), else one block to a complex pair or two real poles.
+Where the free structure has modes and many of them, those with one or two rows stuck follow from them (``held_modes``).
 """
 
 from __future__ import annotations
@@ -18,7 +19,11 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from fricmb.integrate.array_cache import cached_by_content
+from fricmb.integrate.collocation.held_modes import held_modes
 from fricmb.integrate.problem import Floats
+
+#: Degrees of freedom from which on poles with rows stuck are sought from the free modes.
+MANY = 64
 
 #: A pole of the state matrix with its eigenvector.
 Pole = tuple[complex, NDArray[np.complex128]]
@@ -58,35 +63,48 @@ class Blocks:
     modal: bool
 
 
+def is_diagonal(matrix: Floats) -> bool:
+    """Whether a matrix is square and has nothing beside its diagonal."""
+    rows, columns = matrix.shape
+    return bool(rows == columns and np.count_nonzero(matrix) == np.count_nonzero(np.diagonal(matrix)))
+
+
+def inverse_mass(M: Floats) -> Floats:
+    """Inverse of the mass matrix."""
+    return np.diag(1.0 / np.diagonal(M)) if is_diagonal(M) else np.asarray(np.linalg.inv(M), dtype=float)
+
+
 def _inverse_factor(M: Floats) -> Floats:
     """Inverse of the lower factor of the mass matrix."""
-    diagonal = np.diagonal(M)
-    if np.count_nonzero(M) == np.count_nonzero(diagonal):
-        inverse = np.zeros(M.shape)
-        inverse.ravel()[:: len(M) + 1] = 1.0 / np.sqrt(diagonal)
-        return inverse
+    if is_diagonal(M):
+        return np.diag(1.0 / np.sqrt(np.diagonal(M)))
     return np.asarray(scipy.linalg.solve_triangular(np.linalg.cholesky(M), np.eye(len(M)), lower=True))
-
-
-def _null_basis(Linv: Floats, W: Floats) -> Floats:
-    """M-orthonormal basis of the motions with W^T q = 0; dof by dof where W is empty and M diagonal."""
-    if W.shape[1] == 0:
-        return np.asarray(Linv.T)
-    full, _ = np.linalg.qr(Linv @ W, mode="complete")
-    return np.asarray(Linv.T @ full[:, W.shape[1] :])
 
 
 @cached_by_content
 def _held(M: Floats, W: Floats, stuck: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Motions (n, b) that the rows ``stuck`` of W leave, and those (n, m) that move one of these rows alone."""
-    rows = list(stuck)
+    """Motions (n, b) that the rows ``stuck`` of W leave, orthonormal in M, and :func:`_moved` by these rows."""
     Linv = _inverse_factor(M)
-    Wz = W[:, rows]
-    G = np.zeros((len(M), W.shape[1]))
-    if rows:
-        MW = Linv.T @ (Linv @ Wz)
-        G[:, rows] = MW @ np.linalg.inv(Wz.T @ MW)
-    return _null_basis(Linv, Wz), G
+    if not stuck:
+        return np.asarray(Linv.T), np.zeros(W.shape)
+    full, _ = np.linalg.qr(Linv @ W[:, list(stuck)], mode="complete")
+    return np.asarray(Linv.T @ full[:, len(stuck) :]), _moved(Linv, W, stuck)
+
+
+def _moved(Linv: Floats, W: Floats, stuck: tuple[int, ...]) -> Floats:
+    """Motions (n, m) that move one of the rows ``stuck`` alone, 0 for other rows."""
+    Wz, G = W[:, list(stuck)], np.zeros(W.shape)
+    MW = Linv.T @ (Linv @ Wz)
+    G[:, list(stuck)] = MW @ np.linalg.inv(Wz.T @ MW)
+    return G
+
+
+def _in_basis(matrix: Floats, N: Floats) -> Floats:
+    """``N^T matrix N``."""
+    if is_diagonal(N):
+        scale = np.diagonal(N)
+        return np.asarray(scale[:, None] * matrix * scale)
+    return np.asarray(N.T @ matrix @ N)
 
 
 def _size(matrix: Floats) -> float:
@@ -102,13 +120,10 @@ def _off_diagonal(n: int) -> Floats:
 
 def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
     """Modes that diagonalise K and C together: (w2, d, vectors), or None."""
+    if is_diagonal(K) and is_diagonal(C):  # uncoupled as it is
+        return _not_round_off(K.diagonal(), _size(K)), C.diagonal().copy(), np.eye(len(K))
     off = _off_diagonal(len(K))
-    undamped = not np.count_nonzero(C)
-    if undamped and not np.count_nonzero(off * K):  # uncoupled as it is
-        w2 = K.diagonal().copy()
-        w2[np.abs(w2) < 1e-14 * _size(w2)] = 0.0
-        return w2, np.zeros(len(K)), np.eye(len(K))
-    size_k, size_c = _size(K), 0.0 if undamped else _size(C)
+    size_k, size_c = _size(K), _size(C)
     if not (_is_symmetric(K, size_k) and _is_symmetric(C, size_c)):
         return None
     mixed = K if size_c == 0.0 else K + C * (0.6180339887 * size_k / size_c if size_k else 1.0)
@@ -118,9 +133,12 @@ def _proportional(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats] | None:
     for matrix, size in ((Km, size_k), (Cm, size_c)):
         if size and _size(off * matrix) > 1e-13 * max(size, 1e-300) * len(K):
             return None
-    w2 = Km.diagonal().copy()
-    w2[np.abs(w2) < 1e-14 * size_k] = 0.0
-    return w2, Cm.diagonal().copy(), E
+    return _not_round_off(Km.diagonal(), size_k), Cm.diagonal().copy(), E
+
+
+def _not_round_off(w2: Floats, size: float) -> Floats:
+    """Squares of frequencies, those that are nothing beside ``size`` as 0."""
+    return np.where(np.abs(w2) < 1e-14 * size, 0.0, w2)
 
 
 def _is_symmetric(matrix: Floats, size: float) -> bool:
@@ -183,18 +201,42 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     return w2, d, T
 
 
+def _from_free(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -> Blocks | None:
+    """Blocks with one or two rows stuck from the modes of the free structure; None where it has none."""
+    free = blocks(M, K, C, W[:, :0], ())
+    found = held_modes(free.w2, free.d, free.q_u.T @ W[:, list(stuck)]) if free.modal else None
+    if found is None:
+        return None
+    by_state = {name: _by_dofs(free.q_u, getattr(found, name)) for name in ("q_u", "q_v", "v_u", "v_v")}
+    by_force = {name: _by_dofs(free.q_u, getattr(found, name).T).T for name in ("force_0", "force_1")}
+    return Blocks(
+        w2=found.w2, d=found.d, **by_state, **{name: np.ascontiguousarray(x) for name, x in by_force.items()},
+        stuck_motion=_moved(_inverse_factor(M), W, stuck),
+        modal=not (np.any(found.q_v) or np.any(found.v_u)),
+    )  # fmt: skip
+
+
+def _by_dofs(shapes: Floats, by_mode: Floats) -> Floats:
+    """What is given by free modes, by degrees of freedom."""
+    return np.diagonal(shapes)[:, None] * by_mode if is_diagonal(shapes) else np.asarray(shapes @ by_mode)
+
+
 @cached_by_content
 def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -> Blocks:
     """The structure M q'' + C q' + K q with the rows ``stuck`` of W held; raises NoBlocks where it has no such form."""
+    if len(M) >= MANY and 1 <= len(stuck) <= 2:
+        made = _from_free(M, K, C, W, stuck)
+        if made is not None:
+            return made
     N, G = _held(M, W, stuck)
     n, b = N.shape
-    Kz = N.T @ K @ N
-    Cz = N.T @ C @ N if np.count_nonzero(C) else np.zeros((b, b))
+    Kz = _in_basis(K, N)
+    Cz = _in_basis(C, N) if np.count_nonzero(C) else np.zeros((b, b))
     proportional = _proportional(Kz, Cz)
     solid = np.ascontiguousarray
     if proportional is not None:
         w2, d, E = proportional
-        shapes, nothing = N @ E, np.zeros((n, b))
+        shapes, nothing = N * np.diagonal(E) if is_diagonal(E) else N @ E, np.zeros((n, b))
         return Blocks(
             w2=w2, d=d, q_u=shapes, q_v=nothing, v_u=nothing, v_v=shapes, force_0=np.zeros((b, n)),
             force_1=solid(shapes.T), stuck_motion=G, modal=True,

@@ -14,7 +14,7 @@ from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
-from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks, inverse_mass
 from fricmb.integrate.compile.piece import Pattern, Piece
 from fricmb.integrate.model.friction_cone import stick_limits
 from fricmb.integrate.once_per import once_per
@@ -71,7 +71,7 @@ def load_pattern(n: int, m: int) -> Pattern:
 @cached_by_content
 def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
     """Inverse mass, motion of the dofs per contact force, Delassus matrix, its inverse, what holds the rows."""
-    Minv = np.asarray(np.linalg.inv(M), dtype=float)
+    Minv = inverse_mass(M)
     MW = Minv @ W
     D = W.T @ MW
     Dinv = np.asarray(np.linalg.inv(D), dtype=float)
