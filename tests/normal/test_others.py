@@ -130,3 +130,48 @@ def test_a_block_bounces_on_for_ever(t_end, method):
         found = np.array([event.t for event in sol.events if event.kind == kind])
         expected = np.arange(first, t_end, flight + touch)
         np.testing.assert_allclose(found, expected, atol=1e-7 * t_end)
+
+
+def shaken(*, mass, stiffness, tie, aside, preload, position, velocity, belt, frequency, normal, law):
+    """A block on a belt, held by a spring and by one at an angle, whose load a force takes away and gives back."""
+    block = fm.Body("b", mass=mass, axes="xy", position={"x": position}, velocity={"x": velocity})
+    drive = fm.Driven("belt", velocity={"x": belt})
+    pressed = normal(axis="y", stiffness=stiffness, preload=preload)
+    return fm.Scene("shaken", [
+        block, drive, fm.Spring("k", block, axis="x", stiffness=tie),
+        fm.Damper("c", block, axis="x", damping=0.02 * np.sqrt(tie * mass)),
+        fm.Force("f", block, axis="y", value=preload * sympy.sin(frequency * fm.t)),
+        fm.Spring("kc", block, axis=(0.6, 0.8), stiffness=aside),
+        fm.Contact("c0", block, drive, law=law, normal_force=pressed),
+    ])  # fmt: skip
+
+
+FALLING = fm.laws.Coulomb(mu_s=0.5, mu_k=0.3)
+#: Scene, method, tolerances at which slip was ended as it began (tens of thousands of transitions, or none any more).
+#: The number of transitions is that of a loop over events of SciPy's DOP853.
+LOADS_THAT_GO = {
+    "power": (
+        {"mass": 0.7714085958502765, "stiffness": 34715.136305057524, "tie": 5.0754385707593475,
+         "aside": 1.023343315168908, "preload": 0.1195005658785288, "position": 0.08611772388886596,
+         "velocity": -0.5958310843548427, "belt": 0.5403000210386928, "frequency": 4.31082532561575,
+         "normal": fm.normal.Hertz, "law": FALLING},
+        [("collocation", 1e-3), ("collocation", 1e-5), ("bdf", 1e-4), ("radau", 1e-4)], 17,
+    ),
+    "spring": (
+        {"mass": 0.22975564067543952, "stiffness": 29455.202843127525, "tie": 1.5657062392129069,
+         "aside": 1.0827263669084366, "preload": 0.34138367214595244, "position": 0.7507089136405813,
+         "velocity": -0.507896110775552, "belt": 0.1850399047763806, "frequency": 2.009739783578,
+         "normal": fm.normal.Spring, "law": FALLING},
+        [("bdf", 1e-4), ("radau", 1e-6), ("collocation", 1e-10)], 47,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "rtol"), [(name, *run) for name, (_, runs, _) in LOADS_THAT_GO.items() for run in runs]
+)
+def test_slip_that_begins_as_its_load_goes_is_not_ended_at_once(name, method, rtol):
+    values, _, events = LOADS_THAT_GO[name]
+    sol = fm.simulate(shaken(**values), t_end=10.0, rtol=rtol, method=method, time_limit=60)
+    assert len(sol.events) == events
+    assert sol.stats.n_steps + sol.stats.n_rejected < 2000

@@ -23,7 +23,7 @@ from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Floats2
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import evaluate, polynomial
-from fricmb.integrate.step.event_functions import margin
+from fricmb.integrate.step.event_functions import BY_EITHER, margin
 from fricmb.integrate.step.one_step import finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.step_error import state_error
@@ -93,9 +93,9 @@ def move_to(
 
 
 @kernel
-def distance(packed: Packed, s: Scratch, y: State, end: State, k: int, found: Floats) -> float:
-    """Distance of contact k from its transition at ``end``."""
-    return float(margin(packed, s, y, end, along(packed.ports.row, k, end.n, end.g), k, found))
+def distance(packed: Packed, s: Scratch, y: State, end: State, k: int, beyond: float, found: Floats) -> float:
+    """Distance of contact k from its transition at ``end``; see :func:`margin`."""
+    return float(margin(packed, s, y, end, along(packed.ports.row, k, end.n, end.g), k, beyond, found))
 
 
 @kernel
@@ -159,9 +159,10 @@ def exact_root(
     first = guess
     if not move_to(packed, s, y, end, one, h, first, series, gain):
         return np.nan
-    f = distance(packed, s, y, end, k, found)
+    f = distance(packed, s, y, end, k, BY_EITHER, found)
+    beyond = found[1] if f < 0.0 else BY_EITHER
     second = first * (1.0 - OFFSET)
-    aimed = False
+    aimed = rises = False
     if y.mode[k] == SLIP and found[1] == 0.0:
         rate = slip_rate(packed, end, k)
         aimed = rate < 0.0
@@ -172,6 +173,10 @@ def exact_root(
             # what only rises from the start of the step has its root before that
             first = np.nan
             break
+        if rises:
+            # slip or contact that begins with the step, and that is no end of it
+            first = np.nan
+            break
         if f == 0.0 or (aimed and abs(second - first) <= 2.0 * t_unit):
             if may_stay(packed, y, end, one, acc, k, h, first):
                 return -max(first, 1e-290)
@@ -179,7 +184,9 @@ def exact_root(
         if not second <= 1.5 * guess or not move_to(packed, s, y, end, one, h, second, series, gain):
             first = np.nan
             break
-        after = distance(packed, s, y, end, k, found)
+        after = distance(packed, s, y, end, k, beyond, found)
+        beyond = found[1] if after < 0.0 else beyond
+        rises = (after > f and second > first) or (after < f and second < first)
         new = max(0.0, second - after * (second - first) / (after - f)) if after != f else second
         first, f, second = second, after, new
         aimed = True

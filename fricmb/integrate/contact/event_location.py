@@ -20,7 +20,7 @@ from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.stopped import stopped
-from fricmb.integrate.step.event_functions import find_changing_contact, margin
+from fricmb.integrate.step.event_functions import BY_EITHER, find_changing_contact, margin
 from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
@@ -56,6 +56,7 @@ def locate(
     f_hi = np.nan
     step = max(x, 0.0) * h
     same = 0
+    beyond = BY_EITHER
     failures = 0
     last = one.tab.c.shape[0] - 1
     if is_exact(one) and step_error(packed, s, y, one, acc, h) <= 1.0:
@@ -92,12 +93,16 @@ def locate(
             hi = step
             f_lo = np.nan
             lo = 0.0
-            f_hi = margin(packed, s, y, end, one.w.r[last, contact], contact, found)
+            f_hi = margin(packed, s, y, end, one.w.r[last, contact], contact, BY_EITHER, found)
+            beyond = found[1] if f_hi < 0.0 else BY_EITHER
             if not f_hi < 0.0:
                 f_hi = np.nan
             step = found[0] * step
             continue
-        f = margin(packed, s, y, end, one.w.r[last, contact], contact, found)
+        f = margin(packed, s, y, end, one.w.r[last, contact], contact, beyond, found)
+        if f < 0.0 and found[1] != beyond:
+            # the other one's values tell nothing of this one's zero
+            beyond, f_lo = found[1], np.nan
         new = np.nan
         if is_exact(one):
             new = exact_root(packed, s, y, end, one, acc, contact, step, step, found)

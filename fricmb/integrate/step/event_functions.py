@@ -20,6 +20,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats
 from fricmb.integrate.step.crossing import crossing_at_points, crossing_at_stages, first_crossing
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 
+#: What a contact's transition may be told by, and neither yet: see :func:`margin`.
+BY_LAW, BY_LOAD, BY_EITHER = 0.0, 1.0, -1.0
 #: A slip speed below this part of the velocities that it is the difference of is round-off: the slip begins; so does a
 #: normal force below this part of what it reaches in the step.
 BEGINS = 1e-13
@@ -100,7 +102,8 @@ def cone_crossing(packed: Packed, s: Scratch, y: State, end: State, one: OneStep
         if unknown:
             one.margin[j] = first + one.tab.c[j] * (last - first) + hair
     one.margin[n_s - 1] = last + hair
-    if packed.ports.soft > 0.0 or held < BEGINS * limit:  # a load that sets out from 0: see ``normal_crossing``
+    # a load that sets out from 0: see ``normal_crossing``; of squares a polynomial resolves no more than of forces
+    if packed.ports.soft > 0.0 or held * held < BEGINS * limit * limit:
         x = crossing_at_stages(one.tab, first + hair, one.margin)
     else:
         x = first_crossing(one.tab, first + hair, one.margin, one.series)
@@ -131,17 +134,21 @@ def normal_crossing(packed: Packed, s: Scratch, y: State, one: OneStep, k: int) 
 
 
 @kernel
-def margin(packed: Packed, s: Scratch, y: State, end: State, speed: float, k: int, found: Floats) -> float:
+def margin(
+    packed: Packed, s: Scratch, y: State, end: State, speed: float, k: int, beyond: float, found: Floats
+) -> float:
     """Distance of contact k from its transition at ``end`` of a step from y (negative: beyond it).
 
     ``speed``: that of its slip there, negative where it would go on beyond its end.
-    ``found[1]`` becomes 1 where it is the normal force that comes to 0, else 0.
+    ``found[1]`` becomes BY_LOAD where it is the normal force that comes to 0, else BY_LAW.  ``beyond`` says which of
+    the two was found beyond its zero in the same search: a slip that has just begun is slow, and as its load goes to 0
+    now one and now the other looks nearer.
     """
     value = np.inf
     if packed.ports.var[k] >= 0:
         set_instant(packed.signals, s, end.t, end.q, end.v)
         value = normal_force(packed.ports, packed.normals, k, s)
-        found[1] = 1.0
+        found[1] = BY_LOAD
         if y.mode[k] == OPEN:
             return -value
     if packed.ports.law[k] == LAW_SMOOTH:
@@ -152,7 +159,12 @@ def margin(packed: Packed, s: Scratch, y: State, end: State, speed: float, k: in
         unit = max(y.size[packed.ports.row[k]], abs(speed)) / max(y.N[k], abs(value), 1e-290)
     else:
         other = cone_margin(packed.ports, packed.laws, k, s, end.F, end.N[k])
-    if packed.ports.var[k] < 0 or other < unit * value:
-        found[1] = 0.0
+    by_law = packed.ports.var[k] < 0 or other < unit * value
+    if packed.ports.var[k] >= 0 and beyond == BY_LAW and value >= 0.0:
+        by_law = True
+    elif beyond == BY_LOAD and other >= 0.0:
+        by_law = False
+    if by_law:
+        found[1] = BY_LAW
         return float(other)
     return value
