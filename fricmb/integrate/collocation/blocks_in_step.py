@@ -65,15 +65,15 @@ def load_at_start(packed: Packed, s: Scratch, q: Floats, f: Floats) -> None:
 @kernel
 def start_blocks(ex: Exact, v: Floats) -> None:
     """Block states at the start of a step under the load in ``f``, displacements counted from there."""
-    n = v.shape[0]
     modal = ex.modal == 1
     for j in range(ex.w2.shape[1]):
         u, w, e0, e1 = 0.0, 0.0, 0.0, 0.0
-        for i in range(n):
+        first, behind = ex.moves[0, j], ex.moves[1, j]
+        for i in range(first, behind):
             w += ex.start_1[j, i] * v[i]
             e1 += ex.force_1[j, i] * ex.f[i]
         if not modal:
-            for i in range(n):
+            for i in range(first, behind):
                 u += ex.start_0[j, i] * v[i]
                 e0 += ex.force_0[j, i] * ex.f[i]
         w2 = ex.w2[0, j]
@@ -200,7 +200,7 @@ def end_blocks(ex: Exact, slot: int, h: float) -> None:
     for i in range(ex.end.shape[1]):
         dq = 0.0
         dv = 0.0
-        for j in range(ex.w2.shape[1]):
+        for j in range(ex.moved_by[0, i], ex.moved_by[1, i]):
             dq += ex.q_u[i, j] * ex.du[j]
             dv += ex.v_v[i, j] * ex.dv[j]
             if not modal:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
-from fricmb.integrate.collocation.structure_blocks import Blocks, blocks, inverse_mass
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks, inverse_mass, is_diagonal
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.once_per import lent_per, once_per
-from fricmb.integrate.problem import Floats, Problem, Templates
+from fricmb.integrate.problem import Floats, Ints, Problem, Templates
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
 
 
@@ -73,12 +74,23 @@ def free_blocks(problem: Problem) -> Blocks:
     return once_per(linear, "free blocks", make)
 
 
+def _by_velocities(force: Floats, M: Floats) -> Floats:
+    """Block states by velocities from those by forces."""
+    return force * np.diagonal(M) if is_diagonal(M) else force @ M
+
+
 def has_ledger(problem: Problem) -> bool:
     """Whether anything but friction takes or brings energy."""
     n, linear, contacts = problem.n, problem.linear, problem.contacts
     K = linear.Kx[:n, :n]
     parts = [linear.Cx[:n, :n], contacts.w, contacts.Wn, problem.elements.table.address]
     return bool(problem.n_u > 0 or any(np.any(x) for x in parts) or np.any(K != K.T))
+
+
+def _ranges(filled: NDArray[np.bool_]) -> Ints:
+    """First and one behind the last row (2, columns) that each column fills."""
+    first, behind = filled.argmax(axis=0), len(filled) - filled[::-1].argmax(axis=0)
+    return np.where(filled.any(axis=0), np.stack([first, behind]), 0)
 
 
 def _tables(b: int, s: int, pairs: int) -> tuple[dict[str, Floats], Floats]:
@@ -114,11 +126,15 @@ def _exact(problem: Problem, s: int) -> Exact:
         "modal": part.modal and not c[0].any(), "ledger": has_ledger(problem), "unknown": forms.unknown, "held_next": 0,
         "safety": 1.0, "stiff_at": Z_EXACT[s] * 1.0001, "cap": np.inf, "fastest": fastest, "length": 0.0,
     }  # fmt: skip
+    start_0, start_1 = (_by_velocities(force, problem.linear.M) for force in (part.force_0, part.force_1))
+    filled = (part.q_u != 0) | (part.q_v != 0) | (part.v_u != 0) | (part.v_v != 0)
+    filled |= (start_0.T != 0) | (start_1.T != 0) | (part.force_0.T != 0) | (part.force_1.T != 0)
     made: dict[str, Any] = {
+        "moves": _ranges(filled), "moved_by": _ranges(filled.T),
         "w2": part.w2[None], "damp": part.d[None], "c0": c[0], "c1": c[1], "b0": by[0], "b1": by[1],
         "linked": linked.astype(float), "q_u": part.q_u, "q_v": part.q_v, "v_u": part.v_u, "v_v": part.v_v,
-        "force_0": part.force_0, "force_1": part.force_1, "start_0": part.force_0 @ problem.linear.M,
-        "start_1": part.force_1 @ problem.linear.M, "MB": (Minv @ forms.B).T, "monomial": table.monomial,
+        "force_0": part.force_0, "force_1": part.force_1, "start_0": start_0, "start_1": start_1,
+        "MB": (Minv @ forms.B).T, "monomial": table.monomial,
         "tails": table.tails, "mo": table.mo, **tables, "tk": tk, "radau": np.zeros((s, s)),
         **{name: np.zeros(b) for name in ("v0", "a0", "k0", "du", "dv")},
         "ladder": 2.0 ** (0.25 * (np.arange(RUNGS) - UNIT_RUNG)), "slots": slots,

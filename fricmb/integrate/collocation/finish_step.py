@@ -95,9 +95,9 @@ def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
     ex = one.exact
     top = widest(acc.v)
     most = 0.0
-    for i in range(y.v.shape[0]):
+    rate = max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j]))
+    for i in range(ex.moves[0, j], ex.moves[1, j]):
         size = abs(ex.v_v[i, j])
-        rate = max(math.sqrt(abs(ex.w2[0, j])), abs(ex.damp[0, j]))
         size += abs(ex.v_u[i, j]) / max(rate, 1e-290)
         if size > 0.0:
             scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
@@ -121,7 +121,7 @@ def stiff_error(y: State, one: OneStep, acc: Accuracy, h: float, tol: float) -> 
             continue
         seen = visible(y, one, acc, j, h)
         swing = 0.0
-        for i in range(y.a.shape[0]):
+        for i in range(ex.moves[0, j], ex.moves[1, j]):
             swing += ex.start_1[j, i] * y.a[i]
         if abs(swing) / rate * seen > 0.1 * tol and ex.stiff_at > 0.0:
             ex.cap = min(ex.cap, ex.stiff_at / rate)

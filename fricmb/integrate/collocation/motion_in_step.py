@@ -101,17 +101,17 @@ def block_gain(ex: Exact, j: int, h: float, tau: float, series: Floats2, terms: 
 def gains_at(ex: Exact, h: float, tau: float, series: Floats2, dq: Floats, dv: Floats) -> None:
     """Gains of positions and velocities at tau after the start of the step, after :func:`input_series`."""
     modal = ex.modal == 1
-    terms = np.empty((2, MOST + 1))
+    b = ex.w2.shape[1]
+    terms, gain = np.empty((2, MOST + 1)), np.empty((2, b))
+    for j in range(b):
+        gain[0, j], gain[1, j] = block_gain(ex, j, h, tau, series, terms)
     for i in range(dq.shape[0]):
-        dq[i] = 0.0
-        dv[i] = 0.0
-    for j in range(ex.w2.shape[1]):
-        u, v = block_gain(ex, j, h, tau, series, terms)
-        for i in range(dq.shape[0]):
+        dq[i], dv[i] = 0.0, 0.0
+        for j in range(ex.moved_by[0, i], ex.moved_by[1, i]):
+            u, v = gain[0, j], gain[1, j]
             dq[i] += ex.q_u[i, j] * u
             dv[i] += ex.v_v[i, j] * v
-        if not modal:
-            for i in range(dq.shape[0]):
+            if not modal:
                 dq[i] += ex.q_v[i, j] * v
                 dv[i] += ex.v_u[i, j] * u
 
@@ -153,7 +153,7 @@ def gains_at_nodes(ex: Exact, h: float, span: float, series: Floats2, dq: Floats
     dv[:, :] = 0.0
     for j in range(ex.w2.shape[1]):
         block_at_nodes(ex, j, h, span, series, terms, gain)
-        for a in range(dq.shape[1]):
+        for a in range(ex.moves[0, j], ex.moves[1, j]):
             q_u, v_v = ex.q_u[a, j], ex.v_v[a, j]
             if q_u == 0.0 and v_v == 0.0 and modal:
                 continue

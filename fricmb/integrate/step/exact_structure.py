@@ -30,7 +30,9 @@ class Exact(Layout):
     With b blocks, s nodes, s' for s and places that stay 0 (see ``compile.lanes``).  Blocks: v' = -w2 u - damp v with
     ``w2``, ``damp`` (1, b); ``c0``, ``c1`` (n_o, b) outputs by u and v; ``b0``, ``b1`` (n_in, b) inputs on them;
     ``linked`` (n_o, n_in); ``q_u`` to ``v_v`` (n, b) dofs by blocks; ``force_0``, ``force_1``, ``start_0``, ``start_1``
-    (b, n) u and v by forces and by velocities; ``MB`` (n_in, n) accelerations per input.  Numbers: ``modal`` whether
+    (b, n) u and v by forces and by velocities; ``moves`` (2, b) the first degree of freedom that a block moves and the
+    one behind the last, ``moved_by`` (2, n) the same of the blocks that move one of them (of a body given by modes each
+    moves its own alone); ``MB`` (n_in, n) accelerations per input.  Numbers: ``modal`` whether
     blocks are modes seen by velocities alone, ``ledger`` whether powers other than friction are kept, ``unknown``
     inputs, ``safety`` tolerance of a step per rtol, ``stiff_at`` largest w h with exact weights, ``cap`` longest next
     step, ``fastest`` block, ``length`` of the step that was solved last.
@@ -61,6 +63,8 @@ class Exact(Layout):
     force_1: Floats2
     start_0: Floats2
     start_1: Floats2
+    moves: Ints2
+    moved_by: Ints2
     MB: Floats2
     modal: int
     ledger: int
