@@ -12,6 +12,8 @@ from fricmb.normal._base import NormalLaw
 class Hertz(NormalLaw):
     """N = max(0, stiffness delta^(3/2) (1 - damping e')) with the approach delta = delta_0 - e, N = preload at e = 0.
 
+    No force where the bodies are apart (delta < 0), however fast they part.
+
     Parameters
     ----------
     axis : str or tuple of float
@@ -50,11 +52,15 @@ class Hertz(NormalLaw):
         return delta, norm((delta,))
 
     def define_normal(self, e: Any, e_dot: Any) -> Any:
-        """Negative beyond the opening, so that its instant is a change of sign."""
+        """Negative beyond the opening, so that its instant is a change of sign; damping acts on what is pressed alone.
+
+        With ``1 - damping e'`` on both sides, bodies apart that part faster than 1/damping would push each other away.
+        """
         import sympy
 
         delta, size = self._approach(e)
-        return self.stiffness * delta * sympy.sqrt(size) * (1 - self.damping * e_dot)
+        pressed = (delta + size) / 2
+        return self.stiffness * sympy.sqrt(size) * (delta - self.damping * e_dot * pressed)
 
     def define_stored(self, e: Any) -> Any:
         """Antiderivative of N(e, 0) up to the opening."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import fricmb as fm
@@ -175,3 +175,32 @@ def test_slip_that_begins_as_its_load_goes_is_not_ended_at_once(name, method, rt
     sol = fm.simulate(shaken(**values), t_end=10.0, rtol=rtol, method=method, time_limit=60)
     assert len(sol.events) == events
     assert sol.stats.n_steps + sol.stats.n_rejected < 2000
+
+
+@pytest.mark.parametrize("height", [0.0, 1.0])
+def test_hertz_with_damping_pushes_nothing_that_has_parted(height):
+    """Bodies apart, or pulled apart, faster than 1/damping fly on evenly, and N stays 0."""
+    law = fm.normal.Hertz(axis="y", stiffness=1e4, damping=2.0)
+    sol = fm.simulate(slider(law, height=height, x=1.0, y=5.0), t_end=1.0, rtol=1e-9)
+    assert sol["block.y"] == pytest.approx(height + 5.0 * sol.t, rel=1e-12)
+    assert sol.velocity("block.x") == pytest.approx(1.0, rel=1e-12)
+    assert not sol.normal_force("sole").any()
+
+
+def test_hertz_with_damping_lets_go_what_is_torn_off():
+    """A block is pulled up through the opening faster than 1/damping: scipy, with N cut at both of its zeros."""
+    k, c, pull = 100.0, 1.0, 60.0
+
+    def motion(_, y):
+        approach = max(-y[0], 0.0)
+        return [y[1], pull + k * approach**1.5 * max(0.0, 1.0 - c * y[1])]
+
+    block = fm.Body("block", mass=1.0, axes="xy", position={"y": -0.5})
+    law = fm.normal.Hertz(axis="y", stiffness=k, damping=c)
+    sole = fm.Contact("sole", block, law=fm.laws.Coulomb(mu_s=0.5), normal_force=law, axes="x")
+    sol = fm.simulate(fm.Scene("s", [block, sole, fm.Force("pull", block, axis="y", value=pull)]), t_end=0.3, rtol=1e-9)
+    known = solve_ivp(motion, (0.0, 0.3), [-0.5, 0.0], method="DOP853", rtol=1e-12, atol=1e-12, max_step=1e-3).y[:, -1]
+    assert known[0] > 1.0
+    assert sol["block.y"][-1] == pytest.approx(known[0], rel=1e-8)
+    assert sol.velocity("block.y")[-1] == pytest.approx(known[1], rel=1e-8)
+    assert [event.kind for event in sol.events] == ["open"]
