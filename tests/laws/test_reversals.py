@@ -59,3 +59,13 @@ def test_law_with_states_follows_a_reversal(name, method):
     expected = by_scipy(name)
     sol = fm.simulate(oscillator(LAWS[name]), t_end=T_END, rtol=1e-6, t_eval=GRID, method=method)
     assert np.abs(sol.q[0] - expected).max() < 2e-5 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("name", ["Karnopp", "Gonthier"])
+@pytest.mark.parametrize("rtol", [1e-9, 1e-10])
+def test_a_state_that_makes_no_force_for_a_while_is_known_when_it_does_again(name, rtol):
+    """Outside its band Karnopp's hold is not felt, nor is Gonthier's bristle in fast slip: what is left of it is."""
+    expected = by_scipy(name)
+    sol = fm.simulate(oscillator(LAWS[name]), t_end=T_END, rtol=rtol, t_eval=GRID, method="radau")
+    assert np.abs(sol.q[0] - expected).max() < 2e-9 * np.abs(expected).max()
+    assert sol.stats.n_steps + sol.stats.n_rejected < 800

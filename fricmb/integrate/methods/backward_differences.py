@@ -22,7 +22,7 @@ class Differences(Layout):
     the one-step method to ``wait`` for before BDF is tried again, the last such wait, ``waited``, and the last one
     because BDF was the slower of the two, ``slower``; steps ``since`` its start. ``good`` last accepted step. ``new``,
     ``guess``, ``lag``, ``d`` (n_y,) values, prediction, psi without it, and correction of a step. ``gamma`` (7,) sums
-    1 + 1/2 + ...;  ``unit`` allowed local error per unit of time, relative to rtol; ``cost`` of a one-step step in BDF
+    1 + 1/2 + ...;  ``unit`` hundredths of the run per unit of time, see ``allowed``; ``cost`` of a one-step step in BDF
     steps. ``U``, ``E``, ``column`` space for rescaling.
     """
 
@@ -63,7 +63,7 @@ def differences(n_y: int, span: float, cost: float) -> Differences:
             lag=signal.copy(),
             d=signal.copy(),
             gamma=np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))]),
-            # a hundredth of the error is spent on a hundredth of the run, and the sum stays some 100 rtol
+            # a hundredth of the error is spent on a hundredth of the run
             unit=100.0 / max(span, 1e-300),
             cost=cost,
             U=square,
@@ -85,6 +85,18 @@ def no_differences() -> Differences:
 ADAMS = (1.0, -1 / 2, -1 / 12, -1 / 24, -19 / 720, -3 / 160, -863 / 60480)
 #: Largest growth of a step: differences of old values are extrapolated, their round-off with them.
 GROWTH = 3.0
+
+
+#: Part of the tolerance that a hundredth of a run may err by: errors of an undamped run, which add up, sum to some 5
+#: rtol.  Least such part, beside the round-off of the history, where the tolerance is not below it.
+SHARE, LEAST = 0.05, 1e-12
+
+
+@kernel
+def allowed(rtol: float, past: Differences) -> float:
+    """Part of its size that a signal may err by in a step of BDF: in proportion to the length of the step."""
+    tolerance = max(SHARE * rtol, min(rtol, LEAST))
+    return max(tolerance * min(1.0, past.h * past.unit), 4e-15)
 
 
 @kernel

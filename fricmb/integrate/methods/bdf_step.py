@@ -16,7 +16,9 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.methods.backward_differences import (
     ADAMS,
     GROWTH,
+    SHARE,
     Differences,
+    allowed,
     begin_at,
     best_order,
     bring_forward,
@@ -75,7 +77,7 @@ def solve_formula(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
             for i in range(n):
                 w.g[0, a] += packed.ports.W[i, a] * (past.guess[n + i] - y.v[i])
             w.r[0, k] += w.n[0, a] * w.g[0, a]
-    part = min(1e-3, 0.02 * h * past.unit)
+    part = min(1e-3, 0.02 * SHARE * h * past.unit)
     newton_tolerances(packed, acc, h, y, one.tol, one.scale, part)
     one.counts[2] += 1
     return solve_stages(packed, one.tab, s, one.fac, st, w, y.mode, one.tol, one.scale) > 0
@@ -90,7 +92,7 @@ def scaled(
     h = past.h
     top_q, top_v = widest(acc.q), widest(acc.v)
     worst = 0.0
-    share = max(acc.rtol * min(1.0, h * past.unit), 4e-15)
+    share = allowed(acc.rtol, past)
     for i in range(n):
         size_v = max(acc.v[i], abs(past.new[n + i]), acc.floor_v[i], 1e-10 * top_v, 1e-290)
         size_v = max(size_v, grain(packed, y, one.w, acc, h, i) / share)

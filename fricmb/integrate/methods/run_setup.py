@@ -40,6 +40,8 @@ def set_accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
         floor[:] = NOISE * natural if atol is None else np.asarray(atol) / tolerance.rtol
     for scale, value in ((acc.q, start.q), (acc.v, start.v), (acc.z, start.z)):
         scale[:] = np.abs(value)
+    for one in run.steps:
+        one.w.slope[:] = 0.0
     return acc
 
 

@@ -110,15 +110,17 @@ def creep(ports: Ports, w: PortState, mode: Codes, tol: Floats) -> float:
 def state_miss(ports: Ports, w: PortState, hA: Floats2, tol: Floats, i: int, k: int, a: int, size: float) -> float:
     """Residual ``size`` of state a of contact k at stage i, in units of what is allowed.
 
-    Allowed are the state's tolerance, a force that no velocity shows, and round-off of its rate: a stiff rate
-    (h dz'/dz large) divides a residual before it reaches the state.
+    Allowed are the state's tolerance, a force that no velocity shows (by the largest that it has made so far, as in
+    ``one_step.state_noise``), and round-off of its rate: a stiff rate (h dz'/dz large) divides a residual before it
+    reaches the state.
     """
     row0, z0 = ports.row[k], ports.z_start[k]
     d, nz = ports.row[k + 1] - row0, ports.z_start[k + 1] - z0
     L, x, mi = w.L[i, k], a - z0, w.Fin.shape[1]
     felt, rate = 1e-290, 0.0
     for b in range(d):
-        felt = max(felt, abs(w.G[i * mi + row0 + b, i * mi + row0 + b] * L[b, d + 1 + x]))
+        slope = max(abs(L[b, d + 1 + x]), w.slope[a])
+        felt = max(felt, abs(w.G[i * mi + row0 + b, i * mi + row0 + b]) * slope)
         rate += abs(L[d + x, b] * w.g[i, row0 + b])
     for b in range(nz):
         rate += abs(L[d + x, d + 1 + b] * w.z[i, z0 + b])

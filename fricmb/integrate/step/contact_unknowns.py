@@ -19,7 +19,8 @@ class PortState(Layout):
     all port inputs (F, then varying N), ``gbuf`` their last values; ``gb`` (s, m+n_v) their outputs at Fo;
     ``psi_z`` (n_z,) history of z; ``dF`` (s (m+n_v),) Fin - Fo;
     ``L`` (s, n_c, rows, columns) derivatives of (F, z') with respect to (unknowns, N, z) of one contact;
-    ``plain`` 1 where they are solved for by ``coulomb_newton``, which constant coefficients and normal forces allow.
+    ``plain`` 1 where they are solved for by ``coulomb_newton``, which constant coefficients and normal forces allow;
+    ``slope`` (n_z,) largest force that a unit of a state has made so far, in accepted steps of this run.
     """
 
     n: Floats2
@@ -42,6 +43,7 @@ class PortState(Layout):
     sizes: Pivots
     pivots: Pivots
     plain: int
+    slope: Floats
 
 
 def port_state(problem: Problem, s: int) -> PortState:
@@ -69,7 +71,7 @@ def port_state(problem: Problem, s: int) -> PortState:
     G = np.zeros((s * (m + nv), s * (m + nv)))
     sizes, pivots = np.zeros(4, dtype=np.int32), np.zeros(max(unknowns, problem.n, 1), dtype=np.int32)
     solver = [np.zeros((unknowns, unknowns)), np.zeros(unknowns), np.zeros(s * (m + nv)), sizes, pivots, 0]
-    return PortState._make([*values, local, G, *solver])
+    return PortState._make([*values, local, G, *solver, np.zeros(nz)])
 
 
 @kernel

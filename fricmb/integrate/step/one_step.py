@@ -127,7 +127,11 @@ def solve(packed: Packed, s: Scratch, y: State, one: OneStep) -> bool:
 
 @kernel
 def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
-    """Sizes of internal states that are noise: their force moves the contact by a trifle of its speed within h."""
+    """Sizes of internal states that are noise: their force moves the contact by a trifle of its speed within h.
+
+    By the largest force that a unit of the state has made so far: what makes none now may do so again (Karnopp's hold,
+    out of its band).
+    """
     ports, w = packed.ports, one.w
     top = widest(acc.v)
     for k in range(ports.law.shape[0]):
@@ -137,7 +141,7 @@ def state_noise(packed: Packed, one: OneStep, acc: Accuracy, h: float) -> None:
         for i in range(ports.z_start[k + 1] - z0):
             moved = 1e-290
             for a in range(d):
-                slope = abs(w.L[w.F.shape[0] - 1, k, a, d + 1 + i])
+                slope = max(abs(w.L[w.F.shape[0] - 1, k, a, d + 1 + i]), w.slope[z0 + i])
                 moved = max(moved, h * ports.D[row0 + a, row0 + a] * slope)
             one.noise_z[z0 + i] = min(1e-6 * max(acc.r[k], 1e-10 * top, acc.noise) / moved, 1e290)
 
@@ -183,12 +187,17 @@ def update_scales(packed: Packed, y: State, one: OneStep, acc: Accuracy) -> None
 
 @kernel
 def update_port_scales(packed: Packed, one: OneStep, acc: Accuracy) -> None:
-    """Of these maxima those of contacts: states of laws and slip speeds."""
+    """Of these maxima those of contacts: states of laws, what forces follow from them, and slip speeds."""
+    ports, w = packed.ports, one.w
     for j in range(one.tab.c.shape[0]):
         for a in range(acc.z.shape[0]):
-            acc.z[a] = max(acc.z[a], abs(one.w.z[j, a]))
+            acc.z[a] = max(acc.z[a], abs(w.z[j, a]))
         for k in range(acc.r.shape[0]):
-            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, one.w.g[j]))
+            acc.r[k] = max(acc.r[k], magnitude(ports.row, k, w.g[j]))
+            d, z0 = ports.row[k + 1] - ports.row[k], ports.z_start[k]
+            for i in range(ports.z_start[k + 1] - z0):
+                for a in range(d):
+                    w.slope[z0 + i] = max(w.slope[z0 + i], abs(w.L[j, k, a, d + 1 + i]))
 
 
 @kernel
