@@ -11,14 +11,14 @@ import pytest
 
 import fricmb as fm
 from fricmb import errors
-from fricmb._simulate._blame import _law_without_value, blame
+from fricmb._simulate._blame import _formula_without_value, _law_without_value, blame
 from fricmb._simulate._result import not_there
 from fricmb.analysis import AnalysisError
 from fricmb.integrate.collocation import integrator as _collocation
 from fricmb.integrate.run import memory, stop
 from fricmb.integrate.taylor import integrator as _taylor
 
-BLAME = (blame, _law_without_value, fm.space.OnPlane.undefined)
+BLAME = (blame, _formula_without_value, _law_without_value, fm.space.OnPlane.undefined)
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md")]
 PAGE = "\n".join(path.read_text(encoding="utf-8") for path in PAGES)

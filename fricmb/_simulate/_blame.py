@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fricmb.integrate import Trajectory
+from fricmb.integrate import Start, Trajectory
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Contact
 from fricmb.values import Declaration, is_expression
@@ -25,9 +25,20 @@ def blame(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
     state = trajectory.motion(np.array([t]))
     if not np.isfinite(state.q).all():
         return ""
-    values = dict(zip(mechanics.names.dofs, state.q[:, 0].tolist(), strict=True))
-    rates = dict(zip(mechanics.names.dofs, state.v[:, 0].tolist(), strict=True))
     span = max(abs(t), t - float(trajectory.t[0]))
+    found = _formula_without_value(mechanics, t, state.q[:, 0], state.v[:, 0], span)
+    return found or _law_without_value(mechanics, state.g[:, 0], state.N[:, 0])
+
+
+def blame_end(mechanics: SceneMechanics, end: Start) -> str:
+    """As :func:`blame`, for a run that has not made its first row: what has no value where it starts."""
+    return _formula_without_value(mechanics, end.t, end.q, end.v, abs(end.t))
+
+
+def _formula_without_value(mechanics: SceneMechanics, t: float, q: Floats, v: Floats, span: float) -> str:
+    """The first formula without a finite value at t or at once behind it, in parts of ``span``."""
+    values = dict(zip(mechanics.names.dofs, q.tolist(), strict=True))
+    rates = dict(zip(mechanics.names.dofs, v.tolist(), strict=True))
     for part in mechanics.scene.parts:
         for path, expression in _expressions(part):
             for ahead in AHEAD:
@@ -35,7 +46,7 @@ def blame(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
                 found = _value(expression, at, ahead * span, values, rates)
                 if found is not None and not math.isfinite(found):
                     return f"; {part.name}.{path} = {expression} is {found} at t = {at:.10g}"
-    return _law_without_value(mechanics, state.g[:, 0], state.N[:, 0])
+    return ""
 
 
 def undefined(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:

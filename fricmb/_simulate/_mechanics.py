@@ -209,7 +209,10 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
         scene = scene.with_parameters(parameters)
     if observe is not None and (isinstance(observe, str) or not isinstance(observe, Iterable)):
         raise SceneError(f"observe: got {observe!r}; expected a list of names of dofs, points and contacts")
-    return mechanics_of(scene, observe=None if observe is None else tuple(observe))
+    names = None if observe is None else tuple(observe)
+    if names == ():
+        raise SceneError("observe: got no name; expected one or more of dofs, points and contacts, or None for all")
+    return mechanics_of(scene, observe=names)
 
 
 @builder("scene", Scene)

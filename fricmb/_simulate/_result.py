@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from fricmb._simulate._arguments import Span
-from fricmb._simulate._blame import blame, undefined
+from fricmb._simulate._blame import blame, blame_end, undefined
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._digits import digit_notes
 from fricmb._simulate._joined import JoinedRun, island_stats
@@ -46,6 +46,10 @@ def make_solution(
         islands=island_stats(trajectory, mechanics.members),
         notes=tuple(dict.fromkeys((*mechanics.plan.cautions, *counters.notes))), **counts,
     )  # fmt: skip
+    if trajectory.failure is not None and trajectory.t.size == 0:
+        said = trajectory.failure if ended else f"{trajectory.failure}{blame_end(mechanics, trajectory.end)}"
+        t = trajectory.end.t
+        raise IntegrationError(f"{method} stopped at t = {t:.10g}: {said}", t=t, reason=said)
     failure = trajectory.failure or not_there(trajectory, span, rtol is None)
     if failure is None:
         try:

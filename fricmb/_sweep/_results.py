@@ -158,6 +158,8 @@ class SweepResults(list[Any]):
             Where two runs stand at the same place.
         """
         names = self.parameters if over is None else tuple(over)
+        if not names:
+            raise SceneError("over: the sweep gives no parameter a value; expected one or more, which are the axes")
         found = [np.unique(self.value(name), return_inverse=True) for name in names]
         places = tuple(place for _, place in found)
         held = np.full([axis.size for axis, _ in found], np.nan)

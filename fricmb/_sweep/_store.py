@@ -31,10 +31,16 @@ class Store:
     """
 
     def __init__(self, path: str | PathLike[str], shared: tuple[Any, ...]) -> None:
+        if not isinstance(path, str | PathLike):
+            raise SceneError(f"store: got {path!r}; expected a folder, or a path for a new one")
         self.path = Path(path)
         if self.path.exists() and not self.path.is_dir():
             raise SceneError(f"store: got {str(path)!r}, which is a file; expected a folder, or a path for a new one")
-        self.path.mkdir(parents=True, exist_ok=True)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except (OSError, ValueError) as error:
+            said = getattr(error, "strerror", None) or error
+            raise SceneError(f"store: got {str(path)!r}, which cannot be made a folder: {said}") from error
         found = Fingerprint()
         self._shared = found.of(*shared)
         for thing in found.unseen:

@@ -75,6 +75,8 @@ def sweep(
         After Ctrl-C, once the runs under way are done (at once after a second one); its ``results`` are those that
         were made, None for others.
     """
+    if isinstance(runs, str | Mapping) or not isinstance(runs, Iterable):
+        raise SceneError(f"runs: got {runs!r}; expected a list of dicts of parameter names and values, one a run")
     own = [dict(_checked(run, i)) for i, run in enumerate(runs)]
     values = [{**(parameters or {}), **run} for run in own]
     for value in values:

@@ -26,6 +26,7 @@ from fricmb.bench import (
     start_up_times,
     tolerance_statistic,
 )
+from fricmb.cli._output import make_folder
 from fricmb.errors import unknown_name
 
 
@@ -97,7 +98,7 @@ def _bar() -> Iterator[Callable[[int, int, str], None]]:
 
 
 def _write(folder: Path, name: str, text: str) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     (folder / name).write_text(text, encoding="utf-8")
 
 

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import fricmb as fm
+from fricmb.cli._output import make_folder
 from fricmb.errors import unknown_name
 from fricmb.models.brake4dof import CASES, brake4dof
 from fricmb.models.brake_paper import FIGURES, T_END, run
@@ -28,7 +29,7 @@ def figures(options: argparse.Namespace) -> int:
     for case in cases:
         brake4dof(case)  # a wrong case is told before anything runs
     folder: Path = options.out
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     for case in cases:
         sol = run(str(case), t_end=options.t_end, rtol=options.rtol)
         path = folder / f"brake4dof-case{case}.{options.format}"

@@ -8,6 +8,7 @@ import numpy as np
 
 import fricmb as fm
 from fricmb.cli._load import setting
+from fricmb.cli._output import make_folder
 from fricmb.errors import LawError, unknown_name
 
 
@@ -46,7 +47,7 @@ def show_law(options: argparse.Namespace) -> int:
     if law.states:
         print(f"states in one direction: {', '.join(law.state_labels('xyz'[: law.dimensions[0]]))}")
     figure = fm.plot.law_figure(law, normal_force=options.normal_force)
-    options.out.mkdir(parents=True, exist_ok=True)
+    make_folder(options.out)
     target = options.out / f"{options.law}.{options.format}"
     figure.savefig(target, dpi=150)
     print(f"wrote {target}")

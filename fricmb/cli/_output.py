@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from fricmb.errors import SceneError
+
 _aside: list[Any] = []
 
 
@@ -54,6 +56,17 @@ def print_aside(text: str) -> None:
     data = text.encode()
     while data:
         data = data[os.write(kept, data) :]
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for results; SceneError, which names the option, where there can be none."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SceneError(
+            f"--out: got {str(folder)!r}, which cannot be made a folder: {error.strerror}; expected a folder, or a path"
+            " for a new one"
+        ) from error
 
 
 def finite(tree: Any) -> Any:

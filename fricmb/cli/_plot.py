@@ -9,6 +9,7 @@ from typing import Any
 
 import fricmb as fm
 from fricmb.cli._load import module_of
+from fricmb.cli._output import make_folder
 from fricmb.errors import SceneError, unknown_name
 from fricmb.values import Declaration
 
@@ -30,7 +31,7 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(f"fricmb plot {kind}: --of is missing: the name of a dof, contact or signal")
     path: Path = options.out or options.solution.with_name(f"{kind}{OWN_FILE.get(kind, '.png')}")
     sol = fm.Solution.load(options.solution, laws=_laws(options.laws))
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     with fm.plot.theme(options.theme):
         _draw(sol, kind, name, path, options)
     print(path)

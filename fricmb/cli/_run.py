@@ -16,7 +16,7 @@ import fricmb as fm
 from fricmb._simulate._progress import named_bar
 from fricmb.cli._files import pieces, write_all
 from fricmb.cli._load import Loaded, load
-from fricmb.cli._output import finite, print_aside, stdout_to_stderr
+from fricmb.cli._output import finite, make_folder, print_aside, stdout_to_stderr
 from fricmb.cli._summary import as_json, as_text
 from fricmb.errors import IntegrationError, Interrupted, SceneError
 
@@ -37,7 +37,7 @@ def _run(options: argparse.Namespace) -> int:
     loaded = load(options.model, case=options.case, values=options.values)
     t_end = _t_end(options, loaded)
     folder = options.out or Path("fricmb-out") / loaded.label
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     shown = sys.stderr.isatty() and not (options.json or options.quiet)
     failure: IntegrationError | Interrupted | None = None
     try:

@@ -45,7 +45,7 @@ def panels_of(sol: Solution, names: Iterable[str] | None, units: Units, *, one: 
     ``one``: a single panel for all of them.
     """
     found: dict[str, Panel] = {}
-    for name in _default(sol) if names is None else names:
+    for name in _default(sol) if names is None else [names] if isinstance(names, str) else names:
         for key, label, curve in _curves(sol, name, units):
             found.setdefault("" if one else key, Panel(label=label)).curves.append(curve)
     if one and len({unit_of_rate(c[1], units) for panel in found.values() for c in panel.curves}) > 1:

@@ -7,6 +7,7 @@ scene and of what the dense output needs (:mod:`fricmb.solution._data`), its arr
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -50,8 +51,10 @@ _DERIVED = {"S": "S", "end": "end", "event_times": "moved", "transversality": "t
 
 
 def save(sol: Solution, path: str | PathLike[str]) -> None:
-    """Write ``sol``; the file appears whole or not at all."""
-    target = Path(path)
+    """Write ``sol``; the file appears whole or not at all.  FricmbError, with the path, where no file can be."""
+    target = _path(path)
+    if not target.name or target.is_dir():
+        raise FricmbError(f"path: got {str(path)!r}, which is a folder; expected the path of a file")
     if not target.suffix:
         target = target.with_suffix(".npz")
     entries = _entries(sol)
@@ -60,13 +63,16 @@ def save(sol: Solution, path: str | PathLike[str]) -> None:
         with part.open("xb") as file:
             np.savez(file, **entries)
         os.replace(part, target)
+    except (FileNotFoundError, NotADirectoryError, IsADirectoryError, PermissionError) as error:
+        raise FricmbError(f"path: {str(target)!r} cannot be written: {error.strerror}") from error
     finally:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
 
 
 def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
     """Read a file of :func:`save`; FricmbError, with file and entry, for anything else."""
-    source = Path(path)
+    source = _path(path)
     if not source.exists() and not source.suffix:
         source = source.with_suffix(".npz")
     held = _read(source)
@@ -95,6 +101,12 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
         raise FricmbError(f"{source} has no entry {error}") from error
     except (ValueError, TypeError, IndexError, AttributeError, OverflowError, RecursionError) as error:
         raise FricmbError(f"{source}, entry 'about' is inconsistent: {error}") from error
+
+
+def _path(path: object) -> Path:
+    if not isinstance(path, str | PathLike) or "\0" in str(path):
+        raise FricmbError(f"path: got {path!r}; expected the path of a file")
+    return Path(path)
 
 
 # ---- writing

@@ -20,9 +20,14 @@ def join(solutions: Iterable[Solution]) -> Solution:
     Where all of them hold their accepted steps the joined one does, else it has the times of all, one after the other.
     Raises SceneError where dofs, contacts or times do not match.
     """
+    if not isinstance(solutions, Iterable):
+        raise SceneError(f"Solution.join: got {solutions!r}; expected a list of solutions")
     parts = list(solutions)
     if not parts:
         raise SceneError("Solution.join: got no solution; expected one or more")
+    for i, part in enumerate(parts):
+        if not isinstance(part, Solution):
+            raise SceneError(f"Solution.join: entry {i} is {part!r}; expected a Solution")
     for earlier, later in pairwise(parts):
         _check(earlier, later)
     if len(parts) == 1:

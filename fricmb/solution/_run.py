@@ -311,7 +311,8 @@ def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Float
     margin = ROUND_OFF * max(abs(t_start), abs(t_end))
     if not (t_start - margin <= low and high <= t_end + margin):
         bad = low if low < t_start - margin else high
-        raise SceneError(f"{name}: the time {bad:.17g} is outside the run, which goes from {t_start:g} to {t_end:.17g}")
+        span = f"from {float(t_start)!r} to {float(t_end)!r}"
+        raise SceneError(f"{name}: the time {bad!r} is outside the run, which goes {span}")
     return times.clip(t_start, t_end)
 
 

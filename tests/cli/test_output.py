@@ -144,3 +144,14 @@ def test_colours_of_numba_leave_nothing_on_the_terminal(monkeypatch):
     monkeypatch.delenv("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING")
     _set_up(parser().parse_args(["list"]))
     assert os.environ["NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"] == "1"
+
+
+def test_an_out_that_can_be_no_folder_is_named(capsys, tmp_path):
+    from fricmb.cli import main
+
+    (tmp_path / "file").write_text("")
+    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+        assert main(["run", "belt_oscillator", "--t-end", "1", "--out", str(out)]) == 2
+        said = capsys.readouterr().err
+        assert f"--out: got {str(out)!r}" in said
+        assert "expected a folder" in said

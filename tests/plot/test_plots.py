@@ -118,3 +118,10 @@ def test_angles_have_units_of_their_own():
     assert labels == ["velocity [m/s]", "angular velocity [rad/s]"]
     (ax,) = plots.phase("arm.angle").axes
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("arm.angle [rad]", "velocity of arm.angle [rad/s]")
+
+
+def test_one_name_is_a_name_not_its_letters(belt):
+    (panel,) = belt.plot.velocities("mass.x").axes
+    assert len(panel.lines) >= 1
+    with pytest.raises(fm.FricmbError, match="'mas'"):
+        belt.plot.velocities("mas")

@@ -61,3 +61,15 @@ def test_a_step_is_for_methods_of_fixed_step_alone():
     for step in (None, 0.0, -1.0, 11.0, np.nan, "small"):
         with pytest.raises(SceneError, match=r"step: got .*'bdf2-paper' needs"):
             check_step(step, False, "bdf2-paper", 10.0)
+
+
+def test_a_time_outside_is_said_as_it_was_given():
+    with pytest.raises(SceneError, match=r"the time 0\.4 is outside the run, which goes from 0\.0 to 0\.3$"):
+        check_span(0.0, 0.3, [0.0, 0.4])
+
+
+def test_no_name_to_observe_is_refused():
+    import fricmb as fm
+
+    with pytest.raises(SceneError, match="observe: got no name; expected one or more"):
+        fm.simulate(fm.models.belt_oscillator(), t_end=1.0, observe=[])

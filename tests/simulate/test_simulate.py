@@ -213,3 +213,13 @@ def test_slip_at_round_off_is_no_negative_friction():
     sol = fm.simulate(scene, t_end=100.0, rtol=1e-8)
     assert sol.t_end == 100.0
     assert np.diff(sol.energy.friction_loss).min() > -1e-9
+
+
+@pytest.mark.parametrize("value", [1 / fm.coordinate("block.x"), 1 / fm.t], ids=str)
+def test_a_force_without_a_value_at_the_start_is_named(value):
+    block = fm.Body("block", mass=1.0)
+    scene = fm.Scene("no value", [block, fm.Force("pull", block, axis="x", value=value)])
+    with pytest.raises(fm.IntegrationError, match=r"pull\.value = .* is inf at t = 0$") as error:
+        fm.simulate(scene, t_end=1.0, method="radau")
+    assert (error.value.t, error.value.partial) == (0.0, None)
+    assert "pull.value" in error.value.reason

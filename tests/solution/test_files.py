@@ -128,6 +128,22 @@ def test_no_file_and_a_folder_are_refused(tmp_path):
     refused(tmp_path, "there is no file")
 
 
+@pytest.mark.parametrize("path", [None, 3, b"run.npz", "a\0b"])
+def test_what_is_no_path_is_said(sol, path):
+    for use in (sol.save, Solution.load):
+        with pytest.raises(FricmbError, match=r"path: got .*; expected the path of a file"):
+            use(path)
+
+
+def test_a_path_that_cannot_be_written_is_said(sol, tmp_path):
+    (tmp_path / "file").write_text("")
+    for path, said in (("", "folder"), (tmp_path, "folder"), (tmp_path / "none" / "run.npz", "No such file"),
+                       (tmp_path / "file" / "run.npz", "Not a directory")):  # fmt: skip
+        with pytest.raises(FricmbError, match=said) as error:
+            sol.save(path)
+        assert str(path) in str(error.value)
+
+
 class Harm:
     """Makes a file when it is unpickled."""
 

@@ -37,6 +37,12 @@ def test_joined_runs_keep_their_times(make):
     assert Solution.join([joined]) is joined
 
 
+@pytest.mark.parametrize("given", [None, 3, [3], "ab"])
+def test_what_is_no_solution_is_refused(given):
+    with pytest.raises(SceneError, match=r"Solution.join: .*expected a (list of solutions|Solution)"):
+        Solution.join(given)
+
+
 def test_runs_that_do_not_go_on_are_refused(make):
     with pytest.raises(SceneError, match="expected one that goes on"):
         Solution.join([make(0.0, 7.0), make(8.0, 9.0)])

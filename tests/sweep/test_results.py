@@ -91,6 +91,8 @@ def test_a_curve_and_a_map_show_the_numbers():
         (lambda found: found.measure(lambda held: "x"), "expected a number"),
         (lambda found: found.plot(over="k"), "several runs have the same values of k"),
         (lambda found: made([{"a": 1.0, "b": 2.0}], [{"k": 1.0}]).plot(), "the results hold a, b"),
+        (lambda found: made([], []).plot(lambda held: 1.0), "no parameter a value"),
+        (lambda found: made([1.0], [{}]).plot(), "no parameter a value"),
         (lambda found: made([1.0], [{"a": 1.0, "b": 2.0, "c": 3.0}]).plot(), "got 3 parameters"),
     ],
 )

@@ -66,3 +66,7 @@ def test_a_file_is_no_store(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(SceneError, match=r"store: got .*expected a folder"):
         Store(tmp_path / "file", ())
+    with pytest.raises(SceneError, match=r"store: got .*cannot be made a folder: Not a directory"):
+        Store(tmp_path / "file" / "runs", ())
+    with pytest.raises(SceneError, match=r"store: got 3; expected a folder"):
+        Store(3, ())

@@ -197,3 +197,9 @@ def test_a_failed_run_pickles_into_its_place():
     error = fm.IntegrationError("stopped", t=1.0, reason="why", partial=None)
     again = pickle.loads(pickle.dumps(error))
     assert (again.t, again.reason, again.partial) == (1.0, "why", None)
+
+
+@pytest.mark.parametrize("runs", [None, 3, "k", {"belt.velocity.x": 0.1}])
+def test_runs_are_a_list(runs):
+    with pytest.raises(fm.SceneError, match=r"runs: got .*; expected a list of dicts"):
+        fm.sweep(fm.models.belt_oscillator(), runs, t_end=1.0, progress=False)
