@@ -74,6 +74,20 @@ def free_blocks(problem: Problem) -> Blocks:
     return once_per(linear, "free blocks", make)
 
 
+def _product(pairs: list[tuple[Floats, Floats]], mass: Floats) -> Floats:
+    """Sum of products of rows over the dofs (m, n) with motions (n, b), what is round-off of the motions as 0.
+
+    Motions are right to round-off in coordinates in which all masses are 1: beside a heavy body what a light one feels
+    is small, and no round-off.
+    """
+    scale = np.sqrt(mass)[:, None]
+    found = sum(rows @ motions for rows, motions in pairs)
+    grain = sum(
+        (np.abs(rows) @ (1.0 / scale)) * (np.abs(motions) * scale).max(axis=0, initial=0.0) for rows, motions in pairs
+    )
+    return np.where(np.abs(found) < 1e-15 * grain, 0.0, found)
+
+
 def _by_velocities(force: Floats, M: Floats) -> Floats:
     """Block states by velocities from those by forces."""
     return force * np.diagonal(M) if is_diagonal(M) else force @ M
@@ -107,10 +121,12 @@ def _exact(problem: Problem, s: int) -> Exact:
     n, forms, part, table = problem.n, port_forms(problem), free_blocks(problem), nodes(s)
     b, n_in, n_o = len(part.w2), forms.B.shape[1], len(forms.by_v)
     Minv = inverse_mass(problem.linear.M)
-    c = np.stack([forms.by_q @ part.q_u + forms.by_v @ part.v_u, forms.by_q @ part.q_v + forms.by_v @ part.v_v])
-    by = np.stack([(part.force_0 @ forms.B).T, (part.force_1 @ forms.B).T])
-    for weights in (c, by):
-        weights[np.abs(weights) < 1e-15 * np.abs(weights).max(initial=0.0)] = 0.0
+    mass = np.diagonal(problem.linear.M)
+    c = np.stack([
+        _product([(forms.by_q, part.q_u), (forms.by_v, part.v_u)], mass),
+        _product([(forms.by_q, part.q_v), (forms.by_v, part.v_v)], mass),
+    ])  # fmt: skip
+    by = np.stack([_product([(forms.B.T, force.T)], mass) for force in (part.force_0, part.force_1)])
     linked = np.abs(c).sum(axis=0) @ np.abs(by).sum(axis=0).T > 0
     fastest = float(max(np.sqrt(np.abs(part.w2)).max(initial=0.0), np.abs(part.d).max(initial=0.0)))
     tables, tk = _tables(b, s, n_o * n_in)

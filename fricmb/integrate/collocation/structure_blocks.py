@@ -25,6 +25,9 @@ from fricmb.integrate.problem import Floats
 #: Degrees of freedom from which on poles with rows stuck are sought from the free modes.
 MANY = 64
 
+#: Velocity that may be made up of a unit of another one by turning it into block states and back.
+WHOLE = 1e-10
+
 #: A pole of the state matrix with its eigenvector.
 Pole = tuple[complex, NDArray[np.complex128]]
 
@@ -243,9 +246,18 @@ def blocks(M: Floats, K: Floats, C: Floats, W: Floats, stuck: tuple[int, ...]) -
         )  # fmt: skip
     w2, d, T = _general(Kz, Cz)
     Tinv = np.linalg.inv(T)
-    return Blocks(
+    made = Blocks(
         w2=w2, d=d,
         q_u=solid(N @ T[:b, :b]), q_v=solid(N @ T[:b, b:]), v_u=solid(N @ T[b:, :b]), v_v=solid(N @ T[b:, b:]),
         force_0=solid(Tinv[:b, b:] @ N.T), force_1=solid(Tinv[b:, b:] @ N.T), stuck_motion=G,
         modal=False,
     )  # fmt: skip
+    if not stuck and not _is_whole(made, M):
+        raise NoBlocks("light bodies beside heavy ones move by less than its poles are known")
+    return made
+
+
+def _is_whole(made: Blocks, M: Floats) -> bool:
+    """Whether block states made of any velocity give that back, by degrees of freedom (in units as they are)."""
+    back = made.v_u @ (made.force_0 @ M) + made.v_v @ (made.force_1 @ M)
+    return bool(np.abs(back - np.eye(len(M))).max(initial=0.0) <= WHOLE)
