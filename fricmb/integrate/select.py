@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.one_contact.prepare import is_single
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
-from fricmb.integrate.collocation.suits import against, port_rows, too_far_apart
+from fricmb.integrate.collocation.suits import FRICTION_ROWS, against, port_rows, too_far_apart
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.methods.bdf import Bdf
@@ -17,7 +17,7 @@ from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import LAW_SMOOTH, Problem
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, Problem
 from fricmb.integrate.suits_taylor import against_taylor, fastest
 
 
@@ -87,6 +87,8 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
         return exact, "free vibration of a linear structure: closed form"
     if _in_blocks(problem) and (single := _one_contact(problem, rtol)) is not None:
         return single
+    if (few := _few_on_modes(problem, rtol)) is not None:
+        return few
     if (series := _taylor_where_fastest(problem)) is not None:
         return series
     contact_rows = problem.m + problem.n_v
@@ -129,6 +131,26 @@ def _one_contact(problem: Problem, rtol: float) -> tuple[Integrator, str] | None
         return None
     why = "linear structure with one contact under constant friction: exact structure, unknowns at the port"
     return Guarded(), why
+
+
+def _few_on_modes(problem: Problem, rtol: float) -> tuple[Integrator, str] | None:
+    """Collocation and why, where few contacts under constant friction rub on a body given by many modes."""
+    contacts, rows = problem.contacts, port_rows(problem)
+    if not (problem.n_c > 1 and FULL <= problem.n <= FULL_MATRICES and rows == problem.m <= FRICTION_ROWS):
+        return None
+    if (contacts.law != LAW_CONSTANT).any() or not _is_modal(problem):
+        return None
+    fast = Guarded()
+    if _against_exact(problem, rtol) or fast.refuses(problem) or too_far_apart(problem):
+        return None
+    return fast, f"{problem.n_c} contacts on {problem.n} modes: exact structure, whose steps cost no more than modes do"
+
+
+def _is_modal(problem: Problem) -> bool:
+    """Whether nothing couples the degrees of freedom but contacts."""
+    inside = slice(0, problem.n), slice(0, problem.n)
+    parts = [problem.linear.csr(name) for name in ("M", "Kx", "Cx")]
+    return all(part.block(*inside).is_diagonal() for part in parts)
 
 
 def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:

@@ -174,9 +174,12 @@ TABLE = fm.laws.Tabulated(speed=[0.0, 0.5, 2.0], mu=[1.2, 1.0, 1.0])
 
 @pytest.mark.parametrize(
     ("modes", "law", "method"),
-    [(20, COULOMB, "taylor"), (120, COULOMB, "taylor"), (120, TABLE, "bdf"), (600, TABLE, "bdf")],
-)
-def test_many_modes_under_few_contacts_are_run_in_series_or_in_a_band(modes, law, method):
+    [
+        (20, COULOMB, "taylor"), (40, COULOMB, "collocation"), (500, COULOMB, "collocation"),
+        (120, STRIBECK, "taylor"), (120, TABLE, "bdf"), (600, TABLE, "bdf"),
+    ],
+)  # fmt: skip
+def test_many_modes_under_few_contacts(modes, law, method):
     sol = fm.simulate(plate(modes, 3, law), t_end=0.5)
     assert sol.stats.method == method
     if method == "bdf":
