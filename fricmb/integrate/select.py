@@ -17,7 +17,7 @@ from fricmb.integrate.methods.free_vibration import Exact
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, Problem
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, Floats, Problem
 from fricmb.integrate.suits_taylor import against_taylor, fastest
 
 
@@ -97,12 +97,11 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
         return Bdf(), f"{why}: the general method, transitions located"
     if (single := _one_contact(problem, rtol)) is not None:
         return single
-    fast = Guarded()
     # whether its structure has blocks takes an eigenproblem: asked where the sizes allow it alone
-    reason = against(problem, rtol) or _against_exact(problem, rtol) or fast.refuses(problem) or too_far_apart(problem)
+    reason = against(problem, rtol) or _against_exact(problem, rtol)
     if reason is None:
         rows = port_rows(problem)
-        return fast, f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
+        return Guarded(), f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
     from fricmb.integrate.timestepping import TimeStepping
 
     stepping = TimeStepping()
@@ -127,8 +126,6 @@ def _one_contact(problem: Problem, rtol: float) -> tuple[Integrator, str] | None
     """The kernels for one contact under constant friction and why, where they take the problem."""
     if not is_single(problem) or _against_exact(problem, rtol) is not None:
         return None
-    if Guarded().refuses(problem) is not None or too_far_apart(problem) is not None:
-        return None
     why = "linear structure with one contact under constant friction: exact structure, unknowns at the port"
     return Guarded(), why
 
@@ -140,10 +137,10 @@ def _few_on_modes(problem: Problem, rtol: float) -> tuple[Integrator, str] | Non
         return None
     if (contacts.law != LAW_CONSTANT).any() or not _is_modal(problem):
         return None
-    fast = Guarded()
-    if _against_exact(problem, rtol) or fast.refuses(problem) or too_far_apart(problem):
+    if _against_exact(problem, rtol) is not None:
         return None
-    return fast, f"{problem.n_c} contacts on {problem.n} modes: exact structure, whose steps cost no more than modes do"
+    why = "exact structure, whose steps cost no more than there are modes"
+    return Guarded(), f"{problem.n_c} contacts on {problem.n} modes: {why}"
 
 
 def _is_modal(problem: Problem) -> bool:
@@ -206,27 +203,37 @@ def _slowest_felt(problem: Problem) -> float:
     return float(np.sqrt(modes.w2[felt].min(initial=math.inf)))
 
 
-def _rings(problem: Problem) -> float:
+def _rings(omega: Floats, zeta: Floats) -> float:
     """The highest frequency that is hardly damped, or the lowest of all."""
-    return float(problem.omega[problem.zeta < CALM].max(initial=problem.omega.min(initial=math.inf)))
+    return float(omega[zeta < CALM].max(initial=omega.min(initial=math.inf)))
 
 
 def _held_by_calm_modes(problem: Problem) -> bool:
     """Whether modes that come to rest at once are far faster than all that ring: they hold explicit steps alone."""
-    return fastest(problem) > APART * _rings(problem) > 0.0
+    return fastest(problem) > APART * _rings(problem.omega, problem.zeta) > 0.0
 
 
 def _against_exact(problem: Problem, rtol: float) -> str | None:
-    """Why steps of exact structure are the wrong ones beside modes that come to rest at once, or None.
+    """Why steps of exact structure cannot be taken, or are the wrong ones, or None."""
+    return Guarded().refuses(problem) or too_far_apart(problem) or _calm_and_fast(problem, rtol)
+
+
+def _calm_and_fast(problem: Problem, rtol: float) -> str | None:
+    """What stands against exact structure beside modes that come to rest at once, or None.
 
     Measured on pairs and rows of masses, some of them tied by 1e4 to 1e6 rad/s: what friction leaves in such modes at
     each turn is beyond the polynomials of a step, 1 rtol at 1e-6, 100 at 1e-8, 10 000 at 1e-10; and where they creep
     back without swinging, steps follow them, thousands where implicit ones took 150.
     """
-    if not _held_by_calm_modes(problem):
+    modes = free_blocks(problem)
+    omega = np.sqrt(np.abs(modes.w2))
+    if not (omega.size and modes.d.any()):
         return None
-    far = problem.omega > APART * _rings(problem)
-    if rtol >= BEARS_CALM_MODES and problem.zeta[far].max(initial=0.0) < CREEPS:
+    zeta = 0.5 * modes.d / np.maximum(omega, 1e-300)
+    limit = APART * _rings(omega, zeta)
+    if not np.maximum(omega, np.abs(modes.d)).max() > limit > 0.0:
+        return None
+    if rtol >= BEARS_CALM_MODES and zeta[omega > limit].max(initial=0.0) < CREEPS:
         return None
     return f"modes that come to rest at once, more than {APART:.0f} times as fast as all that vibrate"
 

@@ -37,7 +37,7 @@ from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_ba
 from fricmb.integrate.collocation.run import run_general
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.model.problem_structs import softening, softness
+from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.chunks import counters
@@ -95,16 +95,15 @@ class Collocation(Integrator):
         """Why this integrator cannot run the problem, or None."""
         if problem.mechanism is not None:
             return super().refuses(problem)
+        if softness(problem) > 0.0:
+            return "collocation needs contacts whose forces in stick are determined; here some are redundant"
         try:
             if is_single(problem):
-                stuck_together = softening(structure(problem).piece.arrays["D"]) > 0.0
+                structure(problem)
             else:
                 free_blocks(problem)
-                stuck_together = softness(problem) > 0.0
         except NoBlocks as error:
             return f"collocation needs the structure in blocks; here {error}"
-        if stuck_together:
-            return "collocation needs contacts whose forces in stick are determined; here some are redundant"
         return None
 
     def integrate(

@@ -108,3 +108,22 @@ def test_a_body_of_many_modes_sticks_and_slips_as_by_other_methods(axes):
     there, here = other.at(t), own.at(t)
     np.testing.assert_allclose(here.q, there.q, rtol=0.0, atol=1e-7 * np.abs(there.q).max())
     np.testing.assert_allclose(here.force("sole"), there.force("sole"), rtol=0.0, atol=1e-5)
+
+
+@pytest.mark.parametrize("modes", [4, MANY + 6])
+@pytest.mark.parametrize("across", [0.0, 0.5])
+def test_a_contact_whose_directions_move_as_one_is_left_to_others(modes, across):
+    """It ended in an error of linear algebra."""
+    k = np.arange(1.0, modes + 1.0)
+    shapes = {"tip": np.stack([np.cos(k), across * np.cos(k)])}
+    body = fm.ModalBody("bar", frequencies=k, damping_ratios=0.01, shapes=shapes, axes="xy")
+    belt = fm.Driven("belt", velocity={"x": 0.1})
+    law = fm.laws.Coulomb(mu_s=1.0, mu_k=0.6)
+    scene = fm.Scene("bar", [body, belt, fm.Contact("sole", body.point("tip"), belt, law=law, normal_force=1.0)])
+    with pytest.raises(fm.SceneError, match="some are redundant"):
+        fm.simulate(scene, t_end=0.1, method="collocation")
+    if across:
+        assert fm.simulate(scene, t_end=0.1).stats.method == "bdf"
+    else:  # nothing moves across, so nothing tells the force there
+        with pytest.raises(fm.IntegrationError, match="stuck contacts are redundant"):
+            fm.simulate(scene, t_end=3.0)

@@ -69,13 +69,11 @@ def load_pattern(n: int, m: int) -> Pattern:
 
 
 @cached_by_content
-def _port(M: Floats, W: Floats) -> tuple[Floats, ...]:
-    """Inverse mass, motion of the dofs per contact force, Delassus matrix, its inverse, what holds the rows."""
+def _port(M: Floats, W: Floats) -> tuple[Floats, Floats, Floats]:
+    """Inverse mass, motion of the dofs per contact force, Delassus matrix."""
     Minv = inverse_mass(M)
     MW = Minv @ W
-    D = W.T @ MW
-    Dinv = np.asarray(np.linalg.inv(D), dtype=float)
-    return Minv, MW, D, Dinv, Dinv @ MW.T
+    return Minv, MW, W.T @ MW
 
 
 def _put_blocks(held: dict[str, Any], z: int, part: Blocks, M: Floats) -> None:
@@ -118,12 +116,13 @@ def _structure(problem: Problem) -> Structure:
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
     W = np.ascontiguousarray(problem.contacts.W)
     slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
-    Minv, MW, D, Dinv, hold = _port(M, W)
+    Minv, MW, D = _port(M, W)
+    Dinv = np.asarray(np.linalg.inv(D), dtype=float)
     piece = structure_pattern(n, m).zeros()
     held = piece.arrays
     _put_blocks(held, 0, slip, M)
     _put_blocks(held, 1, stick, M)
-    _put_hold(held, stick, hold, K, C)
+    _put_hold(held, stick, Dinv @ MW.T, K, C)
     _put_contact(held, slip, W)
     held["wt"][...], held["mw"][...], held["D"][...], held["D_inv"][...] = W.T, MW.T, D, Dinv
     held["stiff"][...], held["visc"][...], held["minv"][...] = K, C, Minv
