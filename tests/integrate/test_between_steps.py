@@ -7,6 +7,7 @@ import pytest
 import sympy
 
 import fricmb as fm
+from fricmb.integrate.problem import SLIP
 from fricmb.laws import Coulomb, CoulombViscous
 
 GENERAL = ("radau", "bdf", "collocation")
@@ -62,3 +63,27 @@ def test_belt_that_jumps_past_the_block(method: str, blocks: int) -> None:
     assert (force[at] * slip[at] < 0.0).all()
     assert slip[at[0]] == pytest.approx(-before, rel=1e-9)
     assert slip[at[-1]] == pytest.approx(0.8 - before, rel=1e-9)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-5])
+@pytest.mark.parametrize("method", GENERAL)
+def test_friction_of_a_contact_that_has_just_closed_opposes_slip(method: str, rtol: float) -> None:
+    """Its load begins at 0, where no force tells a direction and polynomials through those of the step pass 0."""
+    block = fm.Body("b", mass=0.4, axes="xy", position={"x": 0.3}, velocity={"x": 0.5})
+    belt = fm.Driven("belt", velocity={"x": 0.6})
+    load = fm.normal.Hertz(axis="y", stiffness=60.0, preload=0.1)
+    scene = fm.Scene("hops", [
+        block, belt, fm.Spring("k", block, axis="x", stiffness=2.0),
+        fm.Force("f", block, axis="y", value=0.15 * sympy.sin(2.0 * fm.t)),
+        fm.Contact("c", block, belt, law=fm.laws.Stribeck(mu_s=0.6, mu_k=0.3, v_s=0.1), normal_force=load),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=10.0, rtol=rtol, method=method, t_eval=np.linspace(0.0, 10.0, 401))
+    closed = [event.t for event in sol.events if event.kind == "close"]
+    assert closed
+    for t in closed:
+        after = sol.at(t + np.geomspace(1e-7, 1e-2, 60))
+        slips = after.mode("c") == SLIP
+        g, F, N = after.relative_velocity("c")[0][slips], after.force("c")[0][slips], after.normal_force("c")[slips]
+        assert slips.sum() > 20
+        assert (N > 0.0).all()
+        assert (-F * np.sign(g) >= 0.3 * N).all()

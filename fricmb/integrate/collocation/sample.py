@@ -12,8 +12,9 @@ from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.output.hermite_output import point_against_forces, point_along_slip, state_of_row, write_sample
-from fricmb.integrate.problem import Codes2, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.output.hermite_output import state_of_row, write_sample
+from fricmb.integrate.output.slip_direction import point_slip
+from fricmb.integrate.problem import SLIP, Codes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.run.breakpoints import set_window_around
 from fricmb.integrate.step.exact_structure import Exact
 
@@ -64,11 +65,21 @@ def integral_of_nodes(ex: Exact, row: Floats, at: int, width: int, theta: float)
 
 
 @kernel
+def strongest(nodes: Floats) -> float:
+    """The value of largest size: the polynomial through them may pass 0 where they do not."""
+    best = nodes[0]
+    for x in range(1, nodes.shape[0]):
+        if abs(nodes[x]) > abs(best):
+            best = nodes[x]
+    return float(best)
+
+
+@kernel
 def inside_step(
-    y: State, ex: Exact, left: Floats, right: Floats, at: int, tau: float, P: Floats2, series: Floats2, dq: Floats,
-    dv: Floats,
+    row: Ints, y: State, ex: Exact, left: Floats, right: Floats, at: int, tau: float, P: Floats2, series: Floats2,
+    dq: Floats, dv: Floats,
 ) -> None:  # fmt: skip
-    """State at tau after row ``left``, and the directions of slip from the forces' polynomials."""
+    """State at tau after row ``left``, with forces that tell the directions of slip."""
     n, nz = y.q.shape[0], y.z.shape[0]
     h = right[at]
     theta = tau / h
@@ -85,6 +96,9 @@ def inside_step(
         y.work[i] = left[at - 2 * width + i] + h * integral_of_nodes(ex, right, rates + i, width, theta)
     for a in range(y.F.shape[0]):
         y.F[a] = between_nodes(ex.monomial, P[a], theta)
+    for c in range(y.mode.shape[0]):
+        if row[c + 1] - row[c] == 1 and y.mode[c] == SLIP:
+            y.F[row[c]] = strongest(P[row[c]])
 
 
 @entry
@@ -119,10 +133,9 @@ def sample_exact(
                 y.N[c] = left[at_F + m + c]
             if k != opened:
                 open_step(packed, s, y, ex, left, right, at, P, series, gain)
-            inside_step(y, ex, left, right, at, tau, P, series, dq, dv)
+            inside_step(packed.ports.row, y, ex, left, right, at, tau, P, series, dq, dv)
             y.t = t[j]
-            point_against_forces(packed, y)
-            point_along_slip(packed, s, y)
+            point_slip(packed, s, y)
             complete(packed, s, y, sizes, pivots)
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])

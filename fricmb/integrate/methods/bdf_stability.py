@@ -77,8 +77,13 @@ WHOLE = 256
 
 
 def spectrum(problem: Problem, structure: Structure, K: Floats, C: Floats) -> tuple[Floats, Floats]:
-    """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction; K and C on the structure's pattern."""
+    """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction; K and C on the structure's pattern.
+
+    None where a stiffness has no value, as that of a root at 0: nothing oscillates about such a place.
+    """
     n = problem.n
+    if not (np.isfinite(K).all() and np.isfinite(C).all()):
+        return np.zeros(0), np.zeros(0)
     if n > WHOLE:
         if len(problem.omega) == n:
             return problem.omega, problem.omega * problem.zeta

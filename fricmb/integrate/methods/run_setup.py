@@ -27,6 +27,8 @@ from fricmb.integrate.step.step_control import SAMPLED, first_step
 CHUNK, CHUNK_BYTES = 4096, 3e7
 
 
+#: What is no number to go on with: functions of time are asked 1e-300 behind a start at 0, where 1/t is 1e300.
+INFINITE = 1e290
 #: Part of a scene's natural velocities and positions that counts as noise.
 NOISE = 1e-11
 
@@ -83,7 +85,14 @@ class Collector:
         self.scratch.window[0] = self.start.t + 4e-16 * abs(self.start.t) + 1e-300
         rooms = (self.packed, self.scratch, self.y, self.rest, self.old)
         code = watched(begin, *rooms, given, self.rows)
+        if not self._finite():
+            return FAIL_INFINITE
         return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]
+
+    def _finite(self) -> bool:
+        """Whether all that acts at the start has a value: no step from there ends, however short."""
+        y, s = self.y, self.scratch
+        return all(np.all(np.abs(x) < INFINITE) for x in (y.a, y.F, y.N, y.g, y.wd, y.zd, s.X))
 
     def trajectory(self, failure: str | None) -> RowTrajectory:
         """The run so far."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import entry, kernel
-from fricmb.integrate.model.accelerations import complete, kinematics
+from fricmb.integrate.model.accelerations import complete
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.law_values import magnitude, point_along
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import INSIDE
-from fricmb.integrate.problem import SLIP, STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
+from fricmb.integrate.output.slip_direction import point_slip, relative_velocity
+from fricmb.integrate.problem import STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
 from fricmb.integrate.run.breakpoints import set_window_around
 
 
@@ -68,36 +69,6 @@ def cubic(left: Floats, right: Floats, at: int, rate: int, n: int, h: float, x: 
 
 
 @kernel
-def relative_velocity(packed: Packed, s: Scratch, y: State) -> None:
-    """G at a row, whose forces are known: normal forces and modes stay."""
-    kept = y.N.copy()
-    kinematics(packed, s, y)
-    for k in range(kept.shape[0]):
-        y.N[k] = kept[k]
-
-
-@kernel
-def point_along_slip(packed: Packed, s: Scratch, y: State) -> None:
-    """Directions of two-dimensional slip from the interpolated velocities, where these say anything."""
-    relative_velocity(packed, s, y)
-    for c in range(y.mode.shape[0]):
-        row0 = packed.ports.row[c]
-        if packed.ports.row[c + 1] - row0 == 2 and y.mode[c] == SLIP:
-            r = magnitude(packed.ports.row, c, y.g)
-            if r > 1e-12 * (y.size[row0] + y.size[row0 + 1]):
-                y.n[row0] = y.g[row0] / r
-                y.n[row0 + 1] = y.g[row0 + 1] / r
-
-
-@kernel
-def point_against_forces(packed: Packed, y: State) -> None:
-    """Directions of slip against the forces; none where there is no force."""
-    for c in range(y.mode.shape[0]):
-        y.n[packed.ports.row[c] : packed.ports.row[c + 1]] = 0.0
-        point_along(packed.ports.row, c, y.F, -1.0, y.n)
-
-
-@kernel
 def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
     """Put a state into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
@@ -139,10 +110,12 @@ def complete_at(
     for c in range(nc):
         y.mode[c] = modes[c]
         y.N[c] = left[at_F + m + c]
-    for a in range(m):
-        y.F[a] = left[at_F + a]
-    point_against_forces(packed, y)
-    point_along_slip(packed, s, y)
+        first, last = packed.ports.row[c], packed.ports.row[c + 1]
+        # a contact that has just closed carries nothing yet: the next row knows its direction
+        known = left if magnitude(packed.ports.row, c, left[at_F : at_F + m]) > 0.0 else right
+        for a in range(first, last):
+            y.F[a] = known[at_F + a]
+    point_slip(packed, s, y)
     complete(packed, s, y, sizes, pivots)
 
 

@@ -27,6 +27,8 @@ from fricmb.integrate.taylor.step_start import begin_step, follow_signals
 DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP, CREEPS = range(10)
 #: Steps in a row that do not move the time.
 PATIENCE = 100
+#: A step of so many last digits of the time is nothing.
+NOTHING = 32.0
 #: Steps in a row below that part of the longest step, which series are no way to take.
 MANY, SLIGHT = 3000, 1e-4
 #: Phases of a step.
@@ -193,8 +195,9 @@ def drive_taylor(net: Net, t_pause: float, most: int) -> int:
             if net.n_steps >= until or net.time > t_pause:
                 return PAUSE
             busy = begin_step(net)
-            # a start from rest may take some steps that are nothing; more of them are no way to get on
-            still = net.time + net.step <= net.time
+            # a start from rest may take some steps that are nothing; more of them are no way to get on.  Towards a pole
+            # they come down to last digits of the time, and there were millions of them
+            still = net.step <= NOTHING * EPS * abs(net.time)
             net.stalled = net.stalled + 1 if still else 0
             if net.stalled > PATIENCE or not net.step > 0.0:
                 return TOO_SHORT

@@ -13,6 +13,8 @@ from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import telling
+from fricmb.integrate.run.outcomes import FAIL_INFINITE
+from fricmb.integrate.run.outcomes import FAILURES as OUTCOMES
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.step.step_control import SAMPLED
 from fricmb.integrate.timestepping.doubts import kinks, short_phases
@@ -25,10 +27,15 @@ from fricmb.integrate.timestepping.time_loop import DONE, FULL, NEGATIVE, NOT_FI
 from fricmb.integrate.timestepping.trajectory import SteppedRun, SteppedStart
 from fricmb.integrate.trajectory import Counters, Transitions
 
+#: A start at which a load or a belt has no value.
+NO_START = -1
 FAILURES = {
     NOT_FINITE: "the state grew beyond what numbers hold",
     NEGATIVE: "the coefficient of a friction law is negative at the slip speed reached: friction would drive",
+    NO_START: OUTCOMES[FAIL_INFINITE],
 }
+#: What is no number to go on with: functions of time are asked 1e-300 behind a start at 0, where 1/t is 1e300.
+INFINITE = 1e290
 #: Errors of a step: TIGHT rtol^(3/2) in smooth motion (third order, so that their sum goes with rtol), LOOSE rtol where
 #: a transition falls into it.
 TIGHT, LOOSE = 3.0, 1.0
@@ -100,7 +107,7 @@ class TimeStepping(Integrator):
         watched(begin, run, start.mode is not None)
         chunks: list[dict[str, Any]] = []
         held = 0
-        code = FULL
+        code = FULL if _has_values(run) else NO_START
         while code == FULL and (memory is None or held < memory) and ended() is None:
             with telling(progress, lambda: float(run.time)):
                 code = watched(drive, run)
@@ -141,6 +148,11 @@ class TimeStepping(Integrator):
         run.goes_on = int(isinstance(start, SteppedStart))
         run.varying = int(run.var.any())
         return with_arrays(run, stops=np.append(inside, t_end))
+
+
+def _has_values(run: Run) -> bool:
+    """Whether prescribed functions have values where the run starts: behind a pole there are steps, but no motion."""
+    return bool(np.all(np.abs(run.u[HERE]) < INFINITE) and np.all(np.abs(run.w[HERE]) < INFINITE))
 
 
 _HELD = ("F", "ends", "hold", "grip", "when", "known")
@@ -186,7 +198,7 @@ def _trajectory(
     row = problem.contacts.row
     for k in range(problem.n_c):
         part = run.g[HERE, row[k] : row[k + 1]]
-        direction[row[k] : row[k + 1]] = part / (np.linalg.norm(part) or 1.0)
+        direction[row[k] : row[k + 1]] = part / (np.hypot.reduce(part) or 1.0)
     end = SteppedStart(
         t=float(run.time), q=run.q[HERE].copy(), v=run.v[HERE].copy(), z=np.zeros(0), mode=run.mode[HERE].copy(),
         direction=direction, **{name: getattr(run, name)[HERE].copy() for name in _HELD},
