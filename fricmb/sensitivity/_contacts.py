@@ -39,6 +39,7 @@ class Rubs(Friction):
             return
         self.varies = True
         self.press = Function(stated.normal(given))
+        self.branches = self.press.roots()
         prefix = f"{contact.name}.normal_force."
         self.press_numbers = seeds.numbers(given, prefix)
         self.preload = seeds.dual(given.preload, f"{prefix}preload")

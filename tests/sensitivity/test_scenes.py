@@ -182,3 +182,16 @@ def test_a_number_that_may_be_no_smaller():
     sol = fm.simulate(fm.Scene("s", [plate]), t_end=5.0, rtol=1e-10, t_eval=t, sensitivities=[name])
     expected = np.sin(w * t) - w * t * np.cos(w * t)
     assert sol.sensitivity("plate.mode1", name) == pytest.approx(expected, abs=1e-7)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.2])
+def test_contacts_like_a_root_of_the_approach(damping):
+    """A ball that leaves a plane, falls back on it and bounces: slopes of Hertz's force are like a root at each end."""
+    ball = fm.Body("ball", mass=1.0, axes="xy", velocity={"x": 1.0, "y": 1.0})
+    press = fm.normal.Hertz(axis="y", stiffness=500.0, damping=damping, preload=0.5)
+    rub = fm.Contact("rub", ball, law=fm.laws.Coulomb(mu_s=0.3), normal_force=press)
+    names = ("ball.velocity.y", "rub.normal_force.stiffness", "rub.normal_force.preload")
+    scene = fm.Scene("bounce", [ball, rub])
+    found = worst(scene, names, rtol=1e-8, step=2e-4, t_end=6.0)
+    assert set(found) == set(names)
+    assert max(found.values()) < 100.0, found
