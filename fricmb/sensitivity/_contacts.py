@@ -39,6 +39,7 @@ class Rubs(Friction):
             return
         self.varies = True
         self.press = Function(stated.normal(given))
+        self.branches = self.press.roots()
         prefix = f"{contact.name}.normal_force."
         self.press_numbers = seeds.numbers(given, prefix)
         self.preload = seeds.dual(given.preload, f"{prefix}preload")
@@ -55,7 +56,9 @@ class Rubs(Friction):
             rows = [[(i, _product(s, c)) for i, c in row] for row, s in zip(rows, self.scales, strict=True)]
         found.g[k], found.drift[k], found.rows[k] = g, drift, rows
         N = found.N[k] = self._pressed(moment, found, mode)
-        N = masked(N, (mode != OPEN) & (np.asarray(N.value) > 0.0)) if self.varies else N
+        if self.varies:
+            # not where it is positive: at the very end of a contact it is 0 but for round-off, and its slopes count
+            N = masked(N, mode != OPEN)
         self.rub(moment, found, N, mode, sign)
 
     def _pressed(self, moment: Moment, found: Found, mode: Codes) -> Dual:

@@ -34,6 +34,9 @@ class Friction:
         Of the names of the law's numbers.
     """
 
+    #: Whether its normal force is like a root where it sets in and ends.
+    branches = False
+
     def __init__(self, part: Any, law: Any, number: int, d: int, states: int, prefix: str, seeds: Seeds) -> None:
         self.part, self.number, self.states, self.name, self.d = part, number, states, part.name, d
         self.law = law

@@ -21,6 +21,7 @@ _stated: dict[Hashable, Stated] = {}
 _compiled: dict[Hashable, tuple[Callable[..., Any], list[tuple[int, int]]]] = {}
 _linear: dict[Hashable, bool] = {}
 _switches: dict[Hashable, list[Any]] = {}
+_roots: dict[Hashable, bool] = {}
 _switching: dict[Hashable, list[tuple[Callable[..., Any], tuple[int, ...]]]] = {}
 #: Where conditions are gathered, while somebody asks for them.
 _seen: ContextVar[list[Dual] | None] = ContextVar("_seen", default=None)
@@ -73,6 +74,17 @@ class Function:
             stated = dict.fromkeys(c for output in outputs for c in _switching_functions(output))
             _switches[self._key] = [_bounded(c) for c in stated if c.free_symbols & set(arguments)]
         return _switches[self._key]
+
+    def roots(self) -> bool:
+        """Whether it raises an argument to a power that is no whole number: it has branch points."""
+        if self._key not in _roots:
+            import sympy
+
+            arguments, outputs = self._statement()
+            powers = [power for output in outputs for power in sympy.sympify(output).atoms(sympy.Pow)]
+            given = set(arguments)
+            _roots[self._key] = any(not p.exp.is_integer and bool(p.base.free_symbols & given) for p in powers)
+        return _roots[self._key]
 
     def _composed(self, kind: str, stated: Stated | None, arguments: Sequence[Dual]) -> list[Dual]:
         """Expressions of the arguments with slopes; ``stated``: other ones than the outputs."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import SLIP, Floats, Ints
+from fricmb.integrate.problem import OPEN, SLIP, Floats, Ints
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._found import whole
 from fricmb.sensitivity._landings import Rests
@@ -40,6 +40,10 @@ class Poles:
         several = [(k, one) for k, one in equations.contacts.items() if one.d > 1]
         self.wide = [k for k, one in several if not one.smooth or one.law.n_states(one.d) > 0]
         self.speed = self._speeds() if self.wide else {}
+        #: Of normal forces that are roots: stretches in which they act, and when they set in and end.
+        self.pressed: list[tuple[Any, Floats]] = []
+        for shut in (phases.mode[k] != OPEN for k, one in equations.contacts.items() if one.branches):
+            self.pressed.append((shut, phases.t[np.diff(np.concatenate([[False], shut, [False]]).astype(int)) != 0]))
 
     def _speeds(self) -> dict[int, float]:
         """What slip is the difference of, by contact: errors of the run count by that, where a ball rolls as well."""
@@ -67,6 +71,9 @@ class Poles:
         ``share``: of the speeds that slip is the difference of, what is as good as rest: directions of less are errors.
         """
         found, e = np.full(t.size, np.inf), self.equations
+        for own, edges in self.pressed:
+            if edges.size:
+                found = np.where(own[phase], np.minimum(found, _through_edges(t, h, edges)), found)
         if not self.wide:
             return found
         shares = np.linspace(0.0, 1.0, _PIECES + 1)
@@ -78,6 +85,14 @@ class Poles:
                 slides &= (self.phases.mode[k, phase] == SLIP) & ~self.graded[k][phase]
             found = np.where(slides, np.minimum(found, _through_zeros(own)), found)
         return found
+
+
+def _through_edges(t: Floats, h: Floats, edges: Floats) -> Floats:
+    """Sums of half axes (n_t,) of ellipses with foci at the ends of a step, through the nearest of times outside it."""
+    near = np.searchsorted(edges, t + 0.5 * h)
+    before, behind = (np.append(np.append(-np.inf, edges), np.inf)[near + i] for i in (0, 1))
+    x = 1.0 + 2.0 * np.maximum(np.minimum(t - before, behind - t - h), 0.0) / h
+    return np.asarray(x + np.sqrt(x * x - 1.0))
 
 
 def _through_zeros(g: Floats) -> Floats:

@@ -163,6 +163,8 @@ def test_what_cannot_be_a_cycle():
         fm.analysis.limit_cycle(dying)
     with pytest.raises(fm.SceneError, match="mass"):
         fm.analysis.limit_cycle(fm.models.belt_oscillator(), section=("mass.y", 0.0))
+    with pytest.raises(fm.analysis.AnalysisError, match="start must be a Solution"):
+        fm.analysis.limit_cycle(fm.models.belt_oscillator(), start=40.0)
     with pytest.raises(fm.analysis.AnalysisError, match="laps"):
         fm.analysis.limit_cycle(fm.models.belt_oscillator(), laps=0)
     with pytest.raises(fm.analysis.AnalysisError, match="turn"):

@@ -182,3 +182,39 @@ def test_a_number_that_may_be_no_smaller():
     sol = fm.simulate(fm.Scene("s", [plate]), t_end=5.0, rtol=1e-10, t_eval=t, sensitivities=[name])
     expected = np.sin(w * t) - w * t * np.cos(w * t)
     assert sol.sensitivity("plate.mode1", name) == pytest.approx(expected, abs=1e-7)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.2])
+def test_contacts_like_a_root_of_the_approach(damping):
+    """A ball that leaves a plane, falls back on it and bounces: slopes of Hertz's force are like a root at each end."""
+    ball = fm.Body("ball", mass=1.0, axes="xy", velocity={"x": 1.0, "y": 1.0})
+    press = fm.normal.Hertz(axis="y", stiffness=500.0, damping=damping, preload=0.5)
+    rub = fm.Contact("rub", ball, law=fm.laws.Coulomb(mu_s=0.3), normal_force=press)
+    names = ("ball.velocity.y", "rub.normal_force.stiffness", "rub.normal_force.preload")
+    scene = fm.Scene("bounce", [ball, rub])
+    found = worst(scene, names, rtol=1e-8, step=2e-4, t_end=6.0)
+    assert set(found) == set(names)
+    assert max(found.values()) < 100.0, found
+
+
+def test_last_instant_of_a_contact():
+    """There the load is 0 but for round-off, which does not tell whether its slopes count."""
+    belt = fm.Driven("belt", velocity={"x": 0.5575252699384434})
+    block = fm.Body("block", mass=1.0, axes="xy", position={"x": 0.3}, velocity={"x": 0.23627012457163754})
+    press = fm.normal.Spring(axis="y", stiffness=213.1408528045556, damping=1.0, preload=0.4342142865428651)
+    lift = 1.3403927499954122 * sympy.sin(2.0258422607440716 * fm.t)
+    parts = [
+        block, belt, fm.Spring("spring", block, axis="x", stiffness=1.518081517552996),
+        fm.Spring("oblique", block, axis=(0.6, 0.8), stiffness=1.0966433355158163),
+        fm.Force("lift", block, axis="y", value=lift),
+        fm.Contact("rub", block, belt, law=fm.laws.Coulomb(mu_s=0.4), normal_force=press),
+    ]  # fmt: skip
+    names = ("rub.normal_force.stiffness", "block.mass")
+    times = np.linspace(0.0, 6.0, 61)
+    fine, sol = (
+        fm.simulate(fm.Scene("lifted", parts), t_end=6.0, rtol=rtol, t_eval=times, sensitivities=names)
+        for rtol in (1e-11, 1e-8)
+    )
+    for name in names:
+        exact = fine.sensitivity("block.x", name)
+        np.testing.assert_allclose(sol.sensitivity("block.x", name), exact, rtol=0.0, atol=1e-6 * np.abs(exact).max())

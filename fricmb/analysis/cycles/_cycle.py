@@ -18,6 +18,7 @@ from fricmb.analysis.cycles._recurrence import guess_cycle
 from fricmb.analysis.cycles._section import Section, calm_time, checked_section
 from fricmb.analysis.cycles._shooting import Orbit, Shooting, solve
 from fricmb.errors import unknown_name
+from fricmb.solution import Solution
 from fricmb.system import build
 
 if TYPE_CHECKING:
@@ -164,6 +165,8 @@ def limit_cycle(
         raise AnalysisError(f"{_WHO}: laps must be a whole number of at least 1; got {laps!r}")
     if period is not None and not (np.isfinite(period) and period > 0):
         raise AnalysisError(f"{_WHO}: period must be positive; got {period!r}")
+    if start is not None and not isinstance(start, Solution | Cycle):
+        raise AnalysisError(f"{_WHO}: start must be a Solution or a Cycle; got {start!r}")
     flow = Flow(scene=detached(scene), options={"rtol": rtol, **options})
     drive = None
     if is_driven(scene):
