@@ -155,7 +155,7 @@ WRONG = [
     ({"t_start": 5.0}, "t_end: got 5.0; expected a finite time after t_start = 5"),
     ({"t_start": None}, "t_start: got None; expected a finite time"),
     ({"rtol": 2.0}, "rtol: got 2.0; expected a number from 1e-14 to 0.1"),
-    ({"t_eval": [0.0, 6.0]}, "t_eval: the time 6 is outside the run"),
+    ({"t_eval": [0.0, 6.0]}, "t_eval: the time 6.0 is outside the run"),
     ({"t_eval": [1.0, 0.5]}, "expected times in rising order"),
     ({"method": 3}, "method: got 3; expected one of 'auto', "),
     ({"step": 0.1}, "step: got 0.1, but the method 'exact' chooses its steps itself"),
