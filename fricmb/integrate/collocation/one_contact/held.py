@@ -24,7 +24,7 @@ from fricmb.integrate.problem import Floats, Floats3, Ints, Problem
 #: What is left of a piece is shorter, and takes as few points.
 LENGTH, NODES = 0.5, 8
 #: With fewer of the shortest stretches, and fewer a degree of freedom, Gauss's formula over all of them is as fast.
-FEW, FEW_BY_DOF = 16_000, 160
+FEW, FEW_BY_DOF = 16_000, 40
 
 
 @entry

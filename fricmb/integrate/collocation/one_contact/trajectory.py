@@ -10,10 +10,12 @@ import numpy as np
 from fricmb.integrate.collocation.exact_room import has_ledger
 from fricmb.integrate.collocation.one_contact.constants import linear_part, stick_forces, structure
 from fricmb.integrate.collocation.one_contact.held import HeldLedger
+from fricmb.integrate.collocation.one_contact.held_samples import held_states
 from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, powers
 from fricmb.integrate.collocation.one_contact.prepare import Rows, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
+from fricmb.integrate.collocation.structure_blocks import MANY
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.problem import STICK, Floats, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
@@ -134,6 +136,15 @@ class SingleRun(Trajectory):
         return q, v, F, g, mode, loss
 
     def _power_states(self, row: Ints, tau: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        stuck = self._rows.kinds[row, 0] == STICK
+        if self.problem.n >= MANY and stuck.any():
+            held = held_states(self._run(), *stick_forces(self.problem), row[stuck], tau[stuck])
+            if stuck.all():
+                return held
+            found = tuple(np.empty((*part.shape[:-1], len(row))) for part in held)
+            for whole, one, other in zip(found, held, self._power_states(row[~stuck], tau[~stuck]), strict=True):
+                whole[..., stuck], whole[..., ~stuck] = one, other
+            return found[0], found[1], found[2], found[3]
         t = self._rows.steps[row, 0] + tau
         q, v, F, _, _, _ = self._states(row, tau, t)
         return t, q, v, F
