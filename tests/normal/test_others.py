@@ -204,3 +204,16 @@ def test_hertz_with_damping_lets_go_what_is_torn_off():
     assert sol["block.y"][-1] == pytest.approx(known[0], rel=1e-8)
     assert sol.velocity("block.y")[-1] == pytest.approx(known[1], rel=1e-8)
     assert [event.kind for event in sol.events] == ["open"]
+
+
+@pytest.mark.parametrize("method", ["collocation", "radau"])
+def test_a_block_that_is_thrown_off_loses_nothing_without_dampers(method):
+    """Steps of collocation that end at a lift-off counted powers beyond it: up to a quarter of what was exchanged."""
+    block = fm.Body("b", mass=1.0, axes="xy", velocity={"x": 1.0, "y": 2.0})
+    law = fm.normal.Spring(axis="y", stiffness=2e4, preload=1.0)
+    sole = fm.Contact("c", block, law=fm.laws.Coulomb(mu_s=0.3), normal_force=law)
+    scene = fm.Scene("s", [block, fm.Force("g", block, axis="y", value=0.0 * fm.t), sole])
+    sol = fm.simulate(scene, t_end=6.0, t_eval=np.linspace(0.0, 6.0, 601), rtol=1e-8, method=method)
+    assert any(event.kind == "open" for event in sol.events)
+    assert np.abs(sol.energy.damping_loss).max() < 1e-7
+    assert np.abs(sol.energy.residual).max() < 1e-6

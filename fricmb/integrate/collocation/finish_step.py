@@ -197,7 +197,7 @@ def exact_record(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
     """Keep the step's inputs beside the row of its end, which comes next (stands in for :func:`record_inside`).
 
     Behind the row proper: h, inputs P (n_in s), states z (s n_z), powers (s (n_c + 2)).  A transition may have been
-    located elsewhere on this motion: then the step's end is not that of h.
+    located elsewhere on this motion: then the step's end is not that of h, and powers are those up to its end.
     """
     ex, w = one.exact, one.w
     n_s = w.F.shape[0]
@@ -222,6 +222,9 @@ def exact_record(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
     if abs(span - h) > 1e-12 * h:
         # located within the step or just behind it
         powers_on_motion(packed, s, y, one, h, span, False, one.power)
+        for x in range(n_s):
+            for i in range(width):
+                row[at + x * width + i] = one.power[x, i]
     for i in range(width):
         end.work[i] = y.work[i]
         for x in range(n_s):

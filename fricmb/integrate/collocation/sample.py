@@ -92,8 +92,12 @@ def inside_step(
         y.z[a] = through_nodes(ex, left[1 + 3 * n + a], right, states + a, nz, theta)
     width = y.rate.shape[0]
     rates = states + nz * P.shape[1]
+    # powers are known over the step as it was taken, which a transition may have cut short
+    span = right[0] - left[0]
+    if abs(span - h) < 1e-9 * h:
+        span = h
     for i in range(width):
-        y.work[i] = left[at - 2 * width + i] + h * integral_of_nodes(ex, right, rates + i, width, theta)
+        y.work[i] = left[at - 2 * width + i] + span * integral_of_nodes(ex, right, rates + i, width, tau / span)
     for a in range(y.F.shape[0]):
         y.F[a] = between_nodes(ex.monomial, P[a], theta)
     for c in range(y.mode.shape[0]):

@@ -110,6 +110,14 @@ def test_a_body_of_many_modes_sticks_and_slips_as_by_other_methods(axes):
     np.testing.assert_allclose(here.force("sole"), there.force("sole"), rtol=0.0, atol=1e-5)
 
 
+def test_energies_over_a_stick_of_many_modes_close():
+    """Damping over a stick is found from many instants at once; the balance with the motion's own energies is not."""
+    sol = fm.simulate(bar(MANY + 6, axes="x"), t_end=9.0, rtol=1e-9, t_eval=np.linspace(0.0, 9.0, 46))
+    assert (sol.mode("sole") == 0).sum() > 30
+    assert sol.energy.damping_loss[-1] > 1e-5 * sol.energy.friction_loss[-1]
+    assert np.abs(sol.energy.residual).max() < 1e-7
+
+
 @pytest.mark.parametrize("modes", [4, MANY + 6])
 @pytest.mark.parametrize("across", [0.0, 0.5])
 def test_a_contact_whose_directions_move_as_one_is_left_to_others(modes, across):
