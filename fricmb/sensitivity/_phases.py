@@ -16,7 +16,7 @@ SAME = 1e-11
 #: How far beside them functions of time are evaluated, relative to 1 or the time.
 BESIDE = 1e-14
 #: How far before the end of a stretch slopes are evaluated: further than round-off of a run moves a switch of formulas.
-BEFORE = 1e-13
+BEFORE = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
