@@ -22,11 +22,12 @@ def alone(monkeypatch):
 
 @pytest.mark.parametrize(("rtol", "tolerance"), [(1e-4, 1e-2), (1e-6, 1e-4), (1e-8, 1e-6)])
 def test_andrews(alone, rtol, tolerance):
+    sol = fm.simulate(fm.models.andrews(), t_end=0.03, rtol=rtol, method="bdf")
+    np.testing.assert_allclose(angles(sol), END, rtol=tolerance)
     shares = []
     # whether BDF is handed back to the other method at some tight turn hangs on the last digit of the tolerance
     for near in (rtol, 1.1 * rtol, 1.3 * rtol):
         sol = fm.simulate(fm.models.andrews(), t_end=0.03, rtol=near, method="bdf")
-        np.testing.assert_allclose(angles(sol), END, rtol=tolerance)
         one_step = fm.simulate(fm.models.andrews(), t_end=0.03, rtol=near, method="radau")
         shares.append(sol.stats.n_rhs / sol.stats.n_steps * one_step.stats.n_steps / one_step.stats.n_rhs)
     # fewer evaluations a step than any formula of several stages needs: it is BDF that ran
