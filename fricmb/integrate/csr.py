@@ -16,6 +16,12 @@ _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 
 
+def is_diagonal(matrix: _Floats) -> bool:
+    """Whether a dense matrix is square and has nothing beside its diagonal."""
+    rows, columns = matrix.shape
+    return bool(rows == columns and np.count_nonzero(matrix) == np.count_nonzero(np.diagonal(matrix)))
+
+
 @dataclass(frozen=True)
 class Csr:
     """A matrix by compressed rows.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.csr import is_diagonal
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, Linear, Problem, SparseLinear
 
@@ -32,7 +33,7 @@ def _against_structure(linear: Linear, n: int) -> str | None:
         symmetric = linear.csr("Kx").block(slice(0, n), slice(0, n)).is_symmetric()
     else:
         K = linear.Kx[:n, :n]
-        diagonal = np.count_nonzero(linear.M) == np.count_nonzero(linear.M.diagonal())
+        diagonal = is_diagonal(linear.M)
         symmetric = not np.count_nonzero(K != K.T)
     if not diagonal:
         return "the mass matrix must be diagonal"

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.collocation.nodes import TERMS, Z_EXACT, nodes
-from fricmb.integrate.collocation.structure_blocks import Blocks, blocks, inverse_mass, is_diagonal
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.csr import is_diagonal
+from fricmb.integrate.model.structure import dense_inverse
 from fricmb.integrate.once_per import lent_per, once_per
 from fricmb.integrate.problem import Floats, Ints, Problem, Templates
 from fricmb.integrate.step.exact_structure import RUNGS, UNIT_RUNG, Exact
@@ -120,7 +122,7 @@ HELD_NUMBERS = 3_000_000
 def _exact(problem: Problem, s: int) -> Exact:
     n, forms, part, table = problem.n, port_forms(problem), free_blocks(problem), nodes(s)
     b, n_in, n_o = len(part.w2), forms.B.shape[1], len(forms.by_v)
-    Minv = inverse_mass(problem.linear.M)
+    Minv = dense_inverse(problem.linear.M).dense()
     mass = np.diagonal(problem.linear.M)
     c = np.stack([
         _product([(forms.by_q, part.q_u), (forms.by_v, part.v_u)], mass),

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.collocation.held_modes import held_modes
+from fricmb.integrate.csr import is_diagonal
 from fricmb.integrate.problem import Floats
 
 #: Degrees of freedom from which on poles with rows stuck are sought from the free modes.
@@ -64,17 +65,6 @@ class Blocks:
     force_1: Floats
     stuck_motion: Floats
     modal: bool
-
-
-def is_diagonal(matrix: Floats) -> bool:
-    """Whether a matrix is square and has nothing beside its diagonal."""
-    rows, columns = matrix.shape
-    return bool(rows == columns and np.count_nonzero(matrix) == np.count_nonzero(np.diagonal(matrix)))
-
-
-def inverse_mass(M: Floats) -> Floats:
-    """Inverse of the mass matrix."""
-    return np.diag(1.0 / np.diagonal(M)) if is_diagonal(M) else np.asarray(np.linalg.inv(M), dtype=float)
 
 
 def _inverse_factor(M: Floats) -> Floats:

@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 import scipy.linalg
 
+from fricmb.integrate.csr import is_diagonal
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
@@ -46,7 +47,7 @@ def modes_of(problem: Problem) -> Modes | None:
     """The separated structure; None where K is not symmetric or damping not proportional."""
     n, linear = problem.n, problem.linear
     M, K, C, f = linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n], linear.fx[:n]
-    if all(_is_diagonal(A) for A in (M, K, C)):
+    if all(is_diagonal(A) for A in (M, K, C)):
         m = np.diagonal(M)
         scale = 1.0 / np.sqrt(m)
         return Modes(w2=np.diagonal(K) / m, d=np.diagonal(C) / m, e=f * scale, shapes=scale)
@@ -64,10 +65,6 @@ def modes_of(problem: Problem) -> Modes | None:
     w2, d = (np.einsum("ij,ij->j", shapes, A @ shapes) for A in (K, C))
     w2[np.abs(w2) < 1e-14 * np.abs(w2).max(initial=0.0)] = 0.0
     return Modes(w2=w2, d=d, e=shapes.T @ f, shapes=shapes)
-
-
-def _is_diagonal(A: Floats) -> bool:
-    return bool(np.count_nonzero(A) == np.count_nonzero(np.diagonal(A)))
 
 
 def unit_responses(w2: Floats, d: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.layout import Layout
-from fricmb.integrate.csr import Csr, on_one_pattern
+from fricmb.integrate.csr import Csr, is_diagonal, on_one_pattern
 from fricmb.integrate.model.band_ordering import band_order
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem, SparseLinear
@@ -70,7 +70,7 @@ def _inverse_mass(problem: Problem) -> Csr:
 def dense_inverse(M: Floats) -> Csr:
     """Inverse of a mass matrix, by its content; a diagonal where it is one."""
     places, diagonal = np.arange(len(M)), np.diagonal(M)
-    if np.count_nonzero(M) == np.count_nonzero(diagonal):
+    if is_diagonal(M):
         return Csr(M.shape, np.arange(len(M) + 1), places, 1.0 / diagonal)
     return Csr.of_dense(np.linalg.inv(M))
 

@@ -14,9 +14,10 @@ from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
-from fricmb.integrate.collocation.structure_blocks import Blocks, blocks, inverse_mass
+from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.piece import Pattern, Piece
 from fricmb.integrate.model.friction_cone import stick_limits
+from fricmb.integrate.model.structure import dense_inverse
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Problem
 
@@ -71,7 +72,7 @@ def load_pattern(n: int, m: int) -> Pattern:
 @cached_by_content
 def _port(M: Floats, W: Floats) -> tuple[Floats, Floats, Floats]:
     """Inverse mass, motion of the dofs per contact force, Delassus matrix."""
-    Minv = inverse_mass(M)
+    Minv = dense_inverse(M).dense()
     MW = Minv @ W
     return Minv, MW, W.T @ MW
 
