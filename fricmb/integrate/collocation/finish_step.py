@@ -218,16 +218,15 @@ def exact_record(packed: Packed, s: Scratch, y: State, end: State, one: OneStep,
         for a in range(y.z.shape[0]):
             row[at] = w.z[x, a]
             at += 1
-    node_powers(packed, s, y, one, h, row, at)
     if abs(span - h) > 1e-12 * h:
         # located within the step or just behind it
         powers_on_motion(packed, s, y, one, h, span, False, one.power)
-        for x in range(n_s):
-            for i in range(width):
-                row[at + x * width + i] = one.power[x, i]
+    else:
+        node_powers(packed, s, y, one, h)
     for i in range(width):
         end.work[i] = y.work[i]
         for x in range(n_s):
+            row[at + x * width + i] = one.power[x, i]
             end.work[i] += span * ex.tab.b[x] * one.power[x, i]
     for i in range(n + 1):
         ex.low[0, i] = ex.low[1, i]

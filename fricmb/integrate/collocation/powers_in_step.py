@@ -10,7 +10,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, powers, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import OPEN, Floats, Floats2
+from fricmb.integrate.problem import OPEN, Floats2
 from fricmb.integrate.step.one_step_room import OneStep
 
 
@@ -49,10 +49,9 @@ def powers_on_motion(
 
 
 @kernel
-def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, row: Floats, at: int) -> None:
-    """Powers at the nodes into a row, node by node."""
+def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> None:
+    """Powers at the nodes of a step as it was solved, into ``one.power``."""
     w = one.w
-    width = y.rate.shape[0]
     if one.exact.ledger == 1:
         powers_on_motion(packed, s, y, one, h, h, True, one.power)
     else:
@@ -61,6 +60,3 @@ def node_powers(packed: Packed, s: Scratch, y: State, one: OneStep, h: float, ro
             for k in range(y.mode.shape[0]):
                 for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
                     one.power[j, k] -= w.F[j, a] * w.g[j, a]
-    for j in range(w.F.shape[0]):
-        for i in range(width):
-            row[at + j * width + i] = one.power[j, i]
