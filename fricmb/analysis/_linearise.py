@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fricmb.analysis._errors import Floats
+from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import (
     LAW_COEFFICIENT,
     LAW_SMOOTH,
@@ -15,7 +16,6 @@ from fricmb.integrate.problem import (
     Templates,
 )
 from fricmb.system import System
-from fricmb.system._evaluate import arguments, evaluate
 
 
 @dataclass(frozen=True, kw_only=True)

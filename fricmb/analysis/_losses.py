@@ -12,10 +12,10 @@ import numpy as np
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis._quadrature import cumulated, grid, nodes, refined
 from fricmb.errors import unknown_name
+from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import NORMAL_LAW
 from fricmb.scene import Contact, Element, MatrixElement, ModalBody, Scene
 from fricmb.system import System, build
-from fricmb.system._evaluate import arguments, evaluate
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution

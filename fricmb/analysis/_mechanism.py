@@ -10,9 +10,9 @@ import numpy as np
 from fricmb.analysis._errors import Floats
 from fricmb.analysis._linearise import friction_at, slopes_of
 from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, NORMAL_REACTION, Templates
 from fricmb.system import MechanismSystem
-from fricmb.system._evaluate import arguments, evaluate
 
 
 @dataclass(frozen=True, kw_only=True)

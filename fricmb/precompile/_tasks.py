@@ -22,8 +22,7 @@ def kernels() -> list[str]:
 
     for module in pkgutil.walk_packages(fricmb.integrate.__path__, "fricmb.integrate."):
         import_module(module.name)
-    for name in ("fricmb.system._evaluate", "fricmb.sensitivity"):
-        import_module(name)
+    import_module("fricmb.sensitivity")
     own = [name for name in entry_names() if name.startswith(("fricmb.integrate.", "fricmb.system.", "fricmb.sens"))]
     return [*(f"block {name}" for name in block_names()), *(f"entry {name}" for name in own)]
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from fricmb.errors import unknown_name
 from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.model.table_values import _each
 from fricmb.integrate.problem import OPEN, Floats, Start
 from fricmb.integrate.trajectory import MotionSamples
-from fricmb.system._evaluate import _each
 from fricmb.system._system import System
 from fricmb.system._tables import Row
 

@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from fricmb.errors import unknown_name
+from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Problem, SparseLinear, Start, Templates
 from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._breakpoints import Switch
-from fricmb.system._evaluate import arguments, evaluate
 from fricmb.system._lined import LinedStores
 from fricmb.system._stored import Stored, stored_of
 from fricmb.system._structure import Store

@@ -15,7 +15,7 @@ from fricmb.integrate.compile.layout import argument_types
 from fricmb.precompile import _compile, _crew, _tasks, compile_all
 from fricmb.precompile._crew import Crew, Shares
 
-TASKS = ["block find_open", "block mark_rest", "entry fricmb.system._evaluate:_each"]
+TASKS = ["block find_open", "block mark_rest", "entry fricmb.integrate.model.table_values:_each"]
 SHIPPED = """
 import sys
 from pathlib import Path

@@ -12,9 +12,9 @@ import numpy as np
 
 from fricmb.analysis._errors import Floats
 from fricmb.integrate import SLIP, STICK
+from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_SMOOTH, NORMAL_CONSTANT, Codes, Ints
 from fricmb.system import System
-from fricmb.system._evaluate import arguments, evaluate
 
 #: Slip speed at which a law is asked for its limit at 0.
 _BARELY = 1e-300

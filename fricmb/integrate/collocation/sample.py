@@ -144,4 +144,4 @@ def sample_exact(
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])
         opened = k if inside else -1
-        write_sample(packed, y, out[j], out_mode[j])
+        write_sample(packed, s, y, out[j], out_mode[j])

@@ -251,7 +251,9 @@ def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats) 
         if port.joint[c] < 0 and port.normal[c] == NORMAL_LAW:
             evaluate(port.normals, c, s)
             rate = s.x[1]
-            damping -= (max(N[c], 0.0) - port.N0[c] + s.out[4]) * rate
+            push = max(N[c], 0.0) - port.N0[c]
+            # of one with damping all counts as lost here, and what is stored is taken off in the end
+            damping -= (push if port.damped[c] else push + s.out[4]) * rate
     for j in range(n_u):
         supply -= k.fu[j] * X[1 + 2 * n_y + n_u + j]
     for e in range(linear.C.shape[0]):

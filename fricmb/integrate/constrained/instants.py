@@ -11,6 +11,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import plane
 from fricmb.integrate.constrained.state import Instant, State
+from fricmb.integrate.model.forces import stored_by_damped
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import SLIP, STICK, Codes2, Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import set_window_around
@@ -20,11 +21,12 @@ from fricmb.integrate.run.breakpoints import set_window_around
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
     force: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
-    project: bool,
+    stored: Floats, project: bool,
 ) -> int:  # fmt: skip
     """Complete every state (row by row); ``force`` (n_t, m + 2 m_p) start values [lam, F, n].  Number of failures.
 
-    ``project``: q and v, interpolated between steps, are first moved onto the constraints.
+    ``project``: q and v, interpolated between steps, are first moved onto the constraints; ``stored`` (n_t,): energy in
+    contacts with damping.
     """
     m, rows, n_c = y.lam.shape[0], y.F.shape[0], y.mode.shape[0]
     failed = 0
@@ -52,6 +54,7 @@ def instants(
         if not react(mech, k, w, y, False):
             failed += 1
         k.borne_before = max(k.borne, k.borne_before)
+        stored[i] = stored_by_damped(mech.port.damped, mech.port.normals, k.s)
         for j in range(m):
             lam[i, j] = y.lam[j]
         for j in range(y.a.shape[0]):

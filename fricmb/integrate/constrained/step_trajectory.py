@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from fricmb.integrate.constrained.instants import instants
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
 from fricmb.integrate.constrained.workspace import evaluation
+from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
@@ -61,7 +63,7 @@ class StepTrajectory(Trajectory):
         if not len(self._span):
             return self._only_start()
         values = self._values[self._row_step, np.where(self._row_side == 0, 0, len(self._nodes) - 1)]
-        return self._complete(self.t, values, self._row_step)
+        return self._since_start(self._complete(self.t, values, self._row_step))
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
@@ -71,7 +73,8 @@ class StepTrajectory(Trajectory):
         step = np.clip(np.searchsorted(self._span[:, 0], t, side="right") - 1, 0, len(self._span) - 1)
         x = np.clip((t - self._span[step, 0]) / self._span[step, 1], 0.0, 1.0)
         weight = lagrange_weights(self._nodes, x)
-        return self._complete(t, np.einsum("tj,tjw->tw", weight, self._values[step]), step, project=True)
+        values = np.einsum("tj,tjw->tw", weight, self._values[step])
+        return self._since_start(self._complete(t, values, step, project=True))
 
     def _only_start(self, count: int = 1) -> Samples:
         values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self.problem.n_c + 2)])
@@ -82,7 +85,19 @@ class StepTrajectory(Trajectory):
         self._mode = np.ones((1, nc), np.int8) if self.end.mode is None else self.end.mode[None]
         if self.end.direction is not None:
             self._force[0, m + rows :] = self.end.direction
-        return self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))
+        start = self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))
+        return replace(start, damping_loss=np.zeros(count))
+
+    def _since_start(self, samples: Samples) -> Samples:
+        before = self._lost_at_start
+        return replace(samples, damping_loss=samples.damping_loss - before) if before else samples
+
+    @cached_property
+    def _lost_at_start(self) -> float:
+        """Damping loss before there was any: less by what contacts with damping store at the start."""
+        if not damped_normals(self.problem).any():
+            return 0.0
+        return float(self._complete(self._span[:1, 0], self._values[:1, 0], np.zeros(1, int)).damping_loss[0])
 
     def _complete(self, t: Floats, values: Floats, step: Ints, *, project: bool = False) -> Samples:
         problem = self.problem
@@ -94,7 +109,7 @@ class StepTrajectory(Trajectory):
         return Samples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
             mode=np.ascontiguousarray(self._mode[step].T), friction_loss=work[:, :nc].T.copy(),
-            damping_loss=work[:, nc].copy(), input=work[:, nc + 1].copy(),
+            damping_loss=work[:, nc] - found[5][0], input=work[:, nc + 1].copy(),
         )  # fmt: skip
 
 
@@ -130,22 +145,24 @@ def complete_open(
 
 def complete_at(
     problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False
-) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
     """F (m_p, n_t), N (n_c, n_t), g (m_p, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
+
+    The last are energies (1, n_t) that contacts with damping store.
 
     ``project``: q and v are first moved onto the constraints, in place.
     """
     m, nc, rows, count = mechanism_of(problem).n_rows, problem.n_c, problem.m, len(t)
     F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
-    lam, a = np.zeros((count, m)), np.zeros((count, problem.n))
+    lam, a, stored = np.zeros((count, m)), np.zeros((count, problem.n)), np.zeros(count)
     mech = mech_of(problem)
     solid, still = np.ascontiguousarray, 1e-11 * float(np.abs(v).max(initial=0.0))
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),
-            still, F, N, g, lam, a, project,
+            still, F, N, g, lam, a, stored, project,
         )  # fmt: skip
-    return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy()
+    return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy(), stored[None]
 
 
 def lagrange_weights(nodes: Floats, x: Floats) -> Floats:

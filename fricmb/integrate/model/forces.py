@@ -9,7 +9,7 @@ from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.problem_structs import Packed, Ports, Spread, Table
 from fricmb.integrate.model.structure import Structure
-from fricmb.integrate.problem import Floats, Problem
+from fricmb.integrate.problem import Codes, Floats, Problem
 
 
 class Scratch(Layout):
@@ -208,10 +208,22 @@ def belt_velocity(ports: Ports, s: Scratch, n: int, a: int) -> float:
 
 
 @kernel
+def stored_by_damped(damped: Codes, normals: Table, s: Scratch) -> float:
+    """Energy stored at X by all contacts whose normal force has damping."""
+    stored = 0.0
+    for k in range(damped.shape[0]):
+        if damped[k]:
+            evaluate(normals, k, s)
+            stored += s.out[3]
+    return stored
+
+
+@kernel
 def powers(packed: Packed, s: Scratch, F: Floats, N: Floats, g: Floats, out: Floats) -> None:
     """Powers at X: friction loss of every contact (n_c,), damping loss, input; into out (n_c + 2,).
 
-    Input is what drivers, forces of time, slides and the antisymmetric part of K bring in.
+    The damping loss is short of what contacts with damping store (:func:`stored_by_damped`).  Input is what drivers,
+    forces of time, slides and the antisymmetric part of K bring in.
     """
     structure = packed.structure
     ports = packed.ports
@@ -228,14 +240,15 @@ def powers(packed: Packed, s: Scratch, F: Floats, N: Floats, g: Floats, out: Flo
             supply += F[a] * belt_velocity(ports, s, n, a)
         out[k] = loss
         if ports.acts[k]:
-            # the bodies feel N - N0 along e: stored dV/de e', the rest is lost; a driven end brings the difference in
+            # the bodies feel N - N0 along e: stored dV/de e', the rest is lost; a driven end brings the difference in;
+            # of one with damping all counts as lost here, and what is stored is taken off in the end
             evaluate(packed.normals, k, s)
             rate = s.x[1]
             felt = 0.0
             for i in range(n):
                 felt += ports.Wn[i, k] * s.X[1 + n + i]
             push = N[k] - ports.N0[k]
-            damping -= (push + s.out[4]) * rate
+            damping -= (push if ports.damped[k] else push + s.out[4]) * rate
             supply += push * (felt - rate)
     start, index, C, Ka = structure.first, structure.column, structure.C, structure.Ka
     q, v = s.X[1 : 1 + n], s.X[1 + n : 1 + 2 * n]

@@ -8,6 +8,7 @@ from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import Csr
+from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import (
@@ -40,7 +41,8 @@ class Ports(Layout):
     """Contacts.
 
     ``var`` (n_c,) numbers those with a varying normal force, -1 for the others; ``acts``: both bodies feel it;
-    D = W^T M^-1 W; ``soft`` relative softening of stuck contacts whose forces would not be determined.
+    ``damped``: it depends on a rate; D = W^T M^-1 W;
+    ``soft`` relative softening of stuck contacts whose forces would not be determined.
     """
 
     row: Ints
@@ -57,6 +59,7 @@ class Ports(Layout):
     N0: Floats
     var: Ints
     acts: Codes
+    damped: Codes
     soft: float
 
 
@@ -160,7 +163,7 @@ def _pack(problem: Problem) -> Packed:
         mobility_at_contacts(problem),
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
-        (contacts.normal == NORMAL_LAW).astype(np.int8), softness(problem),
+        (contacts.normal == NORMAL_LAW).astype(np.int8), damped_normals(problem), softness(problem),
     )  # fmt: skip
     return room(Packed(
         structure, ports, table_of(problem.signals.table), table_of(contacts.law_table),

@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch
+from fricmb.integrate.model.forces import Scratch, stored_by_damped
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
@@ -69,8 +69,8 @@ def cubic(left: Floats, right: Floats, at: int, rate: int, n: int, h: float, x: 
 
 
 @kernel
-def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
-    """Put a state into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
+def write_sample(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes) -> None:
+    """Put the state of X into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
     row[0] = y.t
     for i in range(n):
@@ -90,6 +90,7 @@ def write_sample(packed: Packed, y: State, row: Floats, modes: Codes) -> None:
                 row[at + m + nc + a] = 0.0
     for i in range(nc + 2):
         row[at + 2 * m + nc + i] = y.work[i]
+    row[at + 2 * m + 2 * nc] -= stored_by_damped(packed.ports.damped, packed.normals, s)
 
 
 @kernel
@@ -229,4 +230,4 @@ def sample_rows(
             complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots)
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])
-        write_sample(packed, y, out[j], out_mode[j])
+        write_sample(packed, s, y, out[j], out_mode[j])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from fricmb.integrate.compile.lapack import load_lapack
 from fricmb.integrate.compile.parallel_compile import load_blocks
+from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.model.instant_workspace import InstantWorkspace, instant_workspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
@@ -91,7 +92,15 @@ class RowTrajectory(Trajectory):
         return self._sampled(t, np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0), energies)
 
     def _complete(self, motion: MotionSamples, work: Floats2) -> Samples:
-        return Samples(**vars(motion), friction_loss=work[:-2], damping_loss=work[-2], input=work[-1])
+        damping = work[-2] - self._lost_at_start if self._lost_at_start else work[-2]
+        return Samples(**vars(motion), friction_loss=work[:-2], damping_loss=damping, input=work[-1])
+
+    @cached_property
+    def _lost_at_start(self) -> float:
+        """Damping loss before there was any: less by what contacts with damping store at the start."""
+        if not damped_normals(self.problem).any():
+            return 0.0
+        return float(self._sampled(self._times[:1], np.zeros(1, np.int64), False)[1][-2, 0])
 
     def _sampled(self, t: Floats, index: Ints, energies: bool = True) -> tuple[MotionSamples, Floats2]:
         """Motion within the rows ``index``, and the energies (n_c+2, n_t)."""
