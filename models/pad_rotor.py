@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -47,13 +47,20 @@ class PadRotorModes:
         """Shapes (2, n) at a radius and an angle, by cubic splines over the grid."""
         if len(self.radii) == len(self.angles) == 1:
             return shapes[:, 0, 0]
-        found = np.empty((2, shapes.shape[-1]))
-        place = np.array([r]), np.array([phi])
-        from scipy.interpolate import RectBivariateSpline  # slow to import, and no other model needs it
-
-        for i, j in np.ndindex(*found.shape):
-            found[i, j] = RectBivariateSpline(self.radii, self.angles, shapes[i, :, :, j]).ev(*place)[0]
+        # a spline through given values is linear in them: what each value of an axis counts is found once for all modes
+        found: Floats = np.einsum(
+            "i,j,cijn->cn", _weights(tuple(self.radii), r), _weights(tuple(self.angles), phi), shapes
+        )
         return found
+
+
+@lru_cache(maxsize=256)
+def _weights(axis: tuple[float, ...], at: float) -> Floats:
+    """What the values (n,) along an axis count at a place: cubic splines through 1 at one of them, 0 at the others."""
+    from scipy.interpolate import make_interp_spline  # slow to import, and no other model needs it
+
+    found: Floats = make_interp_spline(axis, np.eye(len(axis)), k=3)(at)
+    return found
 
 
 @cache

@@ -160,7 +160,7 @@ def _exact(problem: Problem, s: int) -> Exact:
         "xf": np.zeros((n_o, s)), "x": np.zeros((n_o, s)), "P": np.zeros((n_in, s)),
         "now": np.zeros(n_in), "weight": np.zeros(n_in), "low": np.zeros((2, n + 1)), "end": np.zeros((2, n)),
         "node": np.zeros((2, s, n)), "f": np.zeros(n),
-        "held": np.zeros((held, 3, wide, wide)), "held_for": np.zeros((held, 2), np.int64),
+        "held": np.empty((held, 3, wide, wide)), "held_for": np.zeros((held, 2), np.int64),
         "rows": np.zeros(wide, np.int64),
         "J": np.zeros((s, nf, xs)), "JN": np.zeros((s, nv, ys)), "fe": np.zeros((s, nf)),
         "A": np.zeros(inner * inner), "R": np.zeros((s * (problem.m + nv) + 1, inner)),

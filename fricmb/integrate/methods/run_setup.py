@@ -24,7 +24,7 @@ from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import SAMPLED, first_step
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
-CHUNK, CHUNK_BYTES = 4096, 3e7
+CHUNK, CHUNK_BYTES = 4096, 1e6
 
 
 #: What is no number to go on with: functions of time are asked 1e-300 behind a start at 0, where 1/t is 1e300.
@@ -68,7 +68,7 @@ class Collector:
         self.scratch, self.y, self.end, self.rest, self.old, self.acc, self.clock = workspace
         set_out(self.y, start)
         set_out(self.end, start)
-        self.chunk = int(np.clip(CHUNK_BYTES / (8 * sum(widths(problem))), 64, CHUNK))
+        self.chunk = int(np.clip(CHUNK_BYTES / (8 * (sum(widths(problem)) + columns)), 64, CHUNK))
         self.rows = rows(problem, self.chunk, columns)
         self.natural_v, self.natural_q = natural_scales(
             problem, self.packed, self.scratch, start.t, t_end - start.t, start.q
