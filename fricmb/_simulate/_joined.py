@@ -13,6 +13,7 @@ from fricmb._simulate._members import Idle, Member
 from fricmb.integrate import OPEN, STICK, MotionSamples, Samples, Start, Trajectory, Transitions
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import KeptTrajectory, add_counters, take
+from fricmb.integrate.run.spread_motion import SpreadMotion, constant
 from fricmb.scene import Contact
 from fricmb.solution import IslandStats, Names
 from fricmb.values import value_of
@@ -122,29 +123,30 @@ class JoinedRun(Trajectory):
         return self._assemble(t, [run.motion(t) for _, run in self.runs])
 
     def _complete(self, t: Floats, parts: Sequence[Samples]) -> Samples:
+        motion = self._assemble(t, parts)
         loss = np.zeros((self._shape[1], t.size))
         for place, part in zip(self._places, parts, strict=True):
             loss[place.contacts] = part.friction_loss
         return Samples(
-            **vars(self._assemble(t, parts)), friction_loss=loss,
+            **{f.name: getattr(motion, f.name) for f in fields(MotionSamples)}, friction_loss=loss,
             damping_loss=np.sum([part.damping_loss for part in parts], axis=0),
             input=np.sum([part.input for part in parts], axis=0),
         )  # fmt: skip
 
     def _assemble(self, t: Floats, parts: Sequence[MotionSamples]) -> MotionSamples:
-        n, n_c, m, _ = self._shape
+        _, n_c, m, _ = self._shape
         n_t = t.size
-        found = MotionSamples(
+        found = SpreadMotion.of(
+            self._start.q,
+            [(place.dofs, part) for place, part in zip(self._places, parts, strict=True)],
             t=t,
-            q=_constant(self._start.q, n_t),
-            v=np.zeros((n, n_t)),
-            z=_constant(self._start.z, n_t),
+            z=constant(self._start.z, n_t),
             F=np.zeros((m, n_t)), g=np.zeros((m, n_t)),
-            N=_constant(self._pressed, n_t),
+            N=constant(self._pressed, n_t),
             mode=np.full((n_c, n_t), STICK, dtype=np.int8),
         )  # fmt: skip
         for place, part in zip(self._places, parts, strict=True):
-            found.q[place.dofs], found.v[place.dofs], found.z[place.states] = part.q, part.v, part.z
+            found.z[place.states] = part.z
             found.F[place.rows], found.g[place.rows] = part.F, part.g
             found.N[place.contacts], found.mode[place.contacts] = part.N, part.mode
         if self._idle is not None:
@@ -187,14 +189,6 @@ class JoinedRun(Trajectory):
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name not in ("_places", "_idle")}
-
-
-def _constant(values: Floats, n_t: int) -> Floats:
-    """Rows (n, n_t) of constant values; memory of zeros is not touched."""
-    rows: Floats = np.zeros((values.size, n_t))
-    there = np.flatnonzero(values)
-    rows[there] = values[there, None]
-    return rows
 
 
 def _resting_forces(members: Sequence[Member], run: set[int], n_c: int) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,13 @@ class MotionSamples:
     g: Floats
     N: Floats
     mode: Codes
+
+    def numbers(self, moving: Ints | None) -> list[Any]:
+        """All arrays of numbers; of degrees of freedom those that move (None: all)."""
+        found = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "mode"}
+        if moving is not None:
+            found |= {name: found[name][moving] for name in ("q", "v")}
+        return list(found.values())
 
 
 @dataclass(frozen=True, kw_only=True)

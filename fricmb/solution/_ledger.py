@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from functools import cached_property
 
-from fricmb.integrate import Samples
+from fricmb.integrate import MotionSamples, Samples
 from fricmb.integrate.problem import Floats
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._recorded import Recorded, finite
@@ -35,7 +36,8 @@ class Ledger(Recorded):
         run = self.run
         found = finite(run.rows() if self.has_rows else run.sample(here.t)).samples
         spent = {name: getattr(found, name) for name in ("friction_loss", "damping_loss", "input")}
-        return Samples(**vars(here), **spent)  # the motion is kept once
+        motion = {f.name: getattr(here, f.name) for f in fields(MotionSamples)}
+        return Samples(**motion, **spent)  # the motion is kept once
 
     def _ledger(self, energies: tuple[Floats, Floats], samples: Samples, reference: Reference | None) -> Energy:
         kinetic, potential = energies

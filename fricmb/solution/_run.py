@@ -318,9 +318,7 @@ def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Float
 
 def is_finite(samples: MotionSamples, moving: Ints | None = None) -> bool:
     """Whether every number is finite; of degrees of freedom those that move (None: all)."""
-    if moving is not None:
-        samples = replace(samples, q=samples.q[moving], v=samples.v[moving])
-    return all(bool(np.isfinite(getattr(samples, f.name)).all()) for f in fields(samples) if f.name != "mode")
+    return all(bool(np.isfinite(x).all()) for x in samples.numbers(moving))
 
 
 def first_bad(samples: MotionSamples) -> int:
