@@ -8,26 +8,40 @@ from typing import Protocol
 
 import numpy as np
 
+from fricmb.integrate.csr import is_diagonal
 from fricmb.integrate.problem import Floats, Ints, Problem
 
 #: ``states(row, tau)`` gives t, q, v, F at times since the start of rows.
 States = Callable[[Ints, Floats], tuple[Floats, Floats, Floats, Floats]]
 
 
-def powers(problem: Problem, start: Floats, rate: Floats, t: Floats, q: Floats, v: Floats, F: Floats) -> Floats:
-    """Damping loss and input (2, n_t) where signals are ``start + rate t``."""
+#: Damping loss and input (2, n_t) at times with the q, v and F there.
+Power = Callable[[Floats, Floats, Floats, Floats], Floats]
+
+
+def power_of(problem: Problem, start: Floats, rate: Floats) -> Power:
+    """Damping loss and input where signals are ``start + rate t``, without the terms that are 0 at all times."""
     linear, contacts, n = problem.linear, problem.contacts, problem.n
-    u = start[:, None] + rate[:, None] * t
-    du = np.broadcast_to(rate[:, None], u.shape)
-    speeds = np.vstack([v, du])
-    dashpots = linear.Cx @ speeds
-    damping = np.sum(speeds * dashpots, axis=0)
-    K = linear.Kx[:n, :n]
-    supply = np.sum(v * (linear.B @ u - 0.5 * (K - K.T) @ q), axis=0)
-    springs = linear.Kx[n:] @ np.vstack([q, u]) - linear.fx[n:, None]
-    supply += np.sum(du * (springs + dashpots[n:]), axis=0)
-    supply += (contacts.w + contacts.Wu @ rate) @ F
-    return np.stack([damping, supply])
+    K, C = linear.Kx[:n, :n], linear.Cx
+    turning = 0.5 * (K - K.T)
+    diagonal, dampers = is_diagonal(C), np.diagonal(C)
+    slide = contacts.w + contacts.Wu @ rate
+
+    def power(t: Floats, q: Floats, v: Floats, F: Floats) -> Floats:
+        speeds = np.vstack([v, np.broadcast_to(rate[:, None], (len(rate), len(t)))]) if len(rate) else v
+        dashpots = np.zeros((0, len(t))) if diagonal else C @ speeds
+        damping = dampers @ speeds**2 if diagonal else np.sum(speeds * dashpots, axis=0)
+        supply = slide @ F
+        if turning.any():
+            supply -= np.sum(v * (turning @ q), axis=0)
+        if len(rate):
+            u = start[:, None] + rate[:, None] * t
+            pulled = (dampers[n:] * rate)[:, None] if diagonal else dashpots[n:]
+            springs = linear.Kx[n:] @ np.vstack([q, u]) - linear.fx[n:, None]
+            supply += np.sum(v * (linear.B @ u), axis=0) + rate @ (springs + pulled)
+        return np.stack([damping, supply])
+
+    return power
 
 
 #: Points of Gauss's formula by the length x of a piece (times the fastest rate).  Powers have twice the rate of the
@@ -46,7 +60,7 @@ class Shortcut(Protocol):
 
 
 def integrals(
-    states: States, power: Callable[..., Floats], row: Ints, begin: Floats, end: Floats, fastest: float, at_once: int
+    states: States, power: Power, row: Ints, begin: Floats, end: Floats, fastest: float, at_once: int
 ) -> Floats:
     """Integrals (2, n) of the powers from ``begin`` to ``end`` after the start of rows, by Gauss's formula.
 
@@ -78,7 +92,7 @@ def integrals(
 
 
 def from_row_starts(
-    states: States, power: Callable[..., Floats], short: Shortcut, row: Ints, tau: Floats, fastest: float, at_once: int
+    states: States, power: Power, short: Shortcut, row: Ints, tau: Floats, fastest: float, at_once: int
 ) -> Floats:
     """Integrals (2, n) from the start of each row to ``tau`` after it, from one time within a row to the next."""
     order = np.lexsort((tau, row))

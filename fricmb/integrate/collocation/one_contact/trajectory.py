@@ -11,7 +11,7 @@ from fricmb.integrate.collocation.exact_room import has_ledger
 from fricmb.integrate.collocation.one_contact.constants import linear_part, stick_forces, structure
 from fricmb.integrate.collocation.one_contact.held import HeldLedger
 from fricmb.integrate.collocation.one_contact.held_samples import held_states
-from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, powers
+from fricmb.integrate.collocation.one_contact.ledger import from_row_starts, power_of
 from fricmb.integrate.collocation.one_contact.prepare import Rows, run_of, with_rows
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.sample import BY_FORCE, locate, sample_rows
@@ -158,7 +158,7 @@ class SingleRun(Trajectory):
         fastest = float(np.sqrt(np.abs(held["w2"])).max(initial=0.0)) + float(np.abs(held["damp"]).max(initial=0.0))
         at_once = max(1000, NUMBERS // max(1, self.problem.n))
         short = HeldLedger(self.problem, self._rows.kinds[: self._n_rows, 0] == STICK, fastest, at_once)
-        power = partial(powers, self.problem, start, rate)
+        power = power_of(self.problem, start, rate)
         since = partial(from_row_starts, self._power_states, power, short, fastest=fastest, at_once=at_once)
         tau = np.maximum(tau, 0.0)
         if self._totals is not None:
