@@ -182,9 +182,11 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     T = np.zeros((2 * n, 2 * n))
     lift = scipy.linalg.block_diag(rest, rest)
     for j, (a, b) in enumerate(pairs):
+        one = poles[a] if a == b else complex(poles[a].real)
         other = (poles[a].conjugate(), vectors[:, a].conj()) if a == b else (complex(poles[b].real), vectors[:, b])
-        w2[j], d[j], basis = _pair_basis(small, (poles[a] if a == b else complex(poles[a].real), vectors[:, a]), other)
-        T[:, j], T[:, n + j] = lift @ basis[0], lift @ basis[1]
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # two equal poles are refused below
+            w2[j], d[j], basis = _pair_basis(small, (one, vectors[:, a]), other)
+            T[:, j], T[:, n + j] = lift @ basis[0], lift @ basis[1]
     for i in range(null.shape[1]):
         T[:n, k + i], T[n:, n + k + i] = null[:, i], null[:, i]
     J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(w2), -np.diag(d)]])
