@@ -109,6 +109,12 @@ def test_parallel_sliders_follow_masing(name):
     np.testing.assert_allclose(-np.concatenate(found), expected, atol=1e-10)
 
 
+def test_a_path_goes_as_far_as_its_velocity_says():
+    """However few times are asked for: the displacement is the integral of the velocity, not of its samples."""
+    found = fm.analysis.path(laws.Dahl.example(), lambda t: np.sin(3.0 * t), np.linspace(0.0, 4.0, 21))
+    np.testing.assert_allclose(found.displacement, (1.0 - np.cos(3.0 * found.t)) / 3.0, rtol=0.0, atol=1e-14)
+
+
 def steady(forward):
     speed = 1.0 if forward else -1.0
     return lambda time: speed * np.ones(np.shape(time))
