@@ -15,6 +15,10 @@ class SceneError(FricmbError, ValueError):
     """A declaration that cannot be: names the part, the argument, the value and what is accepted."""
 
 
+class ArgumentError(FricmbError, ValueError):
+    """An argument of a solver that cannot be: names it, its value and what is accepted."""
+
+
 class LawError(FricmbError, ValueError):
     """A friction or normal-force law that cannot be."""
 
@@ -86,6 +90,15 @@ def _again(kind: type[_Stopped], message: str, t: float, reason: str, partial: A
     return kind(message, t=t, reason=reason, partial=partial)
 
 
+def shown(value: object) -> str:
+    """A value in a message: on one line, and short."""
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # Python writes out no whole number of thousands of digits
+        text = f"a value of type {type(value).__name__}"
+    return text if len(text) <= 120 else text[:117] + "..."
+
+
 def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameError:
     """An error that names what was asked for and lists the names near it (all of them, if they are few)."""
     names = list(known)
@@ -93,11 +106,11 @@ def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameEr
     if near:
         hint = "did you mean " + ", ".join(repr(n) for n in near) + "?"
     elif names:
-        shown = ", ".join(repr(n) for n in names[:12])
-        hint = f"known: {shown}" + (f" and {len(names) - 12} more" if len(names) > 12 else "")
+        some = ", ".join(repr(n) for n in names[:12])
+        hint = f"known: {some}" + (f" and {len(names) - 12} more" if len(names) > 12 else "")
     else:
         hint = "there are none"
-    return UnknownNameError(f"unknown {kind} {name!r}; {hint}")
+    return UnknownNameError(f"unknown {kind} {shown(name)}; {hint}")
 
 
 def no_attribute(module: str, name: str, known: Iterable[str]) -> AttributeError:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.integrate import EVENT_KINDS
 from fricmb.integrate.problem import Floats
 
@@ -47,12 +47,20 @@ class Measured:
         return Measured(name=self.name, kind=self.kind, t=self.t[chosen], x=self.x[chosen], sigma=self.sigma[chosen])
 
 
+def numbers(name: str, values: Any, accepted: str = "numbers") -> Floats:
+    """Numbers as an array."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise SceneError(f"{name}: got {shown(values)}; expected {accepted}") from None
+
+
 def read(data: Any, signals: Iterable[str] | None, sigma: Any) -> tuple[Measured, ...]:
     """Measurements out of an array, a table or a dict."""
     t, columns = _columns(data, signals)
     found = []
     for name, values in columns.items():
-        x = np.atleast_1d(np.asarray(values, dtype=float)).ravel()
+        x = np.atleast_1d(numbers(f"data: {name}", values)).ravel()
         kind = PERIOD if name == PERIOD else "event" if name.rpartition(".")[2] in EVENT_KINDS else "signal"
         when = x if kind == "event" else np.zeros(x.size) if kind == PERIOD else _times(t, x, name)
         good = np.isfinite(x) & np.isfinite(when)
@@ -61,10 +69,14 @@ def read(data: Any, signals: Iterable[str] | None, sigma: Any) -> tuple[Measured
         found.append(Measured(
             name=name, kind=kind, t=when[good], x=x[good], sigma=_sigma(sigma, name, x, good, len(columns))
         ))  # fmt: skip
+    if not found:
+        raise SceneError("data: got nothing measured; expected signals, transitions or a period")
     return tuple(found)
 
 
 def _columns(data: Any, signals: Iterable[str] | None) -> tuple[Any, dict[str, Any]]:
+    if signals is not None and not isinstance(signals, Iterable):
+        raise SceneError(f"signals: got {shown(signals)}; expected a name, or several")
     names = None if signals is None else ((signals,) if isinstance(signals, str) else tuple(signals))
     if hasattr(data, "columns") and hasattr(data, "index"):  # a pandas table
         table = {str(name): np.asarray(data[name], dtype=float) for name in data.columns}
@@ -73,7 +85,7 @@ def _columns(data: Any, signals: Iterable[str] | None) -> tuple[Any, dict[str, A
     if isinstance(data, Mapping):
         table = dict(data)
         return table.pop("t", None), _chosen(table, names)
-    array = np.asarray(data, dtype=float)
+    array = numbers("data", data, "a dict, a table, or an array")
     if names is None or array.ndim != 2 or array.shape[1] != 1 + len(names):
         wanted = "signals=(...) and " if names is None else ""
         raise SceneError(
@@ -96,7 +108,7 @@ def _chosen(table: dict[str, Any], names: tuple[str, ...] | None) -> dict[str, A
 def _times(t: Any, x: Floats, name: str) -> Floats:
     if t is None:
         raise SceneError(f'data: {name} needs the times "t" at which it was measured')
-    times = np.asarray(t, dtype=float).ravel()
+    times = numbers('data: "t"', t).ravel()
     if times.shape != x.shape:
         raise SceneError(f"data: {name} has {x.size} values at {times.size} times")
     return times
@@ -109,7 +121,10 @@ def _sigma(sigma: Any, name: str, x: Floats, good: Any, n_quantities: int) -> Fl
             raise SceneError(f"sigma: has no entry for {name!r}; give one for each measured quantity")
         extent = float(np.ptp(x[good])) if n_quantities > 1 else 1.0
         return np.full(int(good.sum()), extent or max(float(np.abs(x[good]).max()), 1e-300))
-    errors = np.broadcast_to(np.asarray(given, dtype=float), x.shape)[good]
+    known = numbers("sigma", given, "standard errors")
+    if known.shape not in ((), x.shape):
+        raise SceneError(f"sigma: standard errors of {name} must be one number or {x.size}; got shape {known.shape}")
+    errors = np.broadcast_to(known, x.shape)[good]
     if not (np.isfinite(errors).all() and (errors > 0).all()):
-        raise SceneError(f"sigma: standard errors of {name} must be positive; got {given!r}")
+        raise SceneError(f"sigma: standard errors of {name} must be positive; got {shown(given)}")
     return np.array(errors)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
-from fricmb._fit._data import Measured, read
+from fricmb._fit._data import Measured, numbers, read
 from fricmb._fit._model import Model
 from fricmb._fit._result import Fit
 from fricmb._fit._uncertainty import uncertainty
+from fricmb._simulate import simulate
+from fricmb._simulate._arguments import check_options, check_scene, number
 from fricmb._simulate._progress import bar
-from fricmb.errors import FricmbError, SceneError, unknown_name
+from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene
 
@@ -93,6 +95,9 @@ def fit(
     :func:`scipy.optimize.least_squares` within the bounds, on derivatives that are exact through transitions.  The
     covariance is that of the linearised problem, ``s^2 (J^T J)^-1``; with ``sigma`` given s is 1.
     """
+    check_scene(scene)
+    _check_search(loss, starts)
+    check_options("fit", options, simulate, "t_end", "t_eval", "parameters", "sensitivities", "rtol")
     bounds, first = _bounds(scene, parameters)
     names = tuple(bounds)
     measured = read(data, signals, sigma)
@@ -101,10 +106,10 @@ def fit(
     stages = _stages(measured, window, len(names))
     low, high = np.array(list(bounds.values())).T
     rng, best = np.random.default_rng(0), None
-    with bar(len(stages), "window", "fit", progress) as shown:
+    with bar(len(stages), "window", "fit", progress) as stretch:
         for i in range(starts):
             p = first if i == 0 else _another(model, low, high, rng)
-            found = _through(model, stages, p, bounds, priors or {}, loss, shown if i == 0 else None)
+            found = _through(model, stages, p, bounds, priors or {}, loss, stretch if i == 0 else None)
             if best is None or found.cost < best.cost:
                 best = found
             if found.plausible:
@@ -168,7 +173,7 @@ def _extent(measured: tuple[Measured, ...]) -> float:
 
 def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float]], Floats]:
     if not isinstance(parameters, Mapping) or not parameters:
-        raise SceneError(f"parameters: got {parameters!r}; expected a dict of names and bounds (low, high)")
+        raise SceneError(f"parameters: got {shown(parameters)}; expected a dict of names and bounds (low, high)")
     known, bounds, first = scene.parameters, {}, []
     for name, given in parameters.items():
         if name not in known:
@@ -177,9 +182,9 @@ def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float
             low, high, *guess = (float(value) for value in given)
             if not low < high or not np.isfinite([low, high]).all() or len(guess) > 1:
                 raise ValueError
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise SceneError(
-                f"parameters: {name} has {given!r}; expected (low, high) or (low, high, first guess), low < high"
+                f"parameters: {name} has {shown(given)}; expected (low, high) or (low, high, first guess), low < high"
             ) from None
         value = guess[0] if guess else float(known[name])
         inside = low < value < high
@@ -190,12 +195,22 @@ def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float
     return bounds, np.array(first)
 
 
+def _check_search(loss: Any, starts: Any) -> None:
+    if loss not in get_args(Loss):
+        raise unknown_name("loss", loss, get_args(Loss))
+    if isinstance(starts, bool) or not isinstance(starts, int) or starts < 1:
+        raise SceneError(f"starts: got {shown(starts)}; expected a whole number of at least 1")
+
+
 def _check(priors: Any, sigma: Any, names: tuple[str, ...]) -> None:
+    if priors is not None and not isinstance(priors, Mapping):
+        raise SceneError(f"priors: got {shown(priors)}; expected a dict of names and (mean, standard deviation > 0)")
     for name, given in (priors or {}).items():
         if name not in names:
             raise unknown_name("parameter in priors", name, names)
-        if np.shape(given) != (2,) or not given[1] > 0.0:
-            raise SceneError(f"priors: {name} has {given!r}; expected (mean, standard deviation > 0)")
+        pair = numbers("priors", given, "(mean, standard deviation > 0)")
+        if pair.shape != (2,) or not np.isfinite(pair).all() or not pair[1] > 0.0:
+            raise SceneError(f"priors: {name} has {shown(given)}; expected (mean, standard deviation > 0)")
     if priors and sigma is None:
         raise SceneError("priors: what is known before can be weighed only against known errors; give sigma=")
 
@@ -206,9 +221,7 @@ def _stages(measured: tuple[Measured, ...], window: Any, n_p: int) -> list[float
     if not t.size or window == "whole":
         return [np.inf]
     if window != "grow":
-        if isinstance(window, str) or not (np.isfinite(window) and window >= t[0]):
-            raise SceneError(f'window: got {window!r}; expected "grow", "whole" or a time of at least {t[0]:g}')
-        return [float(window)]
+        return [number("window", window, f'"grow", "whole" or a time of at least {t[0]:g}', lambda end: end >= t[0])]
     begin, end = min(0.0, float(t[0])), float(t[-1])
     ends = [begin + share * (end - begin) for share in _WINDOWS]
     return [*(e for e in ends[:-1] if (t <= e).sum() > n_p), np.inf]

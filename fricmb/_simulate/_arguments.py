@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import Tolerance
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.memory import available
+from fricmb.scene import Scene
 from fricmb.solution import times_inside
 
 #: Tightest and loosest relative tolerance: what double precision can hold, and what still means something.
@@ -32,12 +34,29 @@ class Span:
 
 def number(name: str, value: Any, accepted: str, fits: Callable[[float], bool] = math.isfinite) -> float:
     """A finite float that fits, else a SceneError."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise SceneError(f"{name}: got {value!r}; expected {accepted}")
-    found = float(value)
+    plain = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    try:
+        found = float(value) if plain else math.nan
+    except OverflowError:
+        found = math.nan
     if not math.isfinite(found) or not fits(found):
-        raise SceneError(f"{name}: got {value!r}; expected {accepted}")
+        raise SceneError(f"{name}: got {shown(value)}; expected {accepted}")
     return found
+
+
+def check_scene(scene: Any) -> Scene:
+    """A scene."""
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene: got {shown(scene)}; expected a Scene")
+    return scene
+
+
+def check_options(who: str, options: Mapping[str, Any], simulate: Callable[..., Any], *own: str) -> None:
+    """Whether what is passed on to ``simulate`` are options of it; ``own``: those that the caller gives it himself."""
+    known = [name for name in inspect.signature(simulate).parameters if name not in ("scene", *own)]
+    for name in options:
+        if name not in known:
+            raise unknown_name(f"option of {who}", name, known)
 
 
 def check_span(t_start: float, t_end: Any, t_eval: Any) -> Span:
@@ -68,12 +87,12 @@ def check_tolerance(rtol: Any, atol: Any, n: int) -> Tolerance:
         return Tolerance(rtol=found)
     try:
         values = np.asarray(atol, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         values = np.full(1, np.nan)
     if values.shape not in ((), (n,), (2 * n,)) or not (np.isfinite(values).all() and (values > 0).all()):
         raise SceneError(
-            f"atol: got {atol!r}; expected None, a positive number, or an array of {n} (one a degree of freedom) or "
-            f"{2 * n} (positions, then velocities)"
+            f"atol: got {shown(atol)}; expected None, a positive number, or an array of {n} (one a degree of freedom) "
+            f"or {2 * n} (positions, then velocities)"
         )
     both = np.broadcast_to(values, (2 * n,)) if values.size in (1, 2 * n) else np.tile(values, 2)
     return Tolerance(rtol=found, atol_q=both[:n].copy(), atol_v=both[n:].copy())

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._simulate._arguments import check_scene
 from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._members import (
@@ -21,7 +22,7 @@ from fricmb._simulate._members import (
     members_of,
     row_scale,
 )
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.plan import Plan, Selection, make_plan, truncated
@@ -201,8 +202,7 @@ class SceneMechanics:
 
 def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
     """Check scene, values and names to observe, and build."""
-    if not isinstance(scene, Scene):
-        raise SceneError(f"scene: got {scene!r}; expected a Scene")
+    check_scene(scene)
     if parameters is not None and not isinstance(parameters, Mapping):
         raise SceneError(f"parameters: got {parameters!r}; expected a dict of names in scene.parameters and values")
     if parameters:
@@ -210,6 +210,8 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
     if observe is not None and (isinstance(observe, str) or not isinstance(observe, Iterable)):
         raise SceneError(f"observe: got {observe!r}; expected a list of names of dofs, points and contacts")
     names = None if observe is None else tuple(observe)
+    if names is not None and not all(isinstance(name, str) for name in names):
+        raise SceneError(f"observe: got {shown(observe)}; expected a list of names of dofs, points and contacts")
     if names == ():
         raise SceneError("observe: got no name; expected one or more of dofs, points and contacts, or None for all")
     return mechanics_of(scene, observe=names)

@@ -77,7 +77,7 @@ def _states(given: Any, names: Names, declared: Floats) -> Floats:
             raise SceneError(f"{what}: got {value!r}, but the law of this contact has no states")
         try:
             state = np.atleast_1d(np.asarray(value, dtype=float))
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             state = np.empty(0)
         if state.shape != (count,) or not np.isfinite(state).all():
             raise SceneError(f"{what}: got {value!r}; expected {count} finite number(s), for {names.states[k]!r}")

@@ -7,6 +7,8 @@ from os import PathLike
 from typing import Any
 
 import fricmb
+from fricmb._simulate import simulate
+from fricmb._simulate._arguments import check_options, check_scene
 from fricmb._simulate._progress import bar
 from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
@@ -75,6 +77,8 @@ def sweep(
         After Ctrl-C, once the runs under way are done (at once after a second one); its ``results`` are those that
         were made, None for others.
     """
+    check_scene(scene)
+    check_options("sweep", options, simulate, "t_end", "parameters")
     if isinstance(runs, str | Mapping) or not isinstance(runs, Iterable):
         raise SceneError(f"runs: got {runs!r}; expected a list of dicts of parameter names and values, one a run")
     own = [dict(_checked(run, i)) for i, run in enumerate(runs)]

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.analysis._crossings import Crossing, crossings
-from fricmb.analysis._errors import AnalysisError, Floats
-from fricmb.analysis._steady import SteadySliding, steady_sliding
+from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_scene
+from fricmb.analysis._steady import SteadySliding, checked_speeds, steady_sliding
 from fricmb.analysis._track import Complexes, Pairs, checked_values, follow, refine
+from fricmb.errors import shown
 from fricmb.values import DIMENSIONS, Units
 
 if TYPE_CHECKING:
@@ -113,7 +114,10 @@ def complex_eigenvalues(
     between them that they are counted at 48 places at least, and spans are halved until their ends differ by one
     eigenvalue or one pair.  A window of instability narrower than that is not seen.
     """
-    grid = checked_values("complex_eigenvalues", values)
+    who = "complex_eigenvalues"
+    checked_scene(who, scene)
+    checked_kind(who, "over", over, str, "a name out of scene.parameters or speeds")
+    grid = checked_values(who, values)
     dofs: list[str] = []
 
     @functools.cache
@@ -208,8 +212,13 @@ def stability_map(
     AnalysisError
         If there is no steady sliding somewhere; names the values.
     """
-    if len(over) != 2 or len(values) != 2:
-        raise AnalysisError(f"stability_map: over and values must be two each; got {over!r} and {len(values)} values")
+    checked_scene("stability_map", scene)
+    lists = isinstance(over, tuple | list) and isinstance(values, tuple | list | np.ndarray)
+    if not lists or len(over) != 2 or len(values) != 2 or not all(isinstance(name, str) for name in over):
+        raise AnalysisError(
+            f"stability_map: over and values must be two each, names and lists of numbers; got {shown(over)} and"
+            f" {shown(values)}"
+        )
     first, second = (checked_values("stability_map", v) for v in values)
     growth, frequency = np.zeros((2, first.size, second.size))
     unstable = np.zeros((first.size, second.size), dtype=np.int64)
@@ -234,7 +243,7 @@ def stability_map(
 
 def _steady(scene: Scene, values: Mapping[str, float], speeds: Mapping[str, float] | None) -> SteadySliding:
     """Steady sliding with some parameters or speeds at given values."""
-    held = dict(speeds or {})
+    held = dict(checked_speeds(speeds))
     here = {name: value for name, value in values.items() if name not in held}
     held |= {name: value for name, value in values.items() if name in held}
     try:

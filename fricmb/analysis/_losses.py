@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import AnalysisError, Floats, checked_solution
 from fricmb.analysis._quadrature import cumulated, grid, nodes, refined
 from fricmb.errors import unknown_name
 from fricmb.integrate.model.table_values import arguments, evaluate
@@ -126,6 +126,7 @@ def energy_ledger(sol: Solution) -> EnergyLedger:
 
 def one_scene(sol: Solution, who: str) -> None:
     """Raise AnalysisError for a run that was joined from different scenes."""
+    checked_solution(who, sol)
     scenes = [piece.origin.scene for piece in sol.run.pieces]
     if any(scene != scenes[0] for scene in scenes[1:]):
         raise AnalysisError(f"{who}: the run was joined from different scenes; take them one by one")

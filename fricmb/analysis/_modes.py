@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import eigh
 
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import AnalysisError, Floats, checked_kind
 from fricmb.analysis._linearise import stiffness_without_friction
 from fricmb.analysis._losses import motion_of, one_scene, whole_system
 from fricmb.analysis._quadrature import cumulated, grid, nodes, refined
@@ -102,6 +102,8 @@ def modal_energy(sol: Solution, *, around: SteadySliding | None = None) -> Modal
     """
     one_scene(sol, "modal_energy")
     system = whole_system(sol, "modal_energy")
+    if around is not None:
+        checked_kind("modal_energy", "around", around, SteadySliding, "what steady_sliding returns")
     if around is not None and around.system.dof_names != system.dof_names:
         raise AnalysisError("modal_energy: around is the equilibrium of another scene")
     n = system.problem.n

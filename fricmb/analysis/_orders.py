@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_numbers, checked_solution
 from fricmb.analysis._welch import Spectrogram
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ class OrderMap:
 
 def sliding_speed(sol: Solution, contact: str, t: ArrayLike) -> Floats:
     """Slip speed (n_t,) of a contact, the length of its relative velocity."""
+    checked_solution("sliding_speed", sol)
     return np.asarray(np.linalg.norm(sol.at(t).relative_velocity(contact), axis=0))
 
 
@@ -64,8 +65,9 @@ def order_map(running: Spectrogram, speed: ArrayLike, order: ArrayLike) -> Order
     AnalysisError
         Speeds that do not match the times or are negative.
     """
-    v = np.asarray(speed, dtype=float)
-    wanted = np.asarray(order, dtype=float)
+    checked_kind("order_map", "running", running, Spectrogram, "what spectrogram returns")
+    v = checked_numbers("order_map", "speed", speed, "(n_t,) numbers")
+    wanted = checked_numbers("order_map", "order", order, "(n_order,) numbers")
     if v.shape != running.t.shape or not (np.isfinite(v).all() and (v >= 0.0).all()):
         raise AnalysisError(
             f"order_map: speed must be {running.t.shape} finite numbers of at least 0; got shape {v.shape}"

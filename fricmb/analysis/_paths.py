@@ -8,6 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.analysis._errors import (
+    AnalysisError,
+    checked_growth,
+    checked_integer,
+    checked_law,
+    checked_number,
+    checked_numbers,
+    positive,
+    refuse,
+)
 from fricmb.equations import function, law_template, numbers
 from fricmb.integrate.problem import Floats
 from fricmb.laws import FrictionLaw
@@ -31,7 +41,7 @@ class Path:
 
     @property
     def work(self) -> float:
-        """Work of the friction force along the path; negative where friction takes energy."""
+        """Work of the friction force along the path, trapezoidal from time to time; negative where it takes energy."""
         return float(np.trapezoid(self.force * self.velocity, self.t))
 
     @property
@@ -68,20 +78,66 @@ def path(
     Returns
     -------
     Path
+
+    Raises
+    ------
+    AnalysisError
+        For arguments that cannot be, and where the states cannot be followed.
     """
-    d = law.dimensions[0]
-    v = np.asarray(velocity(t), dtype=float)
-    x = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
+    d = checked_law("path", law).dimensions[0]
+    t, normal_force, rtol = checked_growth("path", "t", t), _load("path", normal_force), _tolerance("path", rtol)
+    v = _velocity(velocity, t)
+    x = _displacement(velocity, t)
     directions = np.vstack([v, np.zeros((d - 1, len(t)))])
     z = np.zeros((law.n_states(d), len(t)))
     if len(z):
-        z = _states(law, d, velocity, t, normal_force, np.zeros(len(z)) if state is None else state, rtol)
+        z = _states(law, d, velocity, t, normal_force, _start(state, len(z)), rtol)
     force = np.asarray(law.force(directions, normal_force, z if len(z) else None))[0]
     return Path(t=t, displacement=x, velocity=v, force=force, state=z)
 
 
+def _load(who: str, normal_force: Any) -> float:
+    return checked_number(who, "normal_force", normal_force, "a number of at least 0", lambda N: N >= 0.0)
+
+
+def _tolerance(who: str, rtol: Any) -> float:
+    return checked_number(who, "rtol", rtol, "a number from 1e-13 to 0.1", lambda x: 1e-13 <= x <= 0.1)
+
+
+def _velocity(velocity: Any, t: Floats) -> Floats:
+    accepted = "a function of times (n,) that returns finite velocities (n,)"
+    if not callable(velocity):
+        refuse("path", "velocity", velocity, accepted)
+    v = checked_numbers("path", "velocity", velocity(t), accepted)
+    if v.shape != t.shape or not np.isfinite(v).all():
+        refuse("path", "velocity", velocity, accepted)
+    return v
+
+
+def _displacement(velocity: Callable[[Any], Any], t: Floats) -> Floats:
+    """Integral of the velocity from t[0], by Gauss's rule of eight nodes between neighbouring times."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    half = 0.5 * np.diff(t)
+    inside = t[:-1, None] + half[:, None] * (1.0 + nodes)
+    v = _velocity(velocity, inside.ravel()).reshape(inside.shape)
+    return np.concatenate([[0.0], np.cumsum(half * (v @ weights))])
+
+
+def _start(state: Any, n_z: int) -> Floats:
+    if state is None:
+        return np.zeros(n_z)
+    accepted = f"({n_z},) finite numbers"
+    z = checked_numbers("path", "state", state, accepted)
+    if z.shape != (n_z,) or not np.isfinite(z).all():
+        refuse("path", "state", state, accepted)
+    return z
+
+
 def compiled_force(law: FrictionLaw, d: int) -> tuple[Callable[[Floats], tuple[Floats, Floats]], int]:
     """The compiled force: x = [v, N, z] -> values [F, z'] and Jacobian; and the number of states."""
+    known = checked_law("compiled_force", law).dimensions
+    if not isinstance(d, int) or d not in known:
+        refuse("compiled_force", "d", d, " or ".join(map(str, known)))
     template = law_template(law, d)
     p = law.parameter_block() if template.function is not None else np.array(numbers(law))
     compiled, n_z = function(template.address), law.n_states(d)
@@ -100,7 +156,7 @@ def _states(
 ) -> Floats:
     from scipy.integrate import solve_ivp
 
-    evaluate, n_z = compiled_force(law, d)
+    evaluate, _ = compiled_force(law, d)
 
     def at(time: float, z: Floats) -> tuple[Floats, Floats]:
         return evaluate(np.concatenate([[float(velocity(time))], np.zeros(d - 1), [N], z]))
@@ -111,7 +167,10 @@ def _states(
         jac=lambda time, z: at(time, z)[1][d:, d + 1 :], rtol=rtol, atol=1e-6 * rtol * scale,
         max_step=(t[-1] - t[0]) / 50.0,
     )  # fmt: skip
-    return np.asarray(found.y) if found.success else np.full((n_z, len(t)), np.nan)
+    if not found.success:
+        reached = found.t[-1] if found.t.size else t[0]
+        raise AnalysisError(f"path: the states of {law._label()} cannot be followed beyond t = {reached:g}")
+    return np.asarray(found.y)
 
 
 def cycle(
@@ -133,6 +192,11 @@ def cycle(
     rtol : float
         Of the states.
     """
+    who = "cycle"
+    checked_law(who, law)
+    amplitude, period = positive(who, "amplitude", amplitude), positive(who, "period", period)
+    cycles = checked_integer(who, "cycles", cycles, 1, 1_000_000)
+    points = checked_integer(who, "points", points, 4, 10_000_000)
     omega = 2.0 * np.pi / period
     t = np.linspace(0.0, cycles * period, cycles * points + 1)
     whole = path(
@@ -148,7 +212,8 @@ def cycle(
 
 def settling_distance(law: FrictionLaw, normal_force: float = 1.0) -> float:
     """Distance of slip over which friction comes to its steady value (to a factor), by sliding from rest."""
-    d, speed = law.dimensions[0], 1e-3
+    normal_force = _load("settling_distance", normal_force)
+    d, speed = checked_law("settling_distance", law).dimensions[0], 1e-3
     v = np.zeros(d)
     v[0] = speed
     evaluate, n_z = compiled_force(law, d)
@@ -180,6 +245,8 @@ def pull(
     rtol : float
         Of the states.
     """
-    distance = 20.0 * settling_distance(law, normal_force)
+    speed = positive("pull", "speed", speed)
+    points = checked_integer("pull", "points", points, 2, 10_000_000)
+    distance = 20.0 * settling_distance(checked_law("pull", law), _load("pull", normal_force))
     t = np.linspace(0.0, 1.0, points + 1) ** 2 * distance / speed
     return path(law, lambda time: np.full(np.shape(time), speed), t, normal_force=normal_force, rtol=rtol)

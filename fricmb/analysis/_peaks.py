@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_samples
+from fricmb.analysis._errors import (
+    AnalysisError,
+    Floats,
+    checked_integer,
+    checked_numbers,
+    checked_samples,
+    positive,
+    refuse,
+)
 from fricmb.analysis._spectrum import maximum_entropy_spectrum
 
 Estimate = Callable[[Floats, float], tuple[Floats, Floats]]
@@ -114,11 +123,10 @@ def spectral_peaks(
     """
     samples = checked_samples(_WHO, x, dt)
     checked_integer(_WHO, "parts", parts, 2, 50)
-    if not prominence > 0.0:
-        raise AnalysisError(f"{_WHO}: prominence must be positive; got {prominence!r}")
-    low, high = (0.0, np.pi / dt) if between is None else between
-    if not 0.0 <= low < high:
-        raise AnalysisError(f"{_WHO}: between must be two rising frequencies of at least 0; got {between!r}")
+    positive(_WHO, "prominence", prominence)
+    if not callable(estimate):
+        refuse(_WHO, "estimate", estimate, "a function estimate(x, dt) that returns (omega, power)")
+    low, high = (0.0, np.pi / dt) if between is None else _range(between)
     grid, power = estimate(samples, dt)
     whole = _find(grid, power, prominence)
     place = whole[0]
@@ -144,6 +152,15 @@ def spectral_peaks(
         width=whole[4][keep],
         resolution=2 * np.pi / (dt * len(samples)),
     )
+
+
+def _range(between: Any) -> tuple[float, float]:
+    """Two frequencies."""
+    accepted = "two rising frequencies of at least 0"
+    found = checked_numbers(_WHO, "between", between, accepted)
+    if found.shape != (2,) or not 0.0 <= found[0] < found[1]:
+        refuse(_WHO, "between", between, accepted)
+    return float(found[0]), float(found[1])
 
 
 def _standard_errors(found: Floats) -> Floats:

@@ -10,8 +10,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fricmb._simulate import simulate
+from fricmb._simulate._arguments import check_options
 from fricmb._sweep import sweep
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import (
+    AnalysisError,
+    Floats,
+    checked_kind,
+    checked_number,
+    checked_numbers,
+    checked_scene,
+    checked_solution,
+    positive,
+    refuse,
+)
 from fricmb.errors import IntegrationError, unknown_name
 
 if TYPE_CHECKING:
@@ -41,6 +52,8 @@ class Poincare:
 
     def __getitem__(self, name: str) -> Floats:
         """A degree of freedom, or with ".velocity" behind its name its velocity (n,)."""
+        if not isinstance(name, str):
+            raise unknown_name("degree of freedom", name, self.dofs)
         dof, velocity = name.removesuffix(".velocity"), name.endswith(".velocity")
         if dof not in self.dofs:
             raise unknown_name("degree of freedom", name, self.dofs)
@@ -80,10 +93,8 @@ def poincare_section(
     AnalysisError
         For arguments that cannot be.
     """
-    if (section is None) == (period is None):
-        raise AnalysisError("poincare_section: give either section= or period=")
-    if not 0.0 <= discard < 1.0:
-        raise AnalysisError(f"poincare_section: discard must lie between 0 and 1; got {discard!r}")
+    checked_solution("poincare_section", sol)
+    _check("poincare_section", section, period, discard)
     begin = sol.t_start + discard * (sol.t_end - sol.t_start)
     if period is not None:
         t = np.arange(np.ceil(begin / period - 1e-9), np.floor(sol.t_end / period + 1e-9) + 1.0) * period
@@ -92,6 +103,20 @@ def poincare_section(
         t = _passes(sol, *section, begin, rising)
     seen = sol.at(t)
     return Poincare(t=t, q=seen.q, v=seen.v, dofs=sol.dof_names)
+
+
+def _check(who: str, section: Any, period: Any, discard: Any) -> None:
+    """Refuse arguments of a section that cannot be."""
+    if (section is None) == (period is None):
+        raise AnalysisError(f"{who}: give either section= or period=")
+    checked_number(who, "discard", discard, "a number from 0 to below 1", lambda x: 0.0 <= x < 1.0)
+    if period is not None:
+        positive(who, "period", period)
+        return
+    accepted = 'a name and a value such as ("mass.x.velocity", 0.0)'
+    if not isinstance(section, tuple | list) or len(section) != 2 or not isinstance(section[0], str):
+        refuse(who, "section", section, accepted)
+    checked_number(who, "section", section[1], accepted, np.isfinite)
 
 
 def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool | None) -> Floats:
@@ -207,7 +232,13 @@ def bifurcation_diagram(
     -------
     BifurcationDiagram
     """
-    grid = np.asarray(values, dtype=float)
+    who = "bifurcation_diagram"
+    checked_scene(who, scene)
+    checked_kind(who, "over", over, str, "a name out of scene.parameters")
+    checked_kind(who, "signal", signal, str, "a degree of freedom, or its name and .velocity")
+    _check(who, section, period, discard)
+    check_options(who, options, simulate, "t_end", "parameters", "initial")
+    grid = checked_numbers(who, "values", values, "(n,) and finite")
     if grid.ndim != 1 or not np.isfinite(grid).all():
         raise AnalysisError(f"bifurcation_diagram: values must be (n,) and finite; got shape {grid.shape}")
     keep = _Reduce(section=section, period=period, rising=rising, discard=discard, signal=signal)

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate import simulate
+from fricmb._simulate._arguments import check_options
+from fricmb.analysis._errors import checked_integer, checked_scene, positive
+from fricmb.errors import unknown_name
 from fricmb.laws import FrictionLaw
 from fricmb.laws._creep import Creep
 from fricmb.scene import Scene
@@ -76,6 +79,13 @@ def compare_regimes(
     tuple of Regime
         Set-valued, regularised, bristle.
     """
+    who = "compare_regimes"
+    names = [part.name for part in checked_scene(who, scene).contacts]
+    if not isinstance(contact, str) or contact not in names:
+        raise unknown_name("contact", contact, names)
+    check_options(who, options, simulate, "t_end", "t_eval")
+    points = checked_integer(who, "points", points, 2, 10_000_000)
+    t_end = positive(who, "t_end", t_end)
     part: Any = scene[contact]
     law: FrictionLaw = part.law
     forms = {

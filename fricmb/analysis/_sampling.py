@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fricmb.analysis._errors import AliasingWarning, AnalysisError, Floats, checked_interval
+from fricmb.analysis._errors import (
+    AliasingWarning,
+    AnalysisError,
+    Floats,
+    checked_interval,
+    checked_number,
+    checked_solution,
+)
 from fricmb.errors import unknown_name
 
 if TYPE_CHECKING:
@@ -77,13 +84,13 @@ def uniform(
     UnknownNameError
         For a signal that is not there.
     """
-    begin = sol.t_start if t_start is None else float(t_start)
-    end = sol.t_end if t_end is None else float(t_end)
+    checked_solution(_WHO, sol)
+    begin = sol.t_start if t_start is None else _time("t_start", t_start)
+    end = sol.t_end if t_end is None else _time("t_end", t_end)
     if not sol.t_start - 1e-9 <= begin < end <= sol.t_end * (1 + 1e-12) + 1e-9:
         raise AnalysisError(f"{_WHO}: t_start, t_end must lie in {sol.t_start:g} to {sol.t_end:g}; got {begin}, {end}")
     given = dt is not None
-    step = _first_interval(sol, begin, end) if dt is None else float(dt)
-    checked_interval(_WHO, step)
+    step = _first_interval(sol, begin, end) if dt is None else checked_interval(_WHO, dt)
     if (end - begin) / step < 15:
         raise AnalysisError(f"{_WHO}: dt must leave 16 samples or more in {end - begin:g}; got {dt!r}")
     t, x, folded = _sampled(sol, name, begin, end, step)
@@ -93,6 +100,10 @@ def uniform(
     found = Samples(name=name, t=t, x=x, dt=step, folded=folded, short=_short_phases(sol, begin, end, step))
     _warn(found, name.partition(".")[0] in sol.contact_names)
     return found
+
+
+def _time(name: str, value: Any) -> float:
+    return checked_number(_WHO, name, value, "a finite time", np.isfinite)
 
 
 def _first_interval(sol: Solution, begin: float, end: float) -> float:
@@ -121,9 +132,11 @@ def _share_above(fine: Floats) -> float:
 
 def signal_of(sol: Solution, name: str, t: Floats) -> Floats:
     """A column of ``sol.columns()`` at given times."""
+    known = sol.names.known_motions()
+    if not isinstance(name, str):
+        raise unknown_name("signal", name, known)
     seen = sol.at(t)
     head, _, last = name.rpartition(".")
-    known = sol.names.known_motions()
     if name in known:
         return seen[name]
     if last == "velocity" and head in known:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import AnalysisError, Floats, checked_number, checked_scene, refuse
 from fricmb.analysis._linearise import Linearised, linearise
 from fricmb.analysis._track import Pairs, eigenpairs
 from fricmb.errors import unknown_name
@@ -156,8 +156,8 @@ def steady_sliding(scene: Scene, *, speeds: Mapping[str, float] | None = None) -
     Newton's method with the analytic Jacobian of the scene, from its initial positions; a free rigid motion stays where
     it starts.
     """
-    system = build(scene)
-    held = dict(speeds or {})
+    system = build(checked_scene("steady_sliding", scene))
+    held = dict(checked_speeds(speeds))
     for name in held:
         if name not in system.dof_names:
             raise unknown_name("degree of freedom in speeds", name, system.dof_names)
@@ -182,6 +182,18 @@ def steady_sliding(scene: Scene, *, speeds: Mapping[str, float] | None = None) -
         acceleration={system.dof_names[i]: float(pull[i]) for i in moves},
         at=at,
     )
+
+
+def checked_speeds(speeds: Any) -> Mapping[str, float]:
+    """Speeds by names."""
+    who, accepted = "steady_sliding", "a dict of names and speeds, finite numbers"
+    if speeds is None:
+        return {}
+    if not isinstance(speeds, Mapping):
+        refuse(who, "speeds", speeds, accepted)
+    for value in speeds.values():
+        checked_number(who, "speeds", value, accepted, np.isfinite)
+    return dict(speeds)
 
 
 def _solve(system: System, v: Floats, free: Ints) -> tuple[Floats, Floats]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.errors import shown
 
 Complexes = NDArray[np.complex128]
 #: Eigenvalues (m,) and their vectors (m, m) by rows, at a value of the parameter.
@@ -95,10 +96,10 @@ def checked_values(who: str, values: object) -> Floats:
     """At least one finite number (n,), rising or falling strictly."""
     try:
         found = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = np.zeros((0, 0))
     steps = np.diff(found) if found.ndim == 1 else np.zeros(1)
     ordered = bool((steps > 0).all() or (steps < 0).all())
     if found.ndim != 1 or not found.size or not np.isfinite(found).all() or not ordered:
-        raise AnalysisError(f"{who}: values must be one or more finite numbers, rising or falling; got {values!r}")
+        raise AnalysisError(f"{who}: values must be one or more finite numbers, rising or falling; got {shown(values)}")
     return found

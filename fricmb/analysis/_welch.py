@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_samples
+from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_number, checked_samples, refuse
+from fricmb.errors import shown
 
 
 def welch_spectrum(
@@ -113,6 +114,7 @@ def spectrogram(
     from scipy import signal
 
     samples = checked_samples("spectrogram", x, dt)
+    t_start = checked_number("spectrogram", "t_start", t_start, "a finite time", np.isfinite)
     length, shared = _segments("spectrogram", len(samples), segment, overlap, 16)
     shape = _window("spectrogram", window, length)
     transform = signal.ShortTimeFFT(shape, hop=length - shared, fs=1.0 / dt, fft_mode="onesided2X", scale_to="psd")
@@ -126,8 +128,8 @@ def spectrogram(
 def _segments(who: str, n: int, segment: int | None, overlap: float, parts: int) -> tuple[int, int]:
     """Length of a segment and what two neighbours share, in samples."""
     length = min(n, max(2, n // parts)) if segment is None else checked_integer(who, "segment", segment, 2, n)
-    if not 0.0 <= overlap <= 0.95:
-        raise AnalysisError(f"{who}: overlap must lie between 0 and 0.95; got {overlap!r}")
+    if isinstance(overlap, bool) or not isinstance(overlap, int | float | np.number) or not 0.0 <= overlap <= 0.95:
+        raise AnalysisError(f"{who}: overlap must lie between 0 and 0.95; got {shown(overlap)}")
     return length, min(length - 1, int(overlap * length))
 
 
@@ -136,6 +138,10 @@ def _window(who: str, name: Any, length: int) -> Floats:
 
     try:
         shape: Floats = signal.get_window(name, length)
-    except (ValueError, TypeError) as error:
-        raise AnalysisError(f"{who}: window must be one of scipy.signal.get_window; got {name!r} ({error})") from None
+    except (ValueError, TypeError, IndexError) as error:
+        raise AnalysisError(
+            f"{who}: window must be one of scipy.signal.get_window; got {shown(name)} ({' '.join(str(error).split())})"
+        ) from None
+    if not np.isfinite(shape).all():  # a number is taken for the parameter of Kaiser's window
+        refuse(who, "window", name, "one of scipy.signal.get_window")
     return shape

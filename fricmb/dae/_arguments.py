@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import warnings
 from collections.abc import Callable
 from typing import Any
@@ -15,19 +16,23 @@ from fricmb.dae._engine import Engine, System
 from fricmb.dae._function import Residual, is_compiled
 from fricmb.dae._jacobian import Differences, Given, pair
 from fricmb.dae._matrix import Matrix
+from fricmb.errors import ArgumentError, shown
 from fricmb.integrate.problem import Floats
 
 
 def _array(value: Any, name: str) -> Floats:
-    raw = np.asarray(value)
+    try:
+        raw = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        raise ArgumentError(f"`{name}` must be numbers, not {shown(value)}.") from None
     if raw.dtype.kind == "c":
-        raise ValueError(f"`{name}` must be real; split a complex problem into real and imaginary parts.")
+        raise ArgumentError(f"`{name}` must be real; split a complex problem into real and imaginary parts.")
     try:
         array = np.array(raw, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"`{name}` must be numbers.") from None
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"`{name}` must be numbers, not {shown(value)}.") from None
     if not np.all(np.isfinite(array)):
-        raise ValueError(f"All components of `{name}` must be finite.")
+        raise ArgumentError(f"All components of `{name}` must be finite, not {shown(value)}.")
     return array
 
 
@@ -35,7 +40,7 @@ def span(t_span: Any) -> tuple[float, float]:
     """(t0, t_end)."""
     values = _array(t_span, "t_span")
     if values.shape != (2,):
-        raise ValueError(f"`t_span` must be the pair (t0, t_end); its shape is {values.shape}.")
+        raise ArgumentError(f"`t_span` must be the pair (t0, t_end); its shape is {values.shape}.")
     return float(values[0]), float(values[1])
 
 
@@ -43,12 +48,12 @@ def state(y0: Any, yp0: Any) -> tuple[Floats, Floats | None]:
     """Initial values as (n,) arrays."""
     y = _array(y0, "y0")
     if y.ndim != 1 or y.size == 0:
-        raise ValueError(f"`y0` must be a 1-D array with at least one component; its shape is {y.shape}.")
+        raise ArgumentError(f"`y0` must be a 1-D array with at least one component; its shape is {y.shape}.")
     if yp0 is None:
         return y, None
     yp = _array(yp0, "yp0")
     if yp.shape != y.shape:
-        raise ValueError(f"`yp0` must have the shape of `y0`, {y.shape}; its shape is {yp.shape}.")
+        raise ArgumentError(f"`yp0` must have the shape of `y0`, {y.shape}; its shape is {yp.shape}.")
     return y, yp
 
 
@@ -58,9 +63,9 @@ def tolerances(rtol: Any, atol: Any, n: int) -> tuple[Floats, Floats]:
     for value, name in ((rtol, "rtol"), (atol, "atol")):
         array = _array(value, name)
         if array.shape not in ((), (n,)):
-            raise ValueError(f"`{name}` must be a number or of shape ({n},); its shape is {array.shape}.")
+            raise ArgumentError(f"`{name}` must be a number or of shape ({n},); its shape is {array.shape}.")
         if np.any(array < 0.0):
-            raise ValueError(f"`{name}` must not be negative.")
+            raise ArgumentError(f"`{name}` must not be negative: {shown(value)}.")
         found.append(np.array(np.broadcast_to(array, (n,))))
     floor = 100.0 * float(np.finfo(float).eps)
     if np.any((found[0] < floor) & (found[0] != 0.0)) or np.any(found[0] + found[1] == 0.0):
@@ -76,7 +81,7 @@ def extra(args: Any) -> tuple[Any, ...]:
     try:
         return tuple(args)
     except TypeError:
-        raise ValueError(f"`args` must be a tuple, as in args=({args!r},).") from None
+        raise ArgumentError(f"`args` must be a tuple, as in args=({args!r},).") from None
 
 
 def times(t_eval: Any, t0: float, t_end: float) -> Floats | None:
@@ -85,36 +90,41 @@ def times(t_eval: Any, t0: float, t_end: float) -> Floats | None:
         return None
     values = _array(t_eval, "t_eval")
     if values.ndim != 1:
-        raise ValueError("`t_eval` must be 1-dimensional.")
+        raise ArgumentError("`t_eval` must be 1-dimensional.")
     low, high = min(t0, t_end), max(t0, t_end)
     slack = 4.0 * float(np.spacing(max(abs(low), abs(high))))
     if np.any(values < low - slack) or np.any(values > high + slack):
-        raise ValueError("Values in `t_eval` are not within `t_span`.")
+        raise ArgumentError("Values in `t_eval` are not within `t_span`.")
     steps = np.diff(values) if t_end >= t0 else -np.diff(values)
     if np.any(steps <= 0):
-        raise ValueError("Values in `t_eval` are not properly sorted.")
+        raise ArgumentError("Values in `t_eval` are not properly sorted.")
     return np.clip(values, low, high)
 
 
 def order(max_order: Any) -> int:
     """Highest order."""
-    if int(max_order) != max_order or not 1 <= max_order <= L.MAX_ORDER:
-        raise ValueError(f"`max_order` must be 1 to {L.MAX_ORDER}, not {max_order!r}.")
+    whole = isinstance(max_order, int | float | np.integer | np.floating) and max_order in range(1, L.MAX_ORDER + 1)
+    if not whole:
+        raise ArgumentError(f"`max_order` must be 1 to {L.MAX_ORDER}, not {shown(max_order)}.")
     return int(max_order)
 
 
 def step(value: Any, name: str) -> float:
     """A positive step size."""
-    if not value > 0.0:
-        raise ValueError(f"`{name}` must be positive.")
-    return float(value)
+    try:
+        found = float(value)
+    except (TypeError, ValueError, OverflowError):
+        found = np.nan
+    if not found > 0.0:
+        raise ArgumentError(f"`{name}` must be positive, not {shown(value)}.")
+    return found
 
 
 def first(value: Any, length: float) -> float:
     """The first step size."""
     h = step(value, "first_step")
     if h > length:
-        raise ValueError("`first_step` exceeds bounds.")
+        raise ArgumentError(f"`first_step` exceeds bounds: {h:g} is more than the {length:g} of `t_span`.")
     return h
 
 
@@ -130,7 +140,7 @@ def system(
     """The problem with its storage: banded if a bandwidth is given, sparse if ``jac`` or a structure is, else dense."""
     n = residual.n
     if jac is not None and not callable(jac):
-        raise ValueError("`jac` must be callable as jac(t, y, yp).")
+        raise ArgumentError(f"`jac` must be callable as jac(t, y, yp), not {shown(jac)}.")
     if bandwidth is not None:
         matrix = _banded(bandwidth, n)
     elif jac_sparsity is not None:
@@ -145,11 +155,11 @@ def system(
 
 def _banded(bandwidth: Any, n: int) -> Matrix:
     try:
-        lower, upper = (int(b) for b in bandwidth)
+        lower, upper = (operator.index(b) for b in bandwidth)
     except (TypeError, ValueError):
-        raise ValueError("`bandwidth` must be the pair (lband, uband).") from None
+        raise ArgumentError(f"`bandwidth` must be the pair (lband, uband), not {shown(bandwidth)}.") from None
     if lower < 0 or upper < 0:
-        raise ValueError(f"`bandwidth` must not be negative: {bandwidth!r}.")
+        raise ArgumentError(f"`bandwidth` must not be negative: {bandwidth!r}.")
     return pattern.banded(n, min(lower, n - 1), min(upper, n - 1))
 
 
@@ -157,10 +167,12 @@ def _structure(given: Any, n: int) -> Any:
     parts = given if isinstance(given, (tuple, list)) and len(given) == 2 and np.ndim(given[0]) != 1 else (given,)
     total = sparse.csc_array((n, n))
     for part in parts:
-        entries: Any = part if sparse.issparse(part) else np.asarray(part, dtype=float)
+        entries: Any = part if sparse.issparse(part) else _array(part, "jac_sparsity")
+        if entries.ndim != 2:
+            raise ArgumentError(f"`jac_sparsity` must be of shape ({n}, {n}); its shape is {entries.shape}.")
         one = sparse.csc_array(entries)
         if one.shape != (n, n):
-            raise ValueError(f"`jac_sparsity` must have shape ({n}, {n}); its shape is {one.shape}.")
+            raise ArgumentError(f"`jac_sparsity` must be of shape ({n}, {n}); its shape is {one.shape}.")
         ones = (np.ones(one.nnz), one.indices, one.indptr)
         total = total + sparse.csc_array(ones, shape=(n, n))
     return total

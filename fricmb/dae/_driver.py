@@ -93,7 +93,7 @@ def solve_dae(
 
     Raises
     ------
-    ValueError
+    ArgumentError
         An argument that cannot be.
     IntegrationError
         No consistent initial values: singular, of index above 1, not finite, or without a solution nearby.

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from fricmb.dae._engine import Record
 from fricmb.dae._function import parameters
 from fricmb.dae._result import interpolate
+from fricmb.errors import ArgumentError, shown
 from fricmb.integrate.problem import Floats
 
 
@@ -19,10 +20,10 @@ class Event:
 
     def __init__(self, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
         if not callable(function):
-            raise ValueError(f"`events` must be callable, not {type(function).__name__}.")
+            raise ArgumentError(f"`events` must be callable, not {shown(function)}.")
         self.function, self.args = function, args
         self.with_rate = len(parameters(function)) - len(args) >= 3
-        self.direction = float(getattr(function, "direction", 0))
+        self.direction = _direction(getattr(function, "direction", 0))
         self.limit = _limit(getattr(function, "terminal", None))
         self.t: list[float] = []
         self.y: list[Floats] = []
@@ -32,9 +33,12 @@ class Event:
     def value(self, t: float, y: Floats, yp: Floats) -> float:
         """Evaluate the event function."""
         found = self.function(t, y, yp, *self.args) if self.with_rate else self.function(t, y, *self.args)
-        value = np.asarray(found, dtype=float)
+        try:
+            value = np.asarray(found, dtype=float)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"An event function must return one number; it returned {shown(found)}.") from None
         if value.size != 1:
-            raise ValueError(f"An event function must return one number; it returned an array of shape {value.shape}.")
+            raise ArgumentError(f"An event function must return one number; it returned one of shape {value.shape}.")
         return float(value.reshape(()))
 
     def crosses(self, new: float) -> bool:
@@ -44,12 +48,22 @@ class Event:
         return (up and self.direction >= 0.0) or (down and self.direction <= 0.0)
 
 
+def _direction(given: Any) -> float:
+    try:
+        found = float(given)
+    except (TypeError, ValueError, OverflowError):
+        found = np.nan
+    if np.isnan(found):
+        raise ArgumentError(f"The `direction` attribute of each event must be a number, not {shown(given)}.")
+    return found
+
+
 def _limit(terminal: Any) -> float:
     if terminal is None or terminal is False or terminal == 0:
         return np.inf
-    if int(terminal) == terminal and terminal > 0:
+    if isinstance(terminal, int | float | np.integer | np.floating) and terminal > 0 and terminal == terminal // 1:
         return int(terminal)
-    raise ValueError("The `terminal` attribute of each event must be a boolean or positive integer.")
+    raise ArgumentError("The `terminal` attribute of each event must be a boolean or positive integer.")
 
 
 class Events:

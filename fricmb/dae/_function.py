@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numba.core.registry import CPUDispatcher
 
+from fricmb.errors import ArgumentError
 from fricmb.integrate.problem import Floats
 
 
@@ -41,7 +42,7 @@ class Residual:
 
     def __init__(self, fun: Callable[..., Any], args: tuple[Any, ...], n: int) -> None:
         if not callable(fun):
-            raise ValueError(f"`fun` must be callable as fun(t, y, yp), not {type(fun).__name__}.")
+            raise ArgumentError(f"`fun` must be callable as fun(t, y, yp), not {type(fun).__name__}.")
         self.fun = fun
         self.args = args
         self.n = n
@@ -53,7 +54,7 @@ class Residual:
 
         Raises
         ------
-        ValueError
+        ArgumentError
             The result is not n real numbers.
         """
         mine, rate = y.copy(), yp.copy()
@@ -63,11 +64,13 @@ class Residual:
         else:
             value = np.asarray(self.fun(t, mine, rate, *self.args))
         if not (np.array_equal(mine, y) and np.array_equal(rate, yp)):
-            raise ValueError("`fun` must not change y or yp in place.")
+            raise ArgumentError("`fun` must not change y or yp in place.")
         if value.dtype.kind not in "fiub":
-            raise ValueError(f"`fun` must return real numbers; it returned {value.dtype}.")
+            raise ArgumentError(f"`fun` must return real numbers; it returned {value.dtype}.")
         if value.shape != (self.n,):
-            raise ValueError(f"`fun` must return an array of shape ({self.n},) as `y0` has; it returned {value.shape}.")
+            raise ArgumentError(
+                f"`fun` must return an array of shape ({self.n},) as `y0` has; it returned {value.shape}."
+            )
         return np.asarray(value, dtype=float)
 
     def __call__(self, t: float, y: Floats, yp: Floats, out: Floats) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb.dae._function import Residual
 from fricmb.dae._matrix import Matrix
+from fricmb.errors import ArgumentError
 from fricmb.integrate.problem import Floats
 
 ROOT = float(np.sqrt(np.finfo(float).eps))
@@ -38,7 +39,7 @@ class Given:
 def pair(value: Any) -> tuple[Any, Any]:
     """The two matrices that a user's ``jac`` returned."""
     if not isinstance(value, (tuple, list)) or len(value) != 2:
-        raise ValueError("`jac` must return the pair (dF/dy, dF/dyp).")
+        raise ArgumentError("`jac` must return the pair (dF/dy, dF/dyp).")
     return value[0], value[1]
 
 

@@ -16,6 +16,7 @@ from scipy import sparse
 from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
+from fricmb.errors import ArgumentError
 from fricmb.integrate.problem import Floats
 
 Ints = np.ndarray[Any, np.dtype[np.int64]]
@@ -64,14 +65,17 @@ class Matrix(ABC):
 
         Raises
         ------
-        ValueError
+        ArgumentError
             Its shape is not (n, n), or it has entries outside the pattern.
         """
         p = self.pattern
         is_sparse = sparse.issparse(given)
-        matrix: Any = sparse.csc_array(given) if is_sparse else np.asarray(given, dtype=float)
+        try:
+            matrix: Any = sparse.csc_array(given) if is_sparse else np.asarray(given, dtype=float)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"`jac` must return two matrices of numbers; {name} is none.") from None
         if matrix.shape != (p.n, p.n):
-            raise ValueError(f"`jac` must return two matrices of shape ({p.n}, {p.n}); {name} is {matrix.shape}.")
+            raise ArgumentError(f"`jac` must return two matrices of shape ({p.n}, {p.n}); {name} is {matrix.shape}.")
         if is_sparse:
             matrix.sum_duplicates()
             self._put_sparse(values, matrix, name)
@@ -88,7 +92,7 @@ class Matrix(ABC):
         if not found.all() and np.any(entries.data[~found] != 0.0):
             k = int(np.flatnonzero(~found & (entries.data != 0.0))[0])
             where = f"[{entries.indices[k]}, {columns[k]}]"
-            raise ValueError(f"{name} has an entry at {where}, outside the sparsity or bandwidth that was given.")
+            raise ArgumentError(f"{name} has an entry at {where}, outside the sparsity or bandwidth that was given.")
         values[p.place[at[found]]] = entries.data[found]
 
 

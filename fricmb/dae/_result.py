@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from fricmb.dae._compile import kernel
+from fricmb.errors import ArgumentError
 from fricmb.integrate.problem import Floats
 
 
@@ -73,7 +74,7 @@ class DaeSolution:
     def _both(self, t: Any) -> tuple[Floats, Floats]:
         times = np.ascontiguousarray(np.atleast_1d(np.asarray(t, dtype=float)))
         if times.ndim > 1:
-            raise ValueError("`t` must be a number or a 1-D array.")
+            raise ArgumentError("`t` must be a number or a 1-D array.")
         value, rate = evaluate(self._nodes, self._ys, self._orders, times, self._forward)
         if np.ndim(t) == 0:
             return value[0], rate[0]

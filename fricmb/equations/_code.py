@@ -25,6 +25,10 @@ _KNOWN = (
 )  # fmt: skip
 
 
+#: The value of a Piecewise where none of its conditions holds: no number, as in SymPy.
+NOWHERE = "(1e308*10.0 - 1e308*10.0)"
+
+
 class _Printer(PythonCodePrinter):  # type: ignore[misc]
     """Scalar Python that numba compiles; only the chosen branch of a Piecewise counts."""
 
@@ -69,7 +73,7 @@ class _Printer(PythonCodePrinter):  # type: ignore[misc]
         return f"lgamma({self._print(expr.args[0])})"
 
     def _print_Piecewise(self, expr: Any) -> str:
-        text = "0.0"
+        text = NOWHERE
         for value, condition in reversed(expr.args):
             value_text = f"1.0*({self._print(value)})"
             text = value_text if condition == sympy.true else f"({value_text} if {self._print(condition)} else {text})"

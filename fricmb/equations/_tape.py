@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy
 
-from fricmb.equations._code import FLOOR, source
+from fricmb.equations._code import FLOOR, NOWHERE, source
 from fricmb.laws._numeric import squares
 
 #: Functions of one argument: the derivative, of the argument x and the value y.
@@ -164,8 +164,9 @@ class Tape:
 
     def _branches(self, node: Any) -> str:
         values = [(self.value(value), condition) for value, condition in node.args]
-        found = values[-1][0] if values[-1][1] == sympy.true else "0.0"
-        for value, condition in reversed(values if found == "0.0" else values[:-1]):
+        whole = values[-1][1] == sympy.true
+        found = values[-1][0] if whole else NOWHERE
+        for value, condition in reversed(values[:-1] if whole else values):
             found = self._choice(self._condition(condition), value, found)
         return found
 

@@ -12,7 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.errors import FricmbError, LawError
-from fricmb.laws._check import check_cone, field_value, no_fields, required_numbers
+from fricmb.laws._check import (
+    check_cone,
+    check_copies,
+    check_said,
+    field_value,
+    no_fields,
+    no_numbers,
+    required_numbers,
+)
 from fricmb.laws._regimes import Regimes
 from fricmb.values import Declaration, value_of
 from fricmb.values._declaration import field_names
@@ -257,6 +265,7 @@ class FrictionLaw(Regimes, Declaration):
                 f"{self._label()}: {', '.join(missing)} is no field; decorate the class with"
                 " @dataclass(frozen=True, kw_only=True)"
             )
+        check_said(self)
         for name in field_names(kind):
             value = getattr(self, name)
             if type(value) is not float or not isfinite(value):
@@ -266,7 +275,15 @@ class FrictionLaw(Regimes, Declaration):
         if self.states and self.kind != "smooth":
             raise LawError(f"{self._label()}: a law with states must define define_force(self, v, N, z)")
         self._check_positive()
+        if self.states:
+            check_copies(self)
         numbers = self if self.only_numbers() else self.numeric()
-        numbers.validate()
-        if self.kind != "smooth":
-            check_cone(numbers)
+        try:
+            numbers.validate()
+            if self.kind != "smooth":
+                check_cone(numbers)
+        except TypeError:
+            # comparisons and formulas that take numbers alone
+            for name in no_numbers(self):
+                self._refuse(name, getattr(self, name), "a finite number")
+            raise

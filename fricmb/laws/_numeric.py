@@ -11,7 +11,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fricmb.errors import LawError
+from fricmb.errors import LawError, shown
+from fricmb.laws._without_sympy import alike, numbers_of
 from fricmb.values import Declaration, Symbolic, held, in_symbols, symbolic
 
 _Functions = dict[tuple[Any, ...], Callable[..., Any]]
@@ -52,6 +53,8 @@ def _vector(law: Any, method: str, value: Any, n: int) -> tuple[Any, ...]:
     entries = tuple(value) if isinstance(value, list | tuple | sympy.MatrixBase) else (value,)
     if len(entries) != n:
         raise LawError(f"{law._label()}: {method} must return {n} expressions for this contact, got {len(entries)}")
+    if any(entry is None or isinstance(entry, str | bool) for entry in entries):
+        raise LawError(f"{law._label()}: {method} must return {n} expressions for this contact, got {shown(value)}")
     return tuple(sympy.sympify(entry) for entry in entries)
 
 
@@ -70,11 +73,21 @@ def _make(law: Any, what: str, d: int) -> Callable[..., Any]:
     if what in ("coefficient", "derivative"):
         r, N, mu = coefficient_expression(law, stand)
         expression = mu if what == "coefficient" else sympy.diff(mu, r)
+        _only_known(law, (mu,), {r, N, *stand.flat})
         return sympy.lambdify([r, N, *stand.flat], expression, _MODULES)  # type: ignore[no-any-return]
     v, N, z, force_, rate_ = force_expression(law, stand, d)
     chosen = force_ if what == "force" else rate_
     arguments = [*v, N, *z, *stand.flat]
+    _only_known(law, chosen, set(arguments))
     return sympy.lambdify(arguments, [_lengths(e) for e in chosen], _MODULES)  # type: ignore[no-any-return]
+
+
+def _only_known(law: Any, expressions: tuple[Any, ...], known: set[Any]) -> None:
+    """Refuse symbols that are neither fields nor arguments."""
+    left = set().union(*(e.free_symbols for e in expressions)) - known
+    if left:
+        names = ", ".join(sorted(map(str, left)))
+        raise LawError(f"{law._label()}: undefined symbols in a derived expression: {names}")
 
 
 def _lengths(expression: Any, length: Any = None) -> Any:
@@ -132,9 +145,9 @@ def _function(law: Any, what: str, d: int = 0) -> Callable[..., Any]:
 
 
 def _evaluate(law: Any, what: str, r: ArrayLike, normal_force: ArrayLike) -> Any:
-    r_, N_ = np.broadcast_arrays(np.asarray(r, dtype=float), np.asarray(normal_force, dtype=float))
+    r_, N_ = alike(law, "r", numbers_of(law, "r", r), numbers_of(law, "normal_force", normal_force))
     if np.any(r_ < 0.0) or np.any(np.isnan(r_)):
-        raise LawError(f"{law._label()}: slip speed r must be >= 0, got {np.nanmin(r_)!r}")
+        raise LawError(f"{law._label()}: slip speed r must be >= 0, got {float(np.min(r_))!r}")
     function, p = _function(law, what), law.parameter_block()
     with np.errstate(all="ignore"):
         value = _array(function(r_, N_, *p), r_.shape)
@@ -158,8 +171,7 @@ def coefficient(law: Any, r: ArrayLike, normal_force: ArrayLike) -> Any:
         return _evaluate(law, "coefficient", r, normal_force)
     if law.states:
         raise LawError(f"{law._label()}: has internal states and states no coefficient; use force()")
-    speed = np.asarray(r, dtype=float)
-    N = np.broadcast_to(np.asarray(normal_force, dtype=float), speed.shape)
+    speed, N = alike(law, "r", numbers_of(law, "r", r), numbers_of(law, "normal_force", normal_force))
     value = -force(law, speed.reshape(1, -1), N.ravel(), None).reshape(speed.shape) / N
     return value if value.ndim else float(value)
 
@@ -168,7 +180,7 @@ def derivative(law: Any, r: ArrayLike, normal_force: ArrayLike) -> Any:
     """Slope of mu(r)."""
     if law.has_coefficient:
         return _evaluate(law, "derivative", r, normal_force)
-    speed = np.asarray(r, dtype=float)
+    speed = numbers_of(law, "r", r)
     step = 1e-6 * np.maximum(1.0, speed)
     low, high = np.maximum(speed - step, 0.0), speed + step
     difference = coefficient(law, high, normal_force) - coefficient(law, low, normal_force)
@@ -178,18 +190,21 @@ def derivative(law: Any, r: ArrayLike, normal_force: ArrayLike) -> Any:
 
 def _columns(law: Any, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLike | None) -> tuple[Any, ...]:
     """Velocity (d, n_t), normal force (n_t,), state (n_z, n_t) and the shape to return."""
-    v = np.asarray(v_rel, dtype=float)
+    v = numbers_of(law, "v_rel", v_rel)
     columns = np.atleast_1d(v).reshape(max(1, v.shape[0] if v.ndim else 1), -1)
     d = columns.shape[0]
     known = (*law.dimensions, *((3,) if law.cone_in_space else ()))
-    if v.ndim > 2 or d not in known:
+    if v.ndim > 2 or v.size == 0 or d not in known:
         accepted = f"a number, (d,) or (d, n_t) with d = {' or '.join(map(str, known))}"
         raise LawError(f"{law._label()}: v_rel must be {accepted}, got shape {v.shape}")
-    N = np.broadcast_to(np.asarray(normal_force, dtype=float), columns.shape[1:])
+    N = numbers_of(law, "normal_force", normal_force)
+    if N.shape not in ((), (1,), columns.shape[1:]):
+        raise LawError(f"{law._label()}: normal_force must be a number or have shape (n_t,), got shape {N.shape}")
+    N = np.broadcast_to(N, columns.shape[1:])
     n_z = law.n_states(d)
     z = np.zeros((n_z, columns.shape[1]))
     if state is not None:
-        given = np.asarray(state, dtype=float)
+        given = numbers_of(law, "state", state)
         if given.size not in (n_z, z.size) or (given.ndim > 0 and n_z > 0 and given.shape[0] not in (n_z, z.shape[1])):
             raise LawError(f"{law._label()}: state must have shape ({n_z},) or ({n_z}, n_t), got {given.shape}")
         z[:] = given.reshape(n_z, -1) if n_z else 0.0

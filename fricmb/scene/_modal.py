@@ -268,7 +268,7 @@ class ModalBody(Part):
         UnknownNameError
             If ``shapes`` has no such point.
         """
-        if name not in self.shapes:
+        if not isinstance(name, str) or name not in self.shapes:
             raise unknown_name(f"point of {self._label()}", name, self.shapes)
         return Point(self, name)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from types import MappingProxyType
@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene._bodies import Body, check_keys
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End, Part, PartEnd, PointEnd
@@ -136,13 +136,13 @@ class RigidBody(PartEnd):
             If there is no such point and no offset is given.
         """
         if offset is None:
-            if name not in self.points:
+            if not isinstance(name, str) or name not in self.points:
                 raise unknown_name(f"point of {self._label()}", name, self.points)
             return RigidPoint(self, name)
-        if name in self.points:
-            raise SceneError(f"{self._label()}: point {name!r} is among its points; leave the offset out")
         if not isinstance(name, str) or not name.isidentifier() or name in (*PLANE, "angle"):
             self._refuse("point", name, "named by an identifier other than 'x', 'y' and 'angle'")
+        if name in self.points:
+            raise SceneError(f"{self._label()}: point {name!r} is among its points; leave the offset out")
         return RigidPoint(self, name, check_pair(self, f"point {name!r}", offset))
 
     @staticmethod
@@ -229,8 +229,8 @@ class GroundPoint(End):
 def ground_point(x: float, y: float) -> GroundPoint:
     """A fixed point of the plane, an end for joints and elements."""
     for argument, value in (("x", x), ("y", y)):
-        if not is_plain(value) or not math.isfinite(value):
-            raise SceneError(f"ground_point: {argument} must be a finite number, got {value!r}")
+        if not is_plain(value) or not abs(value) <= sys.float_info.max:
+            raise SceneError(f"ground_point: {argument} must be a finite number, got {shown(value)}")
     return GroundPoint(float(x), float(y))
 
 

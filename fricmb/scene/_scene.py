@@ -105,7 +105,7 @@ class Scene:
     # -- parts --------------------------------------------------------------------------------------------------
     def __getitem__(self, name: str) -> Part:
         """The part of that name."""
-        if name not in self._by_name:
+        if not isinstance(name, str) or name not in self._by_name:
             raise unknown_name(f"part of scene {self.name!r}", name, self._by_name)
         return self._by_name[name]
 
@@ -247,7 +247,7 @@ class Scene:
             With the names near it.
         """
         motions = self._named_motions()
-        if name not in motions:
+        if not isinstance(name, str) or name not in motions:
             raise unknown_name(f"motion in scene {self.name!r}", name, motions)
         return motions[name]
 

@@ -138,7 +138,7 @@ class SpaceBody(PartEnd):
 
     def _point(self, name: str, offset: Any) -> SpacePoint:
         if offset is None:
-            if name not in self.offsets:
+            if not isinstance(name, str) or name not in self.offsets:
                 raise unknown_name(f"point of {self._label()}", name, self.offsets)
             return SpacePoint(self, name)
         if name in self.offsets:

@@ -57,7 +57,7 @@ class Derivatives:
 
     def column(self, name: str) -> int:
         """Number of a column; UnknownNameError lists those near."""
-        if name not in self.columns:
+        if not isinstance(name, str) or name not in self.columns:
             raise unknown_name("sensitivity", name, self.columns)
         return self.columns.index(name)
 
@@ -66,14 +66,14 @@ class Derivatives:
         S = self.S[:, :, self.column(name)].T
         n = len(names.dofs)
         rate = isinstance(signal, str) and signal.endswith(VELOCITY)
-        motion = signal[: -len(VELOCITY)] if rate else signal
+        motion = signal[: -len(VELOCITY)] if rate else signal if isinstance(signal, str) else ""
         if motion in names.dof_index:
             found: Floats = S[names.dof_index[motion] + (n if rate else 0)].copy()
             return found
         if motion in names.motions:
             return _point(names.motions[motion], S, n, rate, samples)
         states = [f"{c}.state.{s}" for c, held in zip(names.contacts, names.states, strict=True) for s in held]
-        if signal in states:
+        if isinstance(signal, str) and signal in states:
             return np.array(S[2 * n + states.index(signal)])
         known = [*names.dofs, *names.motions]
         raise unknown_name("signal", signal, [*known, *(f"{x}{VELOCITY}" for x in known), *states])

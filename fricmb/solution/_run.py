@@ -10,7 +10,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import FricmbError, SceneError
+from fricmb.errors import FricmbError, SceneError, shown
 from fricmb.integrate import MotionSamples, Samples, Start, Trajectory
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import concatenate, take
@@ -299,8 +299,8 @@ def times_inside(t: Any, t_start: float, t_end: float, name: str = "t") -> Float
     """Times as a float array (n_t,), those outside by round-off moved to the end; else a SceneError."""
     try:
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise SceneError(f"{name}: got {t!r}; expected a time or an array of times") from None
+    except (TypeError, ValueError, OverflowError):
+        raise SceneError(f"{name}: got {shown(t)}; expected a time or an array of times") from None
     if times.ndim != 1:
         raise SceneError(f"{name}: got an array of shape {times.shape}; expected one dimension")
     if times.size == 0:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fricmb.analysis import compiled_force
+from fricmb.errors import shown
 from fricmb.laws import FrictionLaw
 from fricmb.testing._base import ConformanceError, Floats, Rule, findings, pickles
 from fricmb.testing._law_states import STATE_RULES
@@ -38,6 +39,8 @@ def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
     r = 0 the declared one.  Of a law without states: the force opposes the slip and is 0 at rest.  Of states:
     finite rates, 0 at rest unless the law ages (``rests``), and no work gained over a closed cycle.
     """
+    if not isinstance(law, FrictionLaw):
+        raise ConformanceError(f"check_law: must get a friction law, got {shown(law)}")
     rules: tuple[Rule, ...] = (pickles, refuses, _finite_force, _odd, _turns, _jacobian)
     if law.has_coefficient:
         rules += (_coefficient, _derivative, _limit)

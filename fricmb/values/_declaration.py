@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
 
-from fricmb.errors import FricmbError, SceneError, unknown_name
+from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 from fricmb.values._numbers import (
     Number,
     finite,
@@ -81,7 +81,7 @@ class Declaration:
         return type(self).__name__
 
     def _refuse(self, argument: str, value: object, accepted: str) -> NoReturn:
-        raise self._error(f"{self._label()}: {argument} must be {accepted}, got {_short(value)}")
+        raise self._error(f"{self._label()}: {argument} must be {accepted}, got {shown(value)}")
 
     def _set(self, field: str, value: Any) -> None:
         object.__setattr__(self, field, value)
@@ -115,6 +115,8 @@ class Declaration:
         """The fields in :attr:`positive` hold numbers > 0."""
         for name in self.positive:
             value = getattr(self, name)
+            if isinstance(value, tuple) and not value:
+                self._refuse(name, value, "a finite number > 0")
             for entry in value if isinstance(value, tuple) else (value,):
                 if entry is not None:
                     self._number(name, entry, above=0.0)
@@ -216,6 +218,8 @@ class Declaration:
         UnknownNameError
             For a path that is no slot of this declaration.
         """
+        if not isinstance(changes, Mapping):
+            self._refuse("changes", changes, "a dict of names and values")
         fields: dict[str, dict[str, Any]] = {}
         for path, value in changes.items():
             if not self.accepts(path):
@@ -340,6 +344,3 @@ def _thawed(value: Any) -> Any:
     return dict(value) if isinstance(value, Mapping) else value
 
 
-def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 120 else text[:117] + "..."

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class Parameter:
             raise SceneError(f"parameter: name must be a non-empty string without dots, got {self.name!r}")
         value = self.value
         number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-        if not number or not math.isfinite(value):
-            raise SceneError(f"parameter {self.name!r}: value must be a finite number, got {value!r}")
+        if not number or not abs(value) <= sys.float_info.max:
+            raise SceneError(f"parameter {self.name!r}: value must be a finite number, got {shown(value)}")
         object.__setattr__(self, "value", float(value))
 
     def _sympy_(self) -> Any:

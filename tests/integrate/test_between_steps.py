@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 import sympy
+from scipy.linalg import expm
 
 import fricmb as fm
 from fricmb.integrate.problem import SLIP
@@ -39,6 +42,41 @@ def test_energies_between_steps_are_as_good_as_the_motion(method: str) -> None:
     for found, true in ((known.friction_loss, loss), (known.input, supply), (known.damping_loss, damped)):
         assert np.abs(found - true).max() < 2.0 * rtol * np.abs(true).max()
     assert np.abs(known.residual).max() < 2.0 * rtol * supply[-1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relaxing(fm.FrictionLaw):
+    """A bristle that creeps back: linear, so that its motion has a closed form."""
+
+    stiffness: float
+    tau: float
+    states = ("z",)
+
+    def define_force(self, v, N, z):
+        return tuple(-self.stiffness * N * bent for bent in z)
+
+    def define_rate(self, v, N, z):
+        return tuple(speed - bent / self.tau for speed, bent in zip(v, z, strict=True))
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
+@pytest.mark.parametrize("method", GENERAL)
+def test_states_between_steps_are_as_good_as_the_motion(method: str, rtol: float) -> None:
+    """A block on a belt held by bristles that creep: (x, v, z, 1) follows a matrix exponential."""
+    k, belt, load, tau = 2.0, 0.5, 10.0, 0.7
+    block = fm.Body("m", mass=1.0, position={"x": 0.3})
+    moving = fm.Driven("belt", velocity={"x": belt})
+    scene = fm.Scene("belt", [
+        block, moving, fm.Spring("k", block, axis="x", stiffness=k),
+        fm.Contact("sole", block, moving, law=Relaxing(stiffness=1.0, tau=tau), normal_force=load),
+    ])  # fmt: skip
+    t = np.linspace(0.0, 12.0, 301)
+    sol = fm.simulate(scene, t_end=12.0, rtol=rtol, method=method, t_eval=t)
+    rates = np.array([[0, 1, 0, 0], [-k, 0, -load, 0], [0, 1, -1 / tau, -belt], [0, 0, 0, 0]])
+    x, _, z, _ = np.array([expm(rates * time) @ (0.3, 0.0, 0.0, 1.0) for time in t]).T
+    assert np.abs(sol["m.x"] - x).max() < 5.0 * rtol * np.abs(x).max()
+    assert np.abs(sol.state("sole")[0] - z).max() < 5.0 * rtol * np.abs(z).max()
+    assert np.abs(sol.force("sole")[0] + load * z).max() < 5.0 * rtol * load * np.abs(z).max()
 
 
 @pytest.mark.parametrize("blocks", [1, 2])

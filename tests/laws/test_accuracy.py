@@ -109,6 +109,12 @@ def test_parallel_sliders_follow_masing(name):
     np.testing.assert_allclose(-np.concatenate(found), expected, atol=1e-10)
 
 
+def test_a_path_goes_as_far_as_its_velocity_says():
+    """However few times are asked for: the displacement is the integral of the velocity, not of its samples."""
+    found = fm.analysis.path(laws.Dahl.example(), lambda t: np.sin(3.0 * t), np.linspace(0.0, 4.0, 21))
+    np.testing.assert_allclose(found.displacement, (1.0 - np.cos(3.0 * found.t)) / 3.0, rtol=0.0, atol=1e-14)
+
+
 def steady(forward):
     speed = 1.0 if forward else -1.0
     return lambda time: speed * np.ones(np.shape(time))
@@ -257,10 +263,10 @@ def test_break_away_follows_the_normal_force(method):
 
 
 def test_a_state_at_its_limit_is_drawn_within_it():
-    """Between steps a bristle that has met its limit is not drawn far beyond it, at tight tolerances not at all."""
+    """Between steps a bristle that has met its limit is not drawn beyond it by more than the tolerance."""
     block, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.1})
     contact = fm.Contact("sole", block, belt, law=fm.laws.Jenkins(stiffness=1e4, mu=0.3), normal_force=10.0)
     scene = fm.Scene("belt", [block, belt, fm.Spring("k", block, axis="x", stiffness=100.0), contact])
-    for rtol, beyond in ((1e-6, 0.05), (1e-9, 1e-3)):
+    for rtol, beyond in ((1e-3, 1e-3), (1e-6, 1e-9)):
         sol = fm.simulate(scene, t_end=1.0, rtol=rtol, method="radau").at(np.linspace(0.0, 1.0, 2001))
         assert np.abs(sol.force("sole")).max() < 3.0 * (1.0 + beyond)

@@ -123,3 +123,30 @@ def test_no_law_of_the_catalogue_is_refused(name):
     for d in law.dimensions:
         if d < 3:
             build(scene_of(law, d))
+
+
+@pytest.mark.parametrize(
+    ("said", "text"),
+    [
+        ({"states": "z"}, "states must be a tuple of names"),
+        ({"states": ["z"]}, "states must be a tuple of names"),
+        ({"states": ("z", "z")}, "states must be different names"),
+        ({"states": ("z",), "scalars": ("w",)}, "scalars: unknown name 'w'"),
+        ({"states": ("z",), "copies": lambda law: {"w": 2}}, "copies: unknown name 'w'"),
+        ({"states": ("z",), "copies": lambda law: {"z": 1.5}}, "copies of z must be a whole number"),
+        ({"positive": ("mu_",)}, "positive: unknown name 'mu_'; did you mean 'mu'"),
+        ({"dimensions": (5,)}, "dimensions must be a tuple of 1, 2, 3"),
+    ],
+)
+def test_what_a_law_says_of_itself_is_checked(said, text):
+    kind = dataclass(frozen=True, kw_only=True)(type("Saying", (OneShort,), said))
+    with pytest.raises(fm.LawError, match=f"Saying: {text}"):
+        kind(mu=0.3)
+
+
+@pytest.mark.parametrize("value", [None, ("a",)])
+def test_a_formula_is_no_word_and_not_left_out(value):
+    said = {"states": ("z",), "define_force": lambda law, v, N, z: (-z[0],), "define_rate": lambda law, v, N, z: value}
+    kind = dataclass(frozen=True, kw_only=True)(type("Saying", (OneShort,), said))
+    with pytest.raises(fm.LawError, match="define_rate must return 1 expressions for this contact, got"):
+        fm.simulate(fm.models.belt_oscillator(law=kind(mu=0.3)), t_end=1.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fricmb._simulate._progress import bar
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_kind, positive
 from fricmb.analysis.cycles._border import beyond, on_border, solve_border
 from fricmb.analysis.cycles._branch import Branch
 from fricmb.analysis.cycles._cycle import Cycle, as_cycle
@@ -18,6 +18,8 @@ from fricmb.analysis.cycles._shooting import Orbit, solve
 from fricmb.analysis.cycles._specials import Fold, Grazing, Special, StickAppears, StickDisappears
 
 _WHO = "continue_cycle"
+#: Most cycles of a branch.
+_MOST_POINTS = 1_000_000
 #: First and largest step, in units of the cycle's extent and of the range of the parameter; least before giving up.
 _FIRST, _LARGEST, _LEAST = 0.02, 0.2, 1e-6
 #: Largest turn of the branch's direction in one step (radians).
@@ -66,6 +68,9 @@ def continue_cycle(
     flips and Neimark-Sacker points are roots of the parameter's slope, of det(DP + I) and of the product of
     1 - l_i l_j.
     """
+    checked_kind(_WHO, "cycle", cycle, Cycle, "a Cycle, as limit_cycle returns it")
+    points = checked_integer(_WHO, "points", points, 1, _MOST_POINTS)
+    largest_step = positive(_WHO, "largest_step", largest_step)
     value = check_parameter(cycle.orbit, over, to, _WHO)
     first = recut(_with_parameter(cycle.orbit, over), over)
     scale = abs(to - value)

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb._simulate import simulate
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb._simulate._arguments import check_options
+from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, positive, refuse
 from fricmb.analysis.cycles._drive import drive_period, given_period, is_driven, places_are_integrals
 from fricmb.analysis.cycles._extremes import amplitude_slope, extremes
 from fricmb.analysis.cycles._flow import Flow, check_scene, detached, initial_slots, states_at
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 _WHO = "limit_cycle"
 #: How many periods of the slowest oscillation, or of the drive, are run where no start is given.
 _RUN_IN = 40
+#: Most laps of one cycle.
+_MOST_LAPS = 10_000
+#: Options of simulate that it sets itself.
+_OWN = ("t_end", "t_start", "t_eval", "initial", "sensitivities", "parameters", "rtol", "dense", "chunk", "on_chunk")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,11 +86,13 @@ class Cycle:
         name : str
             Out of ``scene.parameters``; an initial value has no influence on a cycle.
         """
-        if name not in self.scene.parameters:
+        if not isinstance(name, str) or name not in self.scene.parameters:
             raise unknown_name("parameter", name, self.scene.parameters)
         if name in initial_slots(self.scene):
             return 0.0
         start, period = self._slopes(name)
+        if not isinstance(quantity, str):
+            raise unknown_name("quantity", quantity, ["period", *self.scene.dof_names])
         return period if quantity == "period" else amplitude_slope(self, quantity, name, start)
 
     def _slopes(self, name: str) -> tuple[Floats, float]:
@@ -161,12 +168,13 @@ def limit_cycle(
     multipliers are its eigenvalues.  A section at which contacts stick is varied along the stuck states alone.
     """
     check_scene(scene, _WHO)
-    if not isinstance(laps, int) or isinstance(laps, bool) or laps < 1:
-        raise AnalysisError(f"{_WHO}: laps must be a whole number of at least 1; got {laps!r}")
-    if period is not None and not (np.isfinite(period) and period > 0):
-        raise AnalysisError(f"{_WHO}: period must be positive; got {period!r}")
+    if values := options.pop("parameters", None):  # a cycle's period, derivatives and branches follow from the scene
+        scene = scene.with_parameters(values)
+    laps = checked_integer(_WHO, "laps", laps, 1, _MOST_LAPS)
+    period = None if period is None else positive(_WHO, "period", period)
     if start is not None and not isinstance(start, Solution | Cycle):
-        raise AnalysisError(f"{_WHO}: start must be a Solution or a Cycle; got {start!r}")
+        refuse(_WHO, "start", start, "a Solution or a Cycle")
+    check_options(_WHO, options, simulate, *_OWN)
     flow = Flow(scene=detached(scene), options={"rtol": rtol, **options})
     drive = None
     if is_driven(scene):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fricmb._simulate import simulate
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import AnalysisError, Floats, checked_scene
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
@@ -113,5 +113,5 @@ def detached(scene: Scene) -> Scene:
 
 def check_scene(scene: Scene, who: str) -> None:
     """Refuse scenes whose states are not free to be varied one by one."""
-    if scene.is_mechanism:
+    if checked_scene(who, scene).is_mechanism:
         raise AnalysisError(f"{who}: takes no bodies that turn and joints")

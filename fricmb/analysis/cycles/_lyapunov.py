@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fricmb._simulate import simulate
+from fricmb._simulate._arguments import check_options
 from fricmb._simulate._progress import bar
-from fricmb.analysis._errors import AnalysisError, Floats
+from fricmb.analysis._errors import Floats, checked_integer, checked_kind, checked_number, positive
 from fricmb.analysis.cycles._flow import check_scene
+from fricmb.solution import Solution
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
-    from fricmb.solution import Solution
 
 _WHO = "lyapunov"
+#: Most intervals.
+_MOST = 10_000_000
 #: A direction that shrinks to this part of the largest within one interval has been cut off by a landing.
 _CUT = 1e-12
 
@@ -104,7 +107,11 @@ def lyapunov(
     has one exponent 0.
     """
     check_scene(scene, _WHO)
-    _check(t_end, intervals, discard)
+    t_end, intervals = positive(_WHO, "t_end", t_end), checked_integer(_WHO, "intervals", intervals, 1, _MOST)
+    discard = checked_number(_WHO, "discard", discard, "a number of at least 0", lambda x: x >= 0.0)
+    if start is not None:
+        checked_kind(_WHO, "start", start, Solution, "a Solution")
+    check_options(_WHO, options, simulate, "t_end", "t_start", "initial", "sensitivities", "rtol", "on_chunk", "chunk")
     step = t_end / intervals
     before = int(np.ceil(discard * intervals))
     options = {"rtol": rtol, **options}
@@ -138,12 +145,3 @@ def _grown(Phi: Floats, Q: Floats) -> tuple[Floats, Floats]:
     growth = np.full(len(Phi), -np.inf)
     growth[: kept.sum()] = np.log(size[kept])
     return new[:, kept], growth
-
-
-def _check(t_end: float, intervals: int, discard: float) -> None:
-    if not (np.isfinite(t_end) and t_end > 0):
-        raise AnalysisError(f"{_WHO}: t_end must be positive; got {t_end!r}")
-    if isinstance(intervals, bool) or not isinstance(intervals, int) or intervals < 1:
-        raise AnalysisError(f"{_WHO}: intervals must be a whole number of at least 1; got {intervals!r}")
-    if not (np.isfinite(discard) and discard >= 0):
-        raise AnalysisError(f"{_WHO}: discard must be at least 0; got {discard!r}")

@@ -11,7 +11,7 @@ from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.analysis.cycles._drive import places_are_integrals
 from fricmb.analysis.cycles._section import calm_time
 from fricmb.analysis.cycles._shooting import Orbit, Shooting
-from fricmb.errors import IntegrationError, SceneError
+from fricmb.errors import IntegrationError, SceneError, shown
 
 _MOST_STEPS = 8
 
@@ -121,12 +121,12 @@ def check_parameter(orbit: Orbit, over: str, to: float, who: str) -> float:
     from fricmb.errors import unknown_name
 
     values = orbit.shooting.flow.scene.parameters
-    if over not in values:
+    if not isinstance(over, str) or over not in values:
         raise unknown_name("parameter", over, values)
     try:
         value, end = float(values[over]), float(to)
-    except (TypeError, ValueError):
-        raise AnalysisError(f"{who}: {over} = {values[over]!r} and to = {to!r} must be numbers") from None
+    except (TypeError, ValueError, OverflowError):
+        raise AnalysisError(f"{who}: {over} = {shown(values[over])} and to = {shown(to)} must be numbers") from None
     if not np.isfinite(end) or end == value:
         raise AnalysisError(f"{who}: to must be a finite number other than {over} = {value:g}; got {to!r}")
     return value

@@ -14,6 +14,7 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.hermite_output import state_of_row, write_sample
 from fricmb.integrate.output.slip_direction import point_slip
+from fricmb.integrate.output.states_between import shares
 from fricmb.integrate.problem import SLIP, Codes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.run.breakpoints import set_window_around
 from fricmb.integrate.step.exact_structure import Exact
@@ -39,16 +40,16 @@ def open_step(
 
 
 @kernel
-def through_nodes(ex: Exact, start: float, row: Floats, at: int, width: int, theta: float) -> float:
-    """Polynomial through ``start`` and the node values ``row[at + x width]``."""
-    n_s = ex.tab.c.shape[0]
-    value = 0.0
-    for r in range(n_s, -1, -1):
-        c = ex.tab.basis[r, 0] * start
+def states_inside(ex: Exact, left: Floats, right: Floats, before: int, at: int, theta: float, z: Floats) -> None:
+    """States from those in row ``left`` at ``before`` and those of the nodes, in row ``right`` from ``at`` on."""
+    n_s, nz = ex.tab.c.shape[0], z.shape[0]
+    points, share = np.zeros(n_s + 1), np.empty(n_s + 1)
+    points[1:] = ex.tab.c
+    shares(points, theta, share)
+    for a in range(nz):
+        z[a] = share[0] * left[before + a]
         for x in range(n_s):
-            c += ex.tab.basis[r, x + 1] * row[at + x * width]
-        value = value * theta + c
-    return value
+            z[a] += share[x + 1] * right[at + x * nz + a]
 
 
 @kernel
@@ -88,8 +89,8 @@ def inside_step(
         y.q[i] = left[1 + i] + dq[i]
         y.v[i] = left[1 + n + i] + dv[i]
     states = at + 1 + P.shape[0] * P.shape[1]
-    for a in range(nz):
-        y.z[a] = through_nodes(ex, left[1 + 3 * n + a], right, states + a, nz, theta)
+    if nz > 0:
+        states_inside(ex, left, right, 1 + 3 * n, states, theta, y.z)
     width = y.rate.shape[0]
     rates = states + nz * P.shape[1]
     # powers are known over the step as it was taken, which a transition may have cut short

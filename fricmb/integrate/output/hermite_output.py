@@ -10,8 +10,8 @@ from fricmb.integrate.model.forces import Scratch, stored_by_damped
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.output.recorder import INSIDE
 from fricmb.integrate.output.slip_direction import point_slip, relative_velocity
+from fricmb.integrate.output.states_between import ends_of_step, states_between
 from fricmb.integrate.problem import STICK, Codes, Codes2, Floats, Floats2, Floats3, Ints, Pivots
 from fricmb.integrate.run.breakpoints import set_window_around
 
@@ -47,28 +47,6 @@ def hermite(left: Floats, right: Floats, h: float, x: float, n: int, q: Floats, 
 
 
 @kernel
-def cubic(left: Floats, right: Floats, at: int, rate: int, n: int, h: float, x: float, out: Floats) -> None:
-    """Cubic Hermite interpolation of n entries from ``at`` with rates from ``rate``, without overshoot.
-
-    Where a rate goes the way of the values, and the other one too or hardly at all, it counts at most three times their
-    mean: then the cubic goes that way throughout (Fritsch and Carlson 1980).  Motion that is resolved, turning points
-    included, is far from this; a state that meets its limit within a step would be drawn beyond it.
-    """
-    for i in range(n):
-        step = right[at + i] - left[at + i]
-        r0, r1 = h * left[rate + i], h * right[rate + i]
-        most = 3.0 * abs(step)
-        against = r0 * r1 > 0.0 and r0 * step <= 0.0  # two turning points in a step are none
-        first = r0 * step >= 0.0 and (r1 * step >= 0.0 or abs(r1) < 0.25 * abs(r0))
-        second = r1 * step >= 0.0 and (r0 * step >= 0.0 or abs(r0) < 0.25 * abs(r1))
-        if first or against:
-            r0 = 0.0 if against else min(max(r0, -most), most)
-        if second or against:
-            r1 = 0.0 if against else min(max(r1, -most), most)
-        out[i] = left[at + i] + x * (r0 + x * (3.0 * step - 2.0 * r0 - r1 + x * (r0 + r1 - 2.0 * step)))
-
-
-@kernel
 def write_sample(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes) -> None:
     """Put the state of X into a row [t, q, v, z, F, N, g, work], and its modes; what sticks has no slip."""
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
@@ -95,7 +73,7 @@ def write_sample(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes
 
 @kernel
 def complete_at(
-    packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, sizes: Pivots,
+    packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, k: int, modes: Codes, t: float, sizes: Pivots,
     pivots: Pivots,
 ) -> None:  # fmt: skip
     """Make y the state at t between row k and the next one, with its forces and powers; ``work`` stays."""
@@ -107,7 +85,7 @@ def complete_at(
     x = (t - left[0]) / h
     y.t = t
     hermite(left, right, h, x, n, y.q, y.v)
-    cubic(left, right, at_z, at_z + nz, nz, h, x, y.z)
+    states_between(values, kind, k, at_z, nz, t, y.z)
     for c in range(nc):
         y.mode[c] = modes[c]
         y.N[c] = left[at_F + m + c]
@@ -122,7 +100,7 @@ def complete_at(
 
 @kernel
 def add_powers(
-    packed: Packed, s: Scratch, y: State, values: Floats2, k: int, modes: Codes, t: float, out: Floats2,
+    packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, k: int, modes: Codes, t: float, out: Floats2,
     sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Add integrals of the powers (row 0 of ``out``) and of their magnitudes (row 1) from row k to t, by Gauss."""
@@ -130,7 +108,7 @@ def add_powers(
     for g in range(3):
         root = (g - 1.0) * np.sqrt(0.6)
         weight = h * (4.0 / 9.0 if g == 1 else 5.0 / 18.0)
-        complete_at(packed, s, y, values, k, modes, values[k, 0] + 0.5 * h * (1.0 + root), sizes, pivots)
+        complete_at(packed, s, y, values, kind, k, modes, values[k, 0] + 0.5 * h * (1.0 + root), sizes, pivots)
         for i in range(y.rate.shape[0]):
             out[0, i] += weight * y.rate[i]
             out[1, i] += weight * abs(y.rate[i])
@@ -138,34 +116,20 @@ def add_powers(
 
 @kernel
 def open_step(
-    packed: Packed, s: Scratch, y: State, values: Floats2, ends: Ints, modes: Codes2, part: Floats3,
+    packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, ends: Ints, modes: Codes2, part: Floats3,
     sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Integrals of the powers from row ``ends[0]``, where a step starts, up to every row of it until ``ends[1]``."""
     part[0] = 0.0
     for k in range(ends[0], ends[1]):
         part[k + 1 - ends[0]] = part[k - ends[0]]
-        add_powers(packed, s, y, values, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots)
-
-
-@kernel
-def ends_of_step(values: Floats2, kind: Codes, k: int, ends: Ints) -> bool:
-    """First and last row of the step in which row k is; whether that has changed."""
-    low, high = k, k + 1
-    while low > 0 and kind[low] == INSIDE:
-        low -= 1
-    while high < values.shape[0] - 1 and kind[high] == INSIDE:
-        high += 1
-    if low == ends[0] and high == ends[1]:
-        return False
-    ends[0], ends[1] = low, high
-    return True
+        add_powers(packed, s, y, values, kind, k, modes[k], values[k + 1, 0], part[k + 1 - ends[0]], sizes, pivots)
 
 
 @kernel
 def work_at(
-    packed: Packed, s: Scratch, y: State, values: Floats2, at_w: int, ends: Ints, part: Floats3, k: int, modes: Codes,
-    t: float, sizes: Pivots, pivots: Pivots,
+    packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, at_w: int, ends: Ints, part: Floats3, k: int,
+    modes: Codes, t: float, sizes: Pivots, pivots: Pivots,
 ) -> None:  # fmt: skip
     """Energies at t after row k: those where the step starts and the integral of the powers of the dense output.
 
@@ -173,7 +137,7 @@ def work_at(
     magnitude of the power: what is lost never comes back, and where there is no power nothing changes.
     """
     since = part[k - ends[0]].copy()
-    add_powers(packed, s, y, values, k, modes, t, since, sizes, pivots)
+    add_powers(packed, s, y, values, kind, k, modes, t, since, sizes, pivots)
     whole = part[ends[1] - ends[0]]
     left, right = values[ends[0]], values[ends[1]]
     for i in range(y.work.shape[0]):
@@ -225,9 +189,9 @@ def sample_rows(
         if t[j] > left[0] and k + 1 < values.shape[0] and values[k + 1, 0] > left[0]:
             if part.shape[0] > 0:
                 if ends_of_step(values, kind, k, ends):
-                    open_step(packed, s, y, values, ends, modes, part, sizes, pivots)
-                work_at(packed, s, y, values, at_w, ends, part, k, modes[k], t[j], sizes, pivots)
-            complete_at(packed, s, y, values, k, modes[k], t[j], sizes, pivots)
+                    open_step(packed, s, y, values, kind, ends, modes, part, sizes, pivots)
+                work_at(packed, s, y, values, kind, at_w, ends, part, k, modes[k], t[j], sizes, pivots)
+            complete_at(packed, s, y, values, kind, k, modes[k], t[j], sizes, pivots)
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])
         write_sample(packed, s, y, out[j], out_mode[j])
