@@ -79,6 +79,7 @@ class DrivenSlide(PlaneJoint):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._settle("angle")
         check_drive(self, "distance", self.distance, "speed", self.speed)
         self.local_coordinates()
 

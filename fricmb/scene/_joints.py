@@ -110,6 +110,7 @@ class Prismatic(PlaneJoint):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._settle("angle")
         self._number("guide", self.guide, minimum=0.0)
         self.local_coordinates()
 
@@ -183,6 +184,7 @@ class Gear(Joint):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._settle("ratio")
         self.local_coordinates()
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:

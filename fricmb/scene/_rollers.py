@@ -51,6 +51,7 @@ class RollerOnLine(Surface):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._settle("angle")
         self._set("slide", check_expression(self, "slide", self.slide, motions=False))
         self.local_coordinates()
 

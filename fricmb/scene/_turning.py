@@ -48,6 +48,7 @@ class TorsionSpring(Element):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._settle("stiffness", "angle")
         self.local_coordinates()
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
@@ -79,6 +80,7 @@ class TorsionDamper(Element):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._settle("damping")
         self.local_coordinates()
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:

@@ -298,3 +298,15 @@ def test_parameters_sweep_save_and_go_on(tmp_path):
         reduce=lambda s: float(s.energy.friction_loss[-1]), workers=1, progress=False,
     )  # fmt: skip
     assert ends[0] < ends[1]
+
+
+@pytest.mark.parametrize("wrong", [None, "x", (1.0, 0.0), np.nan, True])
+@pytest.mark.parametrize(("kind", "field"), [
+    ("Gear", "ratio"), ("Prismatic", "angle"), ("RollerOnLine", "angle"), ("DrivenSlide", "angle"),
+    ("TorsionSpring", "stiffness"), ("TorsionSpring", "angle"), ("TorsionDamper", "damping"),
+])  # fmt: skip
+def test_a_field_that_is_no_number_is_named_where_it_is_declared(kind, field, wrong):
+    one, other = (fm.RigidBody(name, mass=1.0, inertia=0.1) for name in ("one", "other"))
+    right = {"DrivenSlide": {"speed": 1.0}, "TorsionSpring": {"stiffness": 1.0}}.get(kind, {})
+    with pytest.raises(fm.SceneError, match=f"{kind} 'part': {field} must be a finite number, got "):
+        getattr(fm, kind)("part", one, other, **{**right, field: wrong})
