@@ -24,6 +24,7 @@ from fricmb.integrate.constrained.singular_position import (
     near_singular,
 )
 from fricmb.integrate.constrained.slip_growth import growth
+from fricmb.integrate.constrained.slow_slip import slow_slip_defect
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
@@ -126,7 +127,8 @@ def radau_step(
         c.last_h = 0.0
         return reject(c, 0.4 * h)
     find_kinks(mech, k, y, st, out)
-    between = max(law_defect(mech, k, y, st, c, h), load_defect(mech, k, w, y, st, c, out, h))
+    between = max(law_defect(mech, k, y, st, c, h), slow_slip_defect(mech, k, y, st, c, h))
+    between = max(between, load_defect(mech, k, w, y, st, c, out, h))
     error = max(error_of(c, y, st), between / asked(c))
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
