@@ -162,6 +162,10 @@ def test_annotations_of_entries_are_the_types_of_their_calls():
     fm.simulate(fm.models.belt_oscillator(), t_end=0.3, step=0.01, method="bdf2-paper")
     for method in ("bdf", "radau"):
         fm.simulate(fm.models.slider_crank(), t_end=0.01, t_eval=[0.005], method=method)
+    block = fm.Body("b", mass=1.0)
+    spring = fm.Spring("s", block, axis="x", stiffness=1.0, cubic=1.0)
+    parts = [block, spring, fm.Force("f", block, axis="x", value=fm.t**2)]
+    assert fm.simulate(fm.Scene("one", parts), t_end=1.0, method="radau").energy.residual.max() < 1e-6
     _tasks.kernels()
     own = {name: made for name, made in _entries.items() if name.startswith(("fricmb.integrate", "fricmb.system"))}
     called = {name: made for name, made in own.items() if made.overloads}
