@@ -16,6 +16,7 @@ from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.memory import available
 from fricmb.scene import Scene
 from fricmb.solution import times_inside
+from fricmb.values import as_float
 
 #: Tightest and loosest relative tolerance: what double precision can hold, and what still means something.
 RTOL_RANGE = 1e-14, 0.1
@@ -34,11 +35,7 @@ class Span:
 
 def number(name: str, value: Any, accepted: str, fits: Callable[[float], bool] = math.isfinite) -> float:
     """A finite float that fits, else a SceneError."""
-    plain = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    try:
-        found = float(value) if plain else math.nan
-    except OverflowError:
-        found = math.nan
+    found = as_float(value)
     if not math.isfinite(found) or not fits(found):
         raise SceneError(f"{name}: got {shown(value)}; expected {accepted}")
     return found

@@ -127,8 +127,8 @@ class JoinedRun(Trajectory):
         loss = np.zeros((self._shape[1], t.size))
         for place, part in zip(self._places, parts, strict=True):
             loss[place.contacts] = part.friction_loss
-        return Samples(
-            **{f.name: getattr(motion, f.name) for f in fields(MotionSamples)}, friction_loss=loss,
+        return motion.with_energies(
+            friction_loss=loss,
             damping_loss=np.sum([part.damping_loss for part in parts], axis=0),
             input=np.sum([part.input for part in parts], axis=0),
         )  # fmt: skip

@@ -13,6 +13,7 @@ from fricmb.errors import FricmbError, shown
 from fricmb.laws import FrictionLaw
 from fricmb.scene import Scene
 from fricmb.solution import Solution
+from fricmb.values import as_float
 
 Floats = NDArray[np.float64]
 _Kind = TypeVar("_Kind")
@@ -55,11 +56,7 @@ def checked_law(who: str, law: Any) -> FrictionLaw:
 
 def checked_number(who: str, name: str, value: Any, accepted: str, fits: Callable[[float], bool]) -> float:
     """A finite number that fits."""
-    plain = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    try:
-        found = float(value) if plain else np.nan
-    except OverflowError:
-        found = np.nan
+    found = as_float(value)
     if not (isfinite(found) and fits(found)):
         refuse(who, name, value, accepted)
     return found

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_number, checked_samples, refuse
 from fricmb.errors import shown
+from fricmb.values import as_float
 
 
 def welch_spectrum(
@@ -128,7 +129,7 @@ def spectrogram(
 def _segments(who: str, n: int, segment: int | None, overlap: float, parts: int) -> tuple[int, int]:
     """Length of a segment and what two neighbours share, in samples."""
     length = min(n, max(2, n // parts)) if segment is None else checked_integer(who, "segment", segment, 2, n)
-    if isinstance(overlap, bool) or not isinstance(overlap, int | float | np.number) or not 0.0 <= overlap <= 0.95:
+    if not 0.0 <= as_float(overlap) <= 0.95:
         raise AnalysisError(f"{who}: overlap must lie between 0 and 0.95; got {shown(overlap)}")
     return length, min(length - 1, int(overlap * length))
 

@@ -38,6 +38,11 @@ class MotionSamples:
             found |= {name: found[name][moving] for name in ("q", "v")}
         return list(found.values())
 
+    def with_energies(self, *, friction_loss: Floats, damping_loss: Floats, input: Floats) -> Samples:
+        """The same motion, kept once, with energies."""
+        motion = {f.name: getattr(self, f.name) for f in fields(MotionSamples)}
+        return Samples(**motion, friction_loss=friction_loss, damping_loss=damping_loss, input=input)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Samples(MotionSamples):

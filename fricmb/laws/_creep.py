@@ -33,8 +33,9 @@ class Creep:
 def creep(law: Any, load: float) -> Creep:
     """See :class:`Creep`."""
     from fricmb.errors import LawError, shown
+    from fricmb.values import as_float
 
-    if isinstance(load, bool) or not isinstance(load, int | float | np.integer | np.floating) or not 0.0 < load < 1.0:
+    if not 0.0 < as_float(load) < 1.0:
         raise LawError(f"{law._label()}: load must be between 0 and 1, got {shown(load)}")
     if law.kind != "smooth":
         return Creep(load=load, break_away=law.break_away(), velocity=0.0, displacement=0.0)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from functools import cached_property
 
-from fricmb.integrate import MotionSamples, Samples
+from fricmb.integrate import Samples
 from fricmb.integrate.problem import Floats
 from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._recorded import Recorded, finite
@@ -35,9 +34,9 @@ class Ledger(Recorded):
             return here
         run = self.run
         found = finite(run.rows() if self.has_rows else run.sample(here.t)).samples
-        spent = {name: getattr(found, name) for name in ("friction_loss", "damping_loss", "input")}
-        motion = {f.name: getattr(here, f.name) for f in fields(MotionSamples)}
-        return Samples(**motion, **spent)  # the motion is kept once
+        return here.with_energies(
+            friction_loss=found.friction_loss, damping_loss=found.damping_loss, input=found.input
+        )
 
     def _ledger(self, energies: tuple[Floats, Floats], samples: Samples, reference: Reference | None) -> Energy:
         kinetic, potential = energies

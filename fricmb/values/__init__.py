@@ -3,7 +3,7 @@
 from fricmb.values._declaration import Declaration
 from fricmb.values._held import Held, held, is_foreign
 from fricmb.values._in_symbols import in_symbols
-from fricmb.values._numbers import Number, is_expression, is_plain, is_sparse, parameters_in, value_of
+from fricmb.values._numbers import Number, as_float, is_expression, is_plain, is_sparse, parameters_in, value_of
 from fricmb.values._parameter import Parameter, parameter
 from fricmb.values._standin import Symbolic, symbolic
 from fricmb.values._units import DIMENSIONLESS, DIMENSIONS, SI, Units
@@ -18,6 +18,7 @@ __all__ = [
     "Parameter",
     "Symbolic",
     "Units",
+    "as_float",
     "held",
     "in_symbols",
     "is_expression",

@@ -27,6 +27,14 @@ def is_plain(value: object) -> bool:
     return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
 
 
+def as_float(value: Any) -> float:
+    """A Python or numpy number as a float; nan where it is none, or too large for one."""
+    try:
+        return float(value) if is_plain(value) else math.nan
+    except OverflowError:
+        return math.nan
+
+
 def is_sparse(value: object) -> bool:
     """Whether ``value`` is a scipy sparse matrix (scipy is not imported to find out)."""
     module = sys.modules.get("scipy.sparse")

@@ -93,7 +93,7 @@ class RowTrajectory(Trajectory):
 
     def _complete(self, motion: MotionSamples, work: Floats2) -> Samples:
         damping = work[-2] - self._lost_at_start if self._lost_at_start else work[-2]
-        return Samples(**vars(motion), friction_loss=work[:-2], damping_loss=damping, input=work[-1])
+        return motion.with_energies(friction_loss=work[:-2], damping_loss=damping, input=work[-1])
 
     @cached_property
     def _lost_at_start(self) -> float:

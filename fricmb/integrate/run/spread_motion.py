@@ -41,10 +41,9 @@ class SpreadMotion(MotionSamples):
 
     def numbers(self, moving: Ints | None) -> list[Any]:
         """Without what rests, and without laying out anything."""
-        laid_out = ("q", "v", "mode")
-        own = [getattr(self, f.name) for f in fields(MotionSamples) if f.name not in laid_out]
-        if "_moving" not in vars(self):
+        if "_moving" not in vars(self):  # a part of the times of another, made of plain arrays
             return super().numbers(moving)
+        own = [getattr(self, f.name) for f in fields(MotionSamples) if f.name not in ("q", "v", "mode")]
         return [*own, self._resting, *(x for _, part in self._moving for x in (part.q, part.v))]
 
     def __reduce__(self) -> Any:

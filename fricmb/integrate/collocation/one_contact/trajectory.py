@@ -183,4 +183,4 @@ class SingleRun(Trajectory):
     def _samples(self, row: Ints, tau: Floats, t: Floats) -> Samples:
         motion, loss = self._motion(row, tau, t, with_loss=True)
         damping, supply = self._energies(row, tau)
-        return Samples(**vars(motion), friction_loss=loss[None], damping_loss=damping, input=supply)
+        return motion.with_energies(friction_loss=loss[None], damping_loss=damping, input=supply)
