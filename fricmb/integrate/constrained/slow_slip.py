@@ -22,7 +22,7 @@ from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_COEFFICIENT, SLIP, Floats
 from fricmb.integrate.step.law_defect import ROUND_OFF
-from fricmb.integrate.step.slow_slip import ABOVE, NEARER, SLOW, TIMES, UNSEEN, line_at
+from fricmb.integrate.step.slow_slip import NEARER, SLOW, TIMES, force_between, least_way, line_at
 from fricmb.integrate.step.tableau import by_line
 
 
@@ -39,12 +39,7 @@ def coefficient_off(mech: Mech, k: Moving, y: State, st: Stages, p: int, line: F
     r = 0.0
     for a in range(row[p], row[p + 1]):
         r += by_line(line, y.g[a], st.g, a) ** 2
-    top = magnitude(row, p, y.F)
-    size = line[0] * top
-    for j in range(st.F.shape[0]):
-        here = magnitude(row, p, st.F[j])
-        size += line[j + 1] * here
-        top = max(top, here)
+    size, top = force_between(row, p, line, y.F, st.F)
     load = carried(mech, p, by_line(line, y.N[p], st.N, p))
     mu, _, _ = friction_coefficient(mech, k, p, r**0.5, load)
     return float(max(abs(mu * load - size) - ROUND_OFF * top, 0.0))
@@ -59,10 +54,7 @@ def missed(
 
     ``most``: largest acceleration, by its scale, that a unit force brings.
     """
-    top = magnitude(mech.port.row, p, y.F)
-    for j in range(st.F.shape[0]):
-        top = max(top, magnitude(mech.port.row, p, st.F[j]))
-    least = UNSEEN * asked(c) / max(ABOVE * top * most * h, 1e-290)
+    least = least_way(asked(c), mech.port.row, p, y.F, st.F, most, h)
     total = 0.0
     for _ in range(TIMES):
         way *= NEARER

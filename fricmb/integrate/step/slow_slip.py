@@ -17,7 +17,7 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, Floats, Floats2
+from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, Floats, Floats2, Ints
 from fricmb.integrate.step.crossing import evaluate, polynomial
 from fricmb.integrate.step.law_defect import ROUND_OFF, put_felt, smooth_defect
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
@@ -93,6 +93,30 @@ def speed(slip: Floats2, d: int, x: float) -> float:
 
 
 @kernel
+def force_between(row: Ints, k: int, line: Floats, F0: Floats, F: Floats2) -> tuple[float, float]:
+    """Polynomial of the size of force k of a step at the place of ``line``, and the largest at its start and nodes."""
+    top = magnitude(row, k, F0)
+    size = line[0] * top
+    for j in range(F.shape[0]):
+        here = magnitude(row, k, F[j])
+        size += line[j + 1] * here
+        top = max(top, here)
+    return size, top
+
+
+@kernel
+def least_way(tolerance: float, row: Ints, k: int, F0: Floats, F: Floats2, most: float, h: float) -> float:
+    """Part of a step h nearer than which nothing that force k may do is above what may stay unseen.
+
+    ``most``: acceleration, by its own scale, that a unit of force brings.
+    """
+    top = magnitude(row, k, F0)
+    for j in range(F.shape[0]):
+        top = max(top, magnitude(row, k, F[j]))
+    return float(UNSEEN * tolerance / max(ABOVE * top * most * h, 1e-290))
+
+
+@kernel
 def coefficient_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, line: Floats) -> float:
     """What friction of contact k, whose law is a coefficient, is off from the polynomial of its size."""
     ports, w = packed.ports, one.w
@@ -100,23 +124,9 @@ def coefficient_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, 
     for a in range(ports.row[k], ports.row[k + 1]):
         r += by_line(line, y.g[a], w.g, a) ** 2
     N = max(by_line(line, y.N[k], w.N, k), 0.0)
-    top = magnitude(ports.row, k, y.F)
-    size = line[0] * top
-    for j in range(w.F.shape[0]):
-        here = magnitude(ports.row, k, w.F[j])
-        size += line[j + 1] * here
-        top = max(top, here)
+    size, top = force_between(ports.row, k, line, y.F, w.F)
     mu = coefficient(ports, packed.laws, k, s, r**0.5, N)[0]
     return float(max(abs(mu * N - size) - ROUND_OFF * top, 0.0))
-
-
-@kernel
-def largest_force(packed: Packed, y: State, one: OneStep, k: int) -> float:
-    """Largest force of contact k at the start of a step and at its nodes."""
-    value = magnitude(packed.ports.row, k, y.F)
-    for j in range(one.w.F.shape[0]):
-        value = max(value, magnitude(packed.ports.row, k, one.w.F[j]))
-    return float(value)
 
 
 @kernel
@@ -129,7 +139,7 @@ def missed(
     As an error by its own scale; ``weight``: see ``put_felt``; ``line``: space.
     """
     most = max(weight[0], weight[1], weight[2])
-    least = UNSEEN * acc.rtol / max(ABOVE * largest_force(packed, y, one, k) * most * h, 1e-290)
+    least = least_way(acc.rtol, packed.ports.row, k, y.F, one.w.F, most, h)
     total = 0.0
     for _ in range(TIMES):
         way *= NEARER
