@@ -9,6 +9,7 @@ import sympy
 
 from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
+from fricmb.equations._expression import switches
 from fricmb.equations._split import split
 from fricmb.equations._tape import Tape
 from fricmb.laws._numeric import FASTEST
@@ -23,7 +24,7 @@ def derive_coefficient(
     """Facts and kernel of a coefficient ``mu(r, N)``: out = [mu, dmu/dr, dmu/dN].
 
     ``constant`` lists conditions under which the coefficient does not depend on r and N: every expression of the
-    first group 0, or any single one of the second.
+    first group 0, or any single one of the second.  ``switches``: by what slip speed the formula goes over to another.
     """
     mu = sympy.sympify(mu)
     at_rest = _at_rest(mu, r)
@@ -34,6 +35,7 @@ def derive_coefficient(
     }
     if not mu.free_symbols & {r, N}:
         return facts | {"kind": "constant"}, None
+    facts["switches"] = switches(mu, r, parameters)
     facts["all_zero"] = [parameter_source(f, parameters) for f in split(mu, [], [r, N], 0).factors]
     slopes = [sympy.diff(mu, r), sympy.diff(mu, N)]
     facts["any_zero"] = [

@@ -128,7 +128,10 @@ class Template:
 
     @cached_property
     def instants(self) -> list[tuple[Callable[..., float] | None, Callable[..., float]]]:
-        """Of a signal: instants of its switches (None where they have to be searched) and the switching functions."""
+        """Of a signal: instants of its switches (None where they have to be searched) and the switching functions.
+
+        Of a coefficient: the same, of slip speed in place of time.
+        """
         return [
             (None if s["instant"] is None else formula(s["instant"]), formula(s["function"]))
             for s in self.facts.get("switches", [])

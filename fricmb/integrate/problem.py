@@ -170,6 +170,9 @@ class Contacts(Kept):
         what that is at the start.
     piecewise : (n_c,) bool
         Whether a law is a table or compiled by itself: its slope may jump, or what it is made of.
+    knot_start : (n_c+1,) int64; knots : (sum,)
+        Slip speeds, rising, at which the coefficient of contact k bends or goes over to another formula:
+        ``knot_start[k]:knot_start[k+1]``; steps end there.  (An empty ``knot_start``: there are none.)
     z_start : (n_c+1,) int64
         Contact k owns the internal states ``z_start[k]:z_start[k+1]``.
     normal : (n_c,) int8
@@ -193,6 +196,8 @@ class Contacts(Kept):
     mu_s: Floats = field(default_factory=lambda: _f(0))
     mu_0: Floats = field(default_factory=lambda: _f(0))
     piecewise: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    knot_start: Ints = field(default_factory=lambda: _i(0))
+    knots: Floats = field(default_factory=lambda: _f(0))
     z_start: Ints = field(default_factory=lambda: _i(1))
     normal: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     N: Floats = field(default_factory=lambda: _f(0))

@@ -154,6 +154,8 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
     """Taylor steps and why, where they are the fastest."""
     if problem.n_c == 0 or (problem.n < WIDE and is_single(problem)):
         return None
+    if problem.contacts.knots.size and problem.n_c < FEW:
+        return None  # steps that end where a law bends take half the time and know of every bend that a law states
     # asked first of all, since Taylor steps are slow to load
     shallow = problem.n < DEEP * problem.n_c
     if against_taylor(problem) is not None:

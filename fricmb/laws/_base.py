@@ -156,7 +156,11 @@ class FrictionLaw(Regimes, Declaration):
         return len(self.state_labels("xyz"[:d]))
 
     def knots(self) -> tuple[float, ...]:
-        """Slip speeds at which the slope of the coefficient bends; of a smooth curve none."""
+        """Slip speeds at which the slope of the coefficient bends; of a smooth curve none.
+
+        Steps end there where that matters.  Where a formula goes over to another one is found from the formula; an own
+        law overrides this to state what else is narrow and far from rest, such as the place of a peak.
+        """
         return ()
 
     def axis_scale(self) -> tuple[Any, ...]:

@@ -32,23 +32,25 @@ class Switch:
         """Sign changes between two times, rising."""
         count, found = _FIRST, np.zeros(0)
         while count <= _MOST:
-            brackets = self._brackets(np.linspace(t_start, t_end, count + 1))
+            brackets = self.brackets(np.linspace(t_start, t_end, count + 1))
             if len(brackets) == len(found) and count > _FIRST:
                 break
-            found = np.array([self._root(low, high) for low, high in brackets])
+            found = np.array([self.root(low, high) for low, high in brackets])
             # a search that is dense enough finds no more
             if count >= 64 * (len(found) + 1):
                 break
             count *= 2
         return found
 
-    def _brackets(self, grid: Floats) -> list[tuple[float, float]]:
+    def brackets(self, grid: Floats) -> list[tuple[float, float]]:
+        """Neighbouring times of a grid between which the function changes its sign."""
         signs = np.sign([self.value(t) for t in grid.tolist()])
         places = np.flatnonzero(signs)
         changes = np.flatnonzero(np.diff(signs[places]))
         return [(float(grid[places[i]]), float(grid[places[i + 1]])) for i in changes]
 
-    def _root(self, low: float, high: float) -> float:
+    def root(self, low: float, high: float) -> float:
+        """Where it does so between two such times."""
         from scipy.optimize import brentq
 
         return float(brentq(self.value, low, high, xtol=1e-15, rtol=1e-15))

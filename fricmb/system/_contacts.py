@@ -25,6 +25,7 @@ from fricmb.integrate.problem import (
 )
 from fricmb.scene import Contact, Joint
 from fricmb.scene._lines import Rows
+from fricmb.system._knots import knots_of
 from fricmb.system._lined import built_places, prescribed
 from fricmb.system._matrices import DENSE, dense_of, is_sparse, matrix_of
 from fricmb.system._motions import Motions
@@ -50,6 +51,7 @@ class ContactArrays:
     mu_s: list[float] = field(default_factory=list)
     mu_0: list[float] = field(default_factory=list)
     piecewise: list[bool] = field(default_factory=list)
+    knots: list[tuple[float, ...]] = field(default_factory=list)
     normal: list[int] = field(default_factory=list)
     N: list[float] = field(default_factory=list)
     normal_table: TableBuilder = field(default_factory=TableBuilder)
@@ -67,9 +69,9 @@ class ContactArrays:
     def lists(self) -> tuple[list[Any], ...]:
         """See :class:`Growing`."""
         return (
-            self.rows, self.w, self.law, self.law_table.entries, self.mu_s, self.mu_0, self.piecewise, self.normal,
-            self.N, self.normal_table.entries, self.normal_rows, self.N0, self.labels, self.states, self.scale,
-            self.names,
+            self.rows, self.w, self.law, self.law_table.entries, self.mu_s, self.mu_0, self.piecewise, self.knots,
+            self.normal, self.N, self.normal_table.entries, self.normal_rows, self.N0, self.labels, self.states,
+            self.scale, self.names,
         )  # fmt: skip
 
     def marks(self) -> tuple[int, ...]:
@@ -150,6 +152,7 @@ class ContactArrays:
         self.piecewise.append(compiled)
         self.states.append(labels)
         constant = template.is_constant(p)
+        self.knots.append(() if constant or template.facts["kind"] == "smooth" else knots_of(law, template, p))
         if not constant:
             try_law(law, f"{type(contact).__name__} {contact.name!r}", template, p, d, len(labels))
         if template.facts["kind"] == "smooth":
@@ -223,6 +226,8 @@ class ContactArrays:
             "mu_s": np.array(self.mu_s, dtype=float),
             "piecewise": np.array(self.piecewise, dtype=bool),
             "mu_0": np.array(self.mu_0, dtype=float),
+            "knot_start": starts(self.knots),
+            "knots": np.array([r for own in self.knots for r in own], dtype=float),
             "z_start": starts(self.states),
             "normal": np.array(self.normal, dtype=np.int8),
             "N": np.array(self.N, dtype=float),

@@ -9,6 +9,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import largest
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
+from fricmb.integrate.constrained.knots import knot_within, off_near_ends
 from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_defect import load_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
@@ -33,6 +34,7 @@ from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
+from fricmb.integrate.step.knots import NOWHERE
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, next_step, step_factor
 
@@ -112,7 +114,9 @@ def radau_step(
     """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
     s = st.tab.c.shape[0]
     t = y.t
-    left = stop - t
+    before_knot = t < c.knot < stop
+    goal = c.knot if before_knot else stop
+    left = goal - t
     h = min(c.h, c.longest, longest_towards(out))
     if h >= left:
         h = left
@@ -129,11 +133,18 @@ def radau_step(
     find_kinks(mech, k, y, st, out)
     between = max(law_defect(mech, k, y, st, c, h), slow_slip_defect(mech, k, y, st, c, h))
     between = max(between, load_defect(mech, k, w, y, st, c, out, h))
+    knot = NOWHERE
+    if mech.port.knots.shape[0] > 0:
+        between = max(between, off_near_ends(mech, k, y, st, c, h))
+        knot = knot_within(mech, k, y, st, c, h)
     error = max(error_of(c, y, st), between / asked(c))
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:
         return reject(c, 0.4 * h)
     factor = step_factor(error, s + 1, ONE_STEP_SAFETY)
+    if knot < 1.0 and (error <= 1.0 or knot < factor):
+        c.knot = t + knot * h
+        return reject(c, h)
     if error > 1.0:
         return reject(c, h * max(0.2, factor))
     if not end_step(mech, k, w, y, end, st, c, h):
@@ -156,7 +167,7 @@ def radau_step(
         worst = has_come_to_rest(mech, k, out, y, end)
     record_step(mech, rec, y, end, st, c, h)
     if h == left:
-        end.t = stop
+        end.t = goal
     remember(c, y, st, h)
     c.counts[0] += 1
     copy_state(end, y)
@@ -172,7 +183,13 @@ def radau_step(
         c.last_h = 0.0
         c.made = 0.0
         return ACCEPTED
+    if worst < 0 and before_knot and h == left:
+        c.knot = -np.inf
+        c.last_h = 0.0
+        c.growth = np.inf
+        return CHANGED
     if worst >= 0:
+        c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1
         c.growth = np.inf
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)

@@ -15,6 +15,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.attempt_step import grow
 from fricmb.integrate.constrained.bdf_history import Formula, put
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
+from fricmb.integrate.constrained.knots import passes_bend
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -221,6 +222,8 @@ def multistep(
     passed = may_have_passed(mech, k, w, end, out, h)
     unique = margins(mech, k, w, end, out, False) > 0.0
     changes = violated(mech, k, out, y, end, st) >= 0 or has_come_to_rest(mech, k, out, y, end) >= 0
+    if mech.port.knots.shape[0] > 0:
+        changes = changes or passes_bend(mech, k, y, end, st, c, h)
     if passed or not unique or changes:
         return HANDOVER
     for i in range(y.work.shape[0]):

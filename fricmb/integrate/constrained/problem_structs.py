@@ -14,7 +14,7 @@ from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.damped_normals import damped_normals
-from fricmb.integrate.model.problem_structs import Spread, Table, spread_of, table_of
+from fricmb.integrate.model.problem_structs import Spread, Table, knot_starts, spread_of, table_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 
@@ -73,7 +73,7 @@ class Port(Layout):
     """Friction: port c has the rows ``row[c]:row[c+1]``, one a direction of slip.
 
     ``joint`` (n_c,) the joint it belongs to or -1; ``slip`` of the others two forms a row, coordinate and velocity.
-    ``damped`` (n_c,) 1 where a normal-force law depends on a rate;
+    ``knot_start``, ``knots``: see ``Contacts``; ``damped`` (n_c,) 1 where a normal-force law depends on a rate;
     ``soft`` (n_c,) softness of a port that sticks, beside that of its bodies (see ``loop_softness``).
     """
 
@@ -85,6 +85,8 @@ class Port(Layout):
     law: Codes
     mu_s: Floats
     mu_0: Floats
+    knot_start: Ints
+    knots: Floats
     z_start: Ints
     normal: Codes
     damped: Codes
@@ -155,9 +157,9 @@ def _pack(problem: Problem) -> Mech:
     port = Port(
         port_joint, solid(contacts.row, np.int64),
         of_pattern(problem, "softness", lambda: softness(problem, m, port_joint)), table_of(m.slip),
-        solid(contacts.w), solid(contacts.law, np.int8),
-        solid(contacts.mu_s),
-        solid(contacts.mu_0), solid(contacts.z_start, np.int64), normal, damped_normals(problem),
+        solid(contacts.w), solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0),
+        knot_starts(contacts), solid(contacts.knots), solid(contacts.z_start, np.int64), normal,
+        damped_normals(problem),
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
         table_of(contacts.law_table), table_of(contacts.normal_table),
     )  # fmt: skip

@@ -32,7 +32,8 @@ class Control(Layout):
     ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z)
     space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
-    was to be where it was cut.
+    was to be where it was cut; ``knot`` when the next step has to end, since slip passes a knot of a law then (not
+    ahead: whenever it likes).
     """
 
     rtol: float
@@ -58,6 +59,7 @@ class Control(Layout):
     noise_z: Floats
     growth: float
     wanted: float
+    knot: float
 
 
 def control_of(problem: Problem, st: Stages) -> Control:
@@ -67,7 +69,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         0.0, 0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z), np.inf, 0.0,
+        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
     )  # fmt: skip
 
 

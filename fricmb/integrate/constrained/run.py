@@ -62,6 +62,8 @@ def run_mechanism(
     if mechanism_of(problem).joints.hands_over.any():
         problem = with_open(problem, away(problem, start))
     start, notes = consistent_start(problem, start)
+    if problem.contacts.knots.size:
+        load_blocks("knot_within", "off_near_ends", "passes_bend")
     with run_workspace(problem, stages) as workspace:
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
@@ -100,6 +102,7 @@ def _set_up(
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
     c.stops[:] = mech_of(problem).breakpoints
+    c.knot = -np.inf
     workspace.out.opened = (m.joints.dropped == 2).sum()
     reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
     small = 1e-12 * max(top, reach)

@@ -66,11 +66,27 @@ def missed(
 
 
 @kernel
-def port_missed(mech: Mech, k: Moving, y: State, st: Stages, c: Control, p: int, h: float, line: Floats) -> float:
-    """Largest error of port p between two neighbouring stages of which one has slow slip."""
-    worst, free = 0.0, 0.0
+def look_at_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> None:
+    """Make ready for ``missed`` and ``free_by_force`` in the step h just solved."""
+    bring_up_to_date(mech, k, y, st, h)
+    for i in range(y.v.shape[0]):
+        c.inertia[i] = (c.mass[i] * st.scale[i]) ** 2
+    move(mech, k, y.t, y.q, y.v)
+
+
+@kernel
+def free_by_force(mech: Mech, k: Moving, y: State, c: Control, p: int) -> float:
+    """Largest acceleration, by its scale, that a unit force of port p brings without joints: an upper bound."""
+    free = 0.0
     for a in range(directions(mech, p)):
         free = max(free, np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia)))
+    return free
+
+
+@kernel
+def port_missed(mech: Mech, k: Moving, y: State, st: Stages, c: Control, p: int, h: float, line: Floats) -> float:
+    """Largest error of port p between two neighbouring stages of which one has slow slip."""
+    worst, free = 0.0, free_by_force(mech, k, y, c, p)
     low, last = 0.0, magnitude(mech.port.row, p, y.g)
     for j in range(st.tab.c.shape[0]):
         high, here = st.tab.c[j], magnitude(mech.port.row, p, st.g[j])
@@ -83,19 +99,13 @@ def port_missed(mech: Mech, k: Moving, y: State, st: Stages, c: Control, p: int,
 
 @block
 def slow_slip_defect(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> float:
-    """Largest error of a velocity, by its own scale, that coefficients of friction leave where slip is slow.
-
-    A force counts by what it does without joints, which is an upper bound.
-    """
+    """Largest error of a velocity, by its own scale, that coefficients of friction leave where slip is slow."""
     worst, some = 0.0, False
     for p in range(y.mode.shape[0]):
         some = some or follows_speed(mech, y, p)
     if not some:
         return worst
-    bring_up_to_date(mech, k, y, st, h)
-    for i in range(y.v.shape[0]):
-        c.inertia[i] = (c.mass[i] * st.scale[i]) ** 2
-    move(mech, k, y.t, y.q, y.v)
+    look_at_step(mech, k, y, st, c, h)
     line = np.empty(st.tab.c.shape[0] + 1)
     for p in range(y.mode.shape[0]):
         if follows_speed(mech, y, p):

@@ -31,6 +31,7 @@ from fricmb.integrate.run.outcomes import (
 )
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
+from fricmb.integrate.step.knots import NOWHERE, beside_knots, knot_ahead
 from fricmb.integrate.step.one_step import add_work, attempt, finish, update_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, next_step, step_factor
@@ -47,7 +48,8 @@ class Clock(Layout):
 
     ``longest`` step of all; ``stops`` breakpoints; transitions in a row at one instant, ``at_once``, and since the time
     ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.  ``growth``: see
-    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be.
+    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be; ``knot``
+    when the next step has to end, since slip passes a knot of a law then (not ahead: whenever it likes).
     """
 
     h: float
@@ -62,6 +64,7 @@ class Clock(Layout):
     retry: Floats
     growth: float
     wanted: float
+    knot: float
 
 
 @kernel
@@ -98,6 +101,9 @@ def advance(
     """
     order = one.tab.c.shape[0]
     t = y.t
+    before_knot = clock.knot > t
+    if before_knot:
+        left = min(left, clock.knot - t)
     h = min(clock.h, clock.longest)
     if h >= left * (1.0 - 1e-9):
         h = left
@@ -112,6 +118,8 @@ def advance(
     error = np.inf
     if attempt(packed, s, y, one, acc, h):
         error = step_error(packed, s, y, one, acc, h)
+        if packed.ports.knots.shape[0] > 0:
+            error = max(error, beside_knots(packed, s, y, one, acc, h))
     if not error <= 1.0 and not is_exact(one):
         clock.growth = 1.0
     if not error < np.inf:
@@ -123,6 +131,12 @@ def advance(
     wanted = h * min(5.0, max(0.1, step_factor(error, order, ONE_STEP_SAFETY)))
     if is_exact(one):
         wanted = min(wanted, one.exact.cap)
+    knot = NOWHERE
+    if packed.ports.knots.shape[0] > 0:
+        knot = knot_ahead(packed, s, y, one, acc, h)
+    if knot < 1.0 and (error <= 1.0 or knot * h < wanted) and (contact < 0 or knot < clock.found[0]):
+        clock.knot = t + knot * h
+        return reject(clock, one, h)
     if contact < 0 and error <= 1.0:
         if end.fault > 0.0:
             return FAIL_LAW
@@ -135,6 +149,12 @@ def advance(
             clock.usual = max(h, 0.8 * clock.usual)
         clock.wanted = wanted
         clock.h = next_step(clock, h, wanted)
+        if before_knot and h == left:
+            # the law goes over to what nothing before has known
+            clock.knot = -np.inf
+            clock.h = max(clock.h, clock.usual)
+            clock.growth = np.inf
+            return CHANGED
         return ACCEPTED
     if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):
         return reject(clock, one, wanted)
@@ -165,6 +185,7 @@ def advance(
     copy_state(end, y)
     clock.h = clock.usual
     clock.growth = np.inf
+    clock.knot = -np.inf
     one.last_h = 0.0
     return settled(transition(packed, s, y, contact, lifted, r, old, out))
 

@@ -38,6 +38,7 @@ from fricmb.integrate.output.recorder import STEP, Rows, record
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_LAW, HANDOVER, REJECTED
 from fricmb.integrate.step.force_jumps import jump_error
+from fricmb.integrate.step.knots import bends_between
 from fricmb.integrate.step.one_step import add_to_position, newton_tolerances, state_noise
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
@@ -187,6 +188,8 @@ def bdf_step(
     for a in range(y.n.shape[0]):
         end.n[a] = one.w.n[0, a]
     if not complete(packed, s, end, one.w.sizes, one.w.pivots) or meets_transition(packed, s, y, end, guard):
+        return HANDOVER
+    if packed.ports.knots.shape[0] > 0 and bends_between(packed, s, y, end, acc):
         return HANDOVER
     if end.fault > 0.0:
         return FAIL_LAW

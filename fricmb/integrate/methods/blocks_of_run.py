@@ -7,6 +7,7 @@ from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.step import band_matrix
+from fricmb.integrate.step.knots import beside_knots, knot_ahead
 
 #: Whatever the steps are.
 CORE = (
@@ -27,4 +28,10 @@ def load_core(*further: str) -> None:
 
 def load_stages(problem: Problem, *further: str) -> None:
     """Load the blocks of steps by stages."""
-    load_core(*STAGES, *(DENSE if packed_of(problem).structure.half < 0 else BAND), *further)
+    storage = DENSE if packed_of(problem).structure.half < 0 else BAND
+    load_core(*STAGES, *storage, *where_laws_bend(problem), *further)
+
+
+def where_laws_bend(problem: Problem) -> tuple[str, ...]:
+    """What a run takes where laws have knots."""
+    return (knot_ahead.__name__, beside_knots.__name__) if problem.contacts.knots.size else ()

@@ -171,5 +171,6 @@ def set_clock(run: Collector) -> None:
     omega = float(np.max(run.problem.omega, initial=0.0))
     clock.h = clock.usual = first_step(run.y.v, run.y.a, run.t_end - run.start.t, PART, omega)
     clock.span[:] = run.start.t, run.t_end
+    clock.knot = -np.inf
     clock.longest = longest_step(run)
     clock.stops[:] = run.packed.breakpoints

@@ -15,6 +15,7 @@ from fricmb.integrate.problem import (
     NORMAL_CONSTANT,
     NORMAL_LAW,
     Codes,
+    Contacts,
     Floats,
     Floats2,
     Ints,
@@ -41,7 +42,7 @@ class Ports(Layout):
     """Contacts.
 
     ``var`` (n_c,) numbers those with a varying normal force, -1 for the others; ``acts``: both bodies feel it;
-    ``damped``: it depends on a rate; D = W^T M^-1 W;
+    ``damped``: it depends on a rate; D = W^T M^-1 W; ``knot_start``, ``knots``: see ``Contacts``;
     ``soft`` relative softening of stuck contacts whose forces would not be determined.
     """
 
@@ -53,6 +54,8 @@ class Ports(Layout):
     law: Codes
     mu_s: Floats
     mu_0: Floats
+    knot_start: Ints
+    knots: Floats
     z_start: Ints
     N: Floats
     Wn: Floats2
@@ -138,6 +141,13 @@ def table_of(templates: Templates) -> Table:
     return Table(address, p_start, p, x_start, form_start, form_index, coefficient, constant)
 
 
+def knot_starts(contacts: Contacts) -> Ints:
+    """Where the knots of each contact begin (n_c+1,), those of contacts that have none among them."""
+    if len(contacts.knot_start):
+        return np.ascontiguousarray(contacts.knot_start, np.int64)
+    return np.zeros(len(contacts.law) + 1, np.int64)
+
+
 def spread_of(problem: Problem) -> Spread:
     """Where the forces of a problem's elements act; one spare coefficient, as in a table."""
     elements = problem.elements
@@ -161,7 +171,8 @@ def _pack(problem: Problem) -> Packed:
     ports = Ports(
         solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu),
         mobility_at_contacts(problem),
-        solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0), solid(contacts.z_start, np.int64),
+        solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0),
+        knot_starts(contacts), solid(contacts.knots), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
         (contacts.normal == NORMAL_LAW).astype(np.int8), damped_normals(problem), softness(problem),
     )  # fmt: skip

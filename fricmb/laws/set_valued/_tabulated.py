@@ -16,6 +16,8 @@ from fricmb.laws._base import FrictionLaw
 class Tabulated(FrictionLaw):
     """A monotone cubic through measured points, constant outside them.
 
+    Its second derivative jumps at the points; steps end there where that matters.
+
     Parameters
     ----------
     speed : sequence of float, (n,)
