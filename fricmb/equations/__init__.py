@@ -11,6 +11,7 @@ from fricmb.equations._expressions import (
     Expression,
     ForceTerms,
     Signal,
+    bend_expression,
     force_expression,
     force_terms,
     signal_expression,
@@ -22,6 +23,7 @@ from fricmb.equations._groups import Group, element_groups
 from fricmb.equations._store import folder, function
 from fricmb.equations._templates import (
     Template,
+    bend_template,
     derivations,
     element_template,
     formula,
@@ -51,6 +53,8 @@ __all__ = [
     "Group",
     "Signal",
     "Template",
+    "bend_expression",
+    "bend_template",
     "derivations",
     "element_facts",
     "element_groups",

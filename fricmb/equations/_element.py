@@ -120,3 +120,17 @@ def _remainder(math: ElementMath, V: Any, R: Any, F: Sequence[Any], title: str, 
     for expression in outputs:
         _code.check(expression, title)
     return [place for _, place in chosen], _code.kernel(arguments, math.parameters, outputs, title)
+
+
+def derive_bends(math: ElementMath, title: str) -> tuple[dict[str, Any], str | None]:
+    """Kernel of the functions of the motion at whose sign changes an element jumps or has a kink; their arguments."""
+    from fricmb.equations._expression import derive_bends as derive_of
+    from fricmb.equations._expression import switching_functions
+
+    places = [(symbol, [kind, i]) for kind, own in (("x", math.x), ("v", math.v)) for i, symbol in enumerate(own)]
+    whole = sympy.Tuple(math.potential, math.dissipation, *math.force)
+    used = set().union(*(f.free_symbols for f in switching_functions(whole)))
+    chosen = [(symbol, place) for symbol, place in [*places, (math.t, ["t", 0])] if symbol in used]
+    arguments = [symbol for symbol, _ in chosen]
+    facts, source = derive_of(whole, arguments, [*math.x, *math.v], math.parameters, title)
+    return facts | {"arguments": [place for _, place in chosen]}, source

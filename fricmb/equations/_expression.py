@@ -36,6 +36,16 @@ def derive_force(
     return {"switches": time_switches(value, parameters)}, _code.kernel([*arguments, v], parameters, outputs, title)
 
 
+def derive_bends(
+    value: Any, arguments: Sequence[Any], motions: Sequence[Any], parameters: Sequence[Any], title: str
+) -> tuple[dict[str, Any], str | None]:
+    """Kernel of the functions of the ``motions`` at whose sign changes an expression jumps or has a kink."""
+    found = [f for f in switching_functions(value) if f.free_symbols & set(motions)]
+    for expression in found:
+        _code.check(expression, title)
+    return {"count": len(found)}, _code.kernel(arguments, parameters, found, title) if found else None
+
+
 def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], title: str) -> tuple[dict[str, Any], str]:
     """Kernel of a prescribed signal: x = [t], out = [u, u', u''].
 

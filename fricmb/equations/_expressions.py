@@ -100,6 +100,22 @@ def force_expression(value: Any, what: str) -> Expression:
     return _expression(given, template)
 
 
+def bend_expression(value: Any, what: str) -> Expression:
+    """Template of the functions of the motion at which an expression bends: out = all of them."""
+    import sympy
+
+    from fricmb.equations._expression import derive_bends
+
+    given = _canonical(value, what)
+    motions = given.arguments[: len(given.coordinates) + len(given.speeds)]
+    template = get(
+        "bends",
+        [sympy.srepr(given.value), given.arguments, given.parameters],
+        lambda: derive_bends(given.value, given.arguments, motions, given.parameters, what),
+    )
+    return _expression(given, template)
+
+
 def _expression(given: _Canonical, template: Template) -> Expression:
     return Expression(
         template=template,

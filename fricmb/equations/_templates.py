@@ -178,6 +178,30 @@ def element_template(element: Any, *, driven: bool) -> Template:
     return found
 
 
+def bend_template(element: Any) -> Template | None:
+    """Template of the functions at whose sign changes an element bends, of somebody else's type; None without any.
+
+    Facts: ``count`` of them, and their ``arguments`` as those of :func:`element_template`.
+    """
+    if type(element).__module__.startswith("fricmb."):
+        return None
+    shape = structure(element)
+    n = len(element.local_coordinates())
+    key = ("bends", shape, n)
+    found = _found.get(key)
+    if found is None:
+
+        def derive() -> tuple[dict[str, Any], str | None]:
+            from fricmb.equations._authors import element_math
+            from fricmb.equations._element import derive_bends
+
+            return derive_bends(element_math(element, n), type(element).__name__)
+
+        content = _content(element, shape, lambda: _element_text(element, n))
+        found = _found[key] = get("element_bends", [*content, n], derive)
+    return found if found.facts["count"] else None
+
+
 def law_template(law: Any, d: int) -> Template:
     """Template of a friction law in ``d`` tangential directions (a coefficient serves any number)."""
     smooth = law.kind == "smooth"

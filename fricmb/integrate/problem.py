@@ -255,6 +255,21 @@ class Elements:
     spread_coefficient: Floats = field(default_factory=lambda: _f(0))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Bends:
+    """Functions of the motion at whose sign changes a force or a load jumps or has a kink; steps end there.
+
+    Attributes
+    ----------
+    table : Templates
+        Function i gives several: out = those from ``start[i]`` to ``start[i+1]``.
+    start : (k+1,) int64
+    """
+
+    table: Templates = field(default_factory=Templates)
+    start: Ints = field(default_factory=lambda: _i(1))
+
+
 def _no_spectrum() -> tuple[Floats, Floats]:
     """Of what is no linear structure."""
     return _f(0), _f(0)
@@ -274,6 +289,7 @@ class Problem(Kept):
     contacts: Contacts
     elements: Elements
     spectrum: Callable[[], tuple[Floats, Floats]] = _no_spectrum
+    bends: Bends = field(default_factory=Bends)
     dof_names: tuple[str, ...] = ()
     contact_names: tuple[str, ...] = ()
     mechanism: Mechanism | None = None

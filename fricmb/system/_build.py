@@ -16,6 +16,7 @@ from fricmb.scene._family import NUMBERS, STARTS
 from fricmb.scene._family_of import SMALL
 from fricmb.scene._lines import lines_of
 from fricmb.system import _motions
+from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
@@ -158,6 +159,7 @@ def _problem(
         signals=SignalArrays(table=table, breakpoints=breakpoints, uniform=signals.uniform()),
         contacts=contact_arrays,
         elements=elements,
+        bends=bends_of((*structure.bends, *contacts.bends), n, n_u),
         spectrum=partial(_spectrum, linear, n),
         dof_names=dofs,
         contact_names=tuple(contacts.names),

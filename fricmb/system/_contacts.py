@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.equations import Template, law_template, normal_template, numbers, signal_expression, value_expression
+from fricmb.equations import (
+    Template,
+    bend_expression,
+    law_template,
+    normal_template,
+    numbers,
+    signal_expression,
+    value_expression,
+)
 from fricmb.errors import LawError
 from fricmb.integrate.problem import (
     LAW_COEFFICIENT,
@@ -25,6 +33,7 @@ from fricmb.integrate.problem import (
 )
 from fricmb.scene import Contact, Joint
 from fricmb.scene._lines import Rows
+from fricmb.system._bends import Bend
 from fricmb.system._knots import knots_of
 from fricmb.system._lined import built_places, prescribed
 from fricmb.system._matrices import DENSE, dense_of, is_sparse, matrix_of
@@ -61,6 +70,7 @@ class ContactArrays:
     states: list[tuple[str, ...]] = field(default_factory=list)
     scale: list[tuple[float, ...]] = field(default_factory=list)
     timed: list[tuple[Template, tuple[float, ...]]] = field(default_factory=list)
+    bends: list[Bend] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     #: Entries of W and Wu of contacts that are put in together.
     lined: list[tuple[Any, Any, Any]] = field(default_factory=list)
@@ -192,6 +202,9 @@ class ContactArrays:
             self.normal.append(NORMAL_EXPRESSION)
             arguments = self.motions.arguments(expression)
             self.timed.append((expression.template, expression.parameters))
+            bends = bend_expression(contact.normal_force, f"Contact {contact.name!r}: normal_force")
+            if bends.template.facts["count"]:
+                self.bends.append((bends.template, bends.parameters, self.motions.arguments(bends)))
             self.normal_table.add(expression.template.address, expression.parameters, arguments)
             self._normal(0.0, NO_ROW, 0.0)
 

@@ -15,6 +15,7 @@ from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import common, topology
 from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody
 from fricmb.system import _motions
+from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
@@ -75,6 +76,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         signals=Signals(table=table, breakpoints=known),
         contacts=contacts.build(n_y, n_u, dense=False),
         elements=elements,
+        bends=bends_of((*structure.bends, *contacts.bends), n_y, n_u),
         dof_names=tuple(dofs),
         contact_names=tuple(contacts.names),
         mechanism=mechanism,

@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.equations import Template, element_template, force_expression, force_terms, numbers, signal_expression
+from fricmb.equations import (
+    Template,
+    bend_expression,
+    bend_template,
+    element_template,
+    force_expression,
+    force_terms,
+    numbers,
+    signal_expression,
+)
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Elements, Floats, Linear, SparseLinear
 from fricmb.scene import (
@@ -23,6 +32,7 @@ from fricmb.scene import (
     SpaceBody,
     modal_matrices,
 )
+from fricmb.system._bends import Bend
 from fricmb.system._lined import Entries
 from fricmb.system._matrices import DENSE, dense_of, is_sparse, matrix_of
 from fricmb.system._motions import Motions
@@ -61,6 +71,7 @@ class Structure:
     lined: Entries = field(default_factory=Entries)
     table: TableBuilder = field(default_factory=TableBuilder)
     spread: list[list[Row]] = field(default_factory=list)
+    bends: list[Bend] = field(default_factory=list)
     nonlinear: list[tuple[Element, tuple[Row, ...]]] = field(default_factory=list)
     timed: list[tuple[Template, tuple[float, ...]]] = field(default_factory=list)
     made: dict[int, tuple[Linear, Elements]] = field(default_factory=dict)
@@ -153,6 +164,9 @@ class Structure:
             arguments = [_argument(kind, i, rows) for kind, i in template.facts["arguments"]]
             self.table.add(template.address, p, arguments)
             self.spread.append(list(rows))
+            if (bends := bend_template(element)) is not None:
+                given = [_argument(kind, i, rows) for kind, i in bends.facts["arguments"]]
+                self.bends.append((bends, p, given))
         self.stores.append(
             Store(
                 name=element.name,
@@ -211,6 +225,9 @@ class Structure:
         self.timed.append((expression.template, expression.parameters))
         self.table.add(expression.template.address, expression.parameters, arguments)
         self.spread.append([row])
+        bends = bend_expression(value, what)
+        if bends.template.facts["count"]:
+            self.bends.append((bends.template, bends.parameters, self.motions.arguments(bends)))
         return len(self.table) - 1
 
     # -- arrays -------------------------------------------------------------------------------------------------

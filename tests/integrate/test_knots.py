@@ -154,7 +154,7 @@ def test_steps_end_where_slip_in_two_directions_passes_a_point_of_a_table():
             push = -0.2 * part(np.hypot(*g) - foot) * g / np.hypot(*g)
             return [y[2], y[3], -y[0] + push[0], -2.3 * y[1] + push[1]]
 
-        def leaves(t, y, low=edges[piece], high=min(edges[piece + 1], 1e9)):
+        def leaves(t, y, low=edges[piece], high=edges[piece + 1]):
             r = np.hypot(y[2] - 0.6, y[3])
             return min(r - low, high - r)
 

@@ -95,6 +95,8 @@ class Collocation(Integrator):
         """Why this integrator cannot run the problem, or None."""
         if problem.mechanism is not None:
             return super().refuses(problem)
+        if problem.bends.table.address.size:
+            return "collocation follows forces by polynomials; here some bend with the motion (Max, Abs, Piecewise)"
         if softness(problem) > 0.0:
             return "collocation needs contacts whose forces in stick are determined; here some are redundant"
         try:

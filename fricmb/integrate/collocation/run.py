@@ -13,7 +13,7 @@ from fricmb.integrate.collocation.finish_step import exact_error, exact_finish, 
 from fricmb.integrate.collocation.root_along_step import exact_root
 from fricmb.integrate.collocation.sample import sample_exact
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.blocks_of_run import load_core, where_laws_bend
+from fricmb.integrate.methods.blocks_of_run import load_core, where_it_bends
 from fricmb.integrate.methods.one_step import one_step_loop
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import exact_step_workspace, run_workspace
@@ -86,7 +86,7 @@ def run_general(
     ):
         columns = 1 + exact.P.size + s * (problem.n_z + problem.n_c + 2)
         ports = plain_ports.__name__ if plain else "general_ports"
-        load_core(*BLOCKS, ports, *(("exact_ports",) if nonlinear else ()), *where_laws_bend(problem))
+        load_core(*BLOCKS, ports, *(("exact_ports",) if nonlinear else ()), *where_it_bends(problem))
         run = Collector(problem, start, t_end, workspace, one, columns=columns)
         one.w.plain = run.rest.w.plain = int(plain)
         set_accuracy(run, tolerance)

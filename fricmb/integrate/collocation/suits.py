@@ -72,6 +72,8 @@ def against(problem: Problem, rtol: float) -> str | None:
         return "no contact"
     if problem.n_z or np.any(contacts.law == LAW_SMOOTH):
         return "a regularised or bristle law, whose own fast states hold the steps"
+    if problem.bends.table.address.size:
+        return "a force that bends with the motion, where steps of the general method end"
     if np.any(contacts.piecewise):
         return "a friction law by table, which polynomials through a step do not follow"
     if np.any(contacts.normal == NORMAL_EXPRESSION) and np.any(contacts.law != LAW_CONSTANT):

@@ -7,6 +7,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import largest
+from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
 from fricmb.integrate.constrained.knots import knot_within, off_near_ends
@@ -34,7 +35,7 @@ from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.problem import Codes
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
-from fricmb.integrate.step.knots import NOWHERE
+from fricmb.integrate.step.knots import NOWHERE, SLIGHT
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, next_step, step_factor
 
@@ -137,6 +138,8 @@ def radau_step(
     if mech.port.knots.shape[0] > 0:
         between = max(between, off_near_ends(mech, k, y, st, c, h))
         knot = knot_within(mech, k, y, st, c, h)
+    if mech.bends.address.shape[0] > 0:
+        knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
     error = max(error_of(c, y, st), between / asked(c))
     error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
     if not error < 1e300:

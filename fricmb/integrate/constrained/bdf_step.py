@@ -14,6 +14,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.attempt_step import grow
 from fricmb.integrate.constrained.bdf_history import Formula, put
+from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.knots import passes_bend
 from fricmb.integrate.constrained.load_kinks import find_kinks
@@ -42,6 +43,7 @@ from fricmb.integrate.methods.backward_differences import (
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
+from fricmb.integrate.step.knots import IN_HISTORY
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
 
@@ -224,6 +226,8 @@ def multistep(
     changes = violated(mech, k, out, y, end, st) >= 0 or has_come_to_rest(mech, k, out, y, end) >= 0
     if mech.port.knots.shape[0] > 0:
         changes = changes or passes_bend(mech, k, y, end, st, c, h)
+    if mech.bends.address.shape[0] > 0:
+        changes = changes or bend_within(mech, k, y, st, c, h, IN_HISTORY) < 1.0
     if passed or not unique or changes:
         return HANDOVER
     for i in range(y.work.shape[0]):

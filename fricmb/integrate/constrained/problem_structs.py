@@ -104,7 +104,7 @@ class Order(Layout):
 
 
 class Mech(Layout):
-    """All of a problem; ``mass`` (n,) the diagonal of the mass matrix."""
+    """All of a problem; ``mass`` (n,) the diagonal of the mass matrix; ``bends``, ``bend_start``: see ``Bends``."""
 
     linear: Linear
     place: Place
@@ -116,6 +116,8 @@ class Mech(Layout):
     order: Order
     breakpoints: Floats
     mass: Floats
+    bends: Table
+    bend_start: Ints
 
 
 @kernel
@@ -171,7 +173,8 @@ def _pack(problem: Problem) -> Mech:
     return room(Mech(
         linear, places, joint, port, table_of(problem.signals.table), table_of(problem.elements.table),
         spread_of(problem), Order(order, band_sizes(size, half)),
-        np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m),
+        np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), table_of(problem.bends.table),
+        solid(problem.bends.start, np.int64),
     ))  # fmt: skip
 
 

@@ -32,7 +32,7 @@ class Control(Layout):
     ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z)
     space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
-    was to be where it was cut; ``knot`` when the next step has to end, since slip passes a knot of a law then (not
+    was to be where it was cut; ``knot`` when the next step has to end, since a law or an element bends then (not
     ahead: whenever it likes).
     """
 

@@ -64,6 +64,8 @@ def run_mechanism(
     start, notes = consistent_start(problem, start)
     if problem.contacts.knots.size:
         load_blocks("knot_within", "off_near_ends", "passes_bend")
+    if problem.bends.table.address.size:
+        load_blocks("bend_within")
     with run_workspace(problem, stages) as workspace:
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)

@@ -29,6 +29,7 @@ from fricmb.integrate.run.outcomes import (
     FAIL_STEP,
     REJECTED,
 )
+from fricmb.integrate.step.element_bends import bend_ahead
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
 from fricmb.integrate.step.knots import NOWHERE, beside_knots, knot_ahead
@@ -49,7 +50,7 @@ class Clock(Layout):
     ``longest`` step of all; ``stops`` breakpoints; transitions in a row at one instant, ``at_once``, and since the time
     ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.  ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be; ``knot``
-    when the next step has to end, since slip passes a knot of a law then (not ahead: whenever it likes).
+    when the next step has to end, since a law or an element bends then (not ahead: whenever it likes).
     """
 
     h: float
@@ -134,6 +135,8 @@ def advance(
     knot = NOWHERE
     if packed.ports.knots.shape[0] > 0:
         knot = knot_ahead(packed, s, y, one, acc, h)
+    if packed.bends.address.shape[0] > 0 and not is_exact(one):
+        knot = min(knot, bend_ahead(packed, s, y, one, acc, h))
     if knot < 1.0 and (error <= 1.0 or knot * h < wanted) and (contact < 0 or knot < clock.found[0]):
         clock.knot = t + knot * h
         return reject(clock, one, h)
@@ -150,7 +153,7 @@ def advance(
         clock.wanted = wanted
         clock.h = next_step(clock, h, wanted)
         if before_knot and h == left:
-            # the law goes over to what nothing before has known
+            # what comes is not what the polynomials so far have known
             clock.knot = -np.inf
             clock.h = max(clock.h, clock.usual)
             clock.growth = np.inf

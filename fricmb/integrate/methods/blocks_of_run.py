@@ -7,6 +7,7 @@ from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.step import band_matrix
+from fricmb.integrate.step.element_bends import bend_ahead, bends_in_step
 from fricmb.integrate.step.knots import beside_knots, knot_ahead
 
 #: Whatever the steps are.
@@ -29,9 +30,11 @@ def load_core(*further: str) -> None:
 def load_stages(problem: Problem, *further: str) -> None:
     """Load the blocks of steps by stages."""
     storage = DENSE if packed_of(problem).structure.half < 0 else BAND
-    load_core(*STAGES, *storage, *where_laws_bend(problem), *further)
+    load_core(*STAGES, *storage, *where_it_bends(problem), *further)
 
 
-def where_laws_bend(problem: Problem) -> tuple[str, ...]:
-    """What a run takes where laws have knots."""
-    return (knot_ahead.__name__, beside_knots.__name__) if problem.contacts.knots.size else ()
+def where_it_bends(problem: Problem) -> tuple[str, ...]:
+    """What a run takes where laws or elements bend."""
+    laws = (knot_ahead.__name__, beside_knots.__name__) if problem.contacts.knots.size else ()
+    elements = (bend_ahead.__name__, bends_in_step.__name__) if problem.bends.table.address.size else ()
+    return laws + elements

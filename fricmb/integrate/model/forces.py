@@ -30,10 +30,11 @@ def longest_call(problem: Problem) -> tuple[int, int]:
     directions = int(np.max(np.diff(problem.contacts.row), initial=2))
     states = int(np.max(np.diff(problem.contacts.z_start), initial=0)) + 1 + directions
     n_x = max(8, states + 2)
-    for templates in (problem.elements.table, problem.contacts.normal_table):
+    for templates in (problem.elements.table, problem.bends.table, problem.contacts.normal_table):
         n_x = max(n_x, int(np.max(np.diff(templates.x_start), initial=0)))
     n_f = int(np.max(np.diff(problem.elements.f_start), initial=0))
-    return n_x, max(8 + n_f * (n_x + 4), 2 + n_x, states * (states + 3) + 4)
+    n_b = int(np.max(np.diff(problem.bends.start), initial=0))
+    return n_x, max(8 + n_f * (n_x + 4), 2 + n_x, states * (states + 3) + 4, n_b)
 
 
 def scratch_of(problem: Problem) -> Scratch:

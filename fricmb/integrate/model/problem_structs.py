@@ -76,7 +76,7 @@ class Spread(Layout):
 
 
 class Packed(Layout):
-    """All of a problem."""
+    """All of a problem; ``bends``, ``bend_start``: see ``Bends``."""
 
     structure: Structure
     ports: Ports
@@ -86,6 +86,8 @@ class Packed(Layout):
     elements: Table
     spread: Spread
     breakpoints: Floats
+    bends: Table
+    bend_start: Ints
 
 
 @cached_by_content
@@ -179,5 +181,6 @@ def _pack(problem: Problem) -> Packed:
     return room(Packed(
         structure, ports, table_of(problem.signals.table), table_of(contacts.law_table),
         table_of(contacts.normal_table), table_of(problem.elements.table), spread_of(problem),
-        np.sort(np.asarray(problem.signals.breakpoints, float)),
+        np.sort(np.asarray(problem.signals.breakpoints, float)), table_of(problem.bends.table),
+        np.ascontiguousarray(problem.bends.start, np.int64),
     ))  # fmt: skip
