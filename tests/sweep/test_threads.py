@@ -84,8 +84,13 @@ def reduce(sol):
     if len(made) == 3:
         print("going", flush=True)
     return sol.t[-1]
+def tell():
+    while threading.active_count() < 4:  # this thread, the main one and two that run
+        time.sleep(0.05)
+    time.sleep(0.5)
+    print("going", flush=True)
 if far > 1e6:
-    threading.Timer(0.5, lambda: print("going", flush=True)).start()
+    threading.Thread(target=tell).start()
 try:
     fm.sweep(scene, runs, t_end=far, method="radau", reduce=reduce, workers="threads", progress=False)
 except KeyboardInterrupt as stop:
