@@ -83,7 +83,9 @@ class Joint(Part):
                 continue
             if is_plain(value) or isinstance(value, Parameter) or is_expression(value):
                 self._set(field.name, self._number(field.name, value))
-        self._check_positive()
+        # one number each: what is none would go unseen until formulas are made of it
+        for name in self.positive:
+            self._set(name, self._number(name, getattr(self, name), above=0.0))
         if self.friction is not None:
             if not self.takes_friction:
                 self._refuse("friction", self.friction, "left out: this joint has no slip")

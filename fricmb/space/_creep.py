@@ -26,6 +26,11 @@ class CreepLaw(FrictionLaw):
     f22: Any
     speed: Any
 
+    def validate(self) -> None:
+        """One number each."""
+        for name in self.positive:
+            self._number(name, getattr(self, name), above=0.0)
+
     def linear(self, v: tuple[Any, ...]) -> tuple[Any, Any]:
         """What the force would be by the linear theory, along slip."""
         return self.f11 * v[0] / self.speed, self.f22 * v[1] / self.speed
@@ -157,6 +162,7 @@ class Polach(CreepLaw):
 
     def validate(self) -> None:
         """Range of B."""
+        super().validate()
         self._number("B", self.B, minimum=0.0)
 
     @classmethod

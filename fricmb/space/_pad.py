@@ -13,7 +13,7 @@ from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End
 from fricmb.scene._space_body import check_triple
-from fricmb.space._joint import PARALLEL, SpaceJoint
+from fricmb.space._joint import PARALLEL, SpaceJoint, is_word
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
 from fricmb.space._turning import kind_of, turning_forms, turning_rows
@@ -101,7 +101,7 @@ class Pad(SpaceJoint):
                 f" body of revolution are across it, got {tuple(value_of(self.normal))}"
             )
         found = kind_of(self, "a")
-        if self.turning not in (None, found):
+        if self.turning is not None and not is_word(self.turning, found):
             self._refuse("turning", self.turning, f"left out (it is {found!r}, from a)")
         self._set("turning", found)
 

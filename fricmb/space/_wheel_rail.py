@@ -14,7 +14,7 @@ from fricmb.scene._forms import LinearForm
 from fricmb.scene._one_sided import OneSided
 from fricmb.scene._part import GROUND
 from fricmb.scene._space_body import SpacePoint, check_triple
-from fricmb.space._joint import SpaceJoint
+from fricmb.space._joint import SpaceJoint, is_word
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot
 from fricmb.values import value_of
@@ -103,6 +103,7 @@ class WheelRail(OneSided, SpaceJoint):
             self._refuse("a", self.a.end_name, "a station of a fm.space.Rotor beside its middle")
         self._set("through", check_triple(self, "through", self.through))
         self._set("rolling_radius", self._number("rolling_radius", self.rolling_radius, above=0.0))
+        self._set("conicity", self._number("conicity", self.conicity))
         if abs(self.direction("along") @ self.direction("up")) > SQUARE:
             raise SceneError(f"{self._label()}: along and up must be at right angles")
         lean = float(self.a.owner.start_axis() @ self.frame()[1])
@@ -110,7 +111,7 @@ class WheelRail(OneSided, SpaceJoint):
             raise SceneError(f"{self._label()}: the axle lies along the rail or stands up; turn its axis across")
         # which end of the axle, and which way its axis points: both say where the flange is
         end = "front" if self.a.offset[0] > 0.0 else "back"
-        if self.end not in (None, end):
+        if self.end is not None and not is_word(self.end, end):
             self._refuse("end", self.end, f"left out (it is {end!r}, from a)")
         self._set("end", end)
         self._set("speed", check_expression(self, "speed", self.speed, motions=False))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.band import factor_band, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import (
@@ -17,19 +16,16 @@ from fricmb.integrate.constrained.forces import (
     pull_back,
     slope_at,
 )
-from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
-from fricmb.integrate.constrained.jacobian_layers import add, add_contacts, add_joints, add_mass, place_slope
+from fricmb.integrate.constrained.friction_rows import friction_residual
+from fricmb.integrate.constrained.instant_matrix import ALL, instant_matrix, solve_instant
+from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.load_share import share_load
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import add_stick
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.forces import element_powers, evaluate
-from fricmb.integrate.problem import NORMAL_LAW, STICK, Floats
+from fricmb.integrate.problem import NORMAL_LAW, Floats
 from fricmb.integrate.run.stopped import stopped
-
-#: What of friction the matrix of an instant holds.
-NONE, STUCK, ALL = 0, 1, 2
 
 
 @kernel
@@ -103,48 +99,6 @@ def instant_residual(mech: Mech, k: Moving, w: Instant, y: State) -> None:
     for e in range(k.ddy.shape[0]):
         k.ddy[e] = w.ddy[e]
     friction_residual(mech, k, y.mode, y.n, y.F, y.z, y.N, y.g, y.ga, y.zd, w.r, n + m, False)
-
-
-@block
-def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -> bool:
-    """Factor the matrix of the instant; False where it is singular.
-
-    ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
-    """
-    order = mech.order
-    rows, nz = y.F.shape[0], y.z.shape[0]
-    w.L.A0[:] = 0.0
-    w.L.A1[:] = 0.0
-    add_mass(mech, w.L)
-    add_joints(mech, k, y.lam, y.F, w.L, False)
-    add_contacts(mech, k, y.N, w.L, False)
-    size = order.place.shape[0]
-    if friction == ALL:
-        add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, w.L, False)
-    else:
-        for c in range(y.mode.shape[0]):
-            row = size - nz - rows + mech.port.row[c]
-            if friction == STUCK and y.mode[c] == STICK:
-                add_stick(mech, k, c, y.lam, w.L, row, False)
-                continue
-            for a in range(mech.port.row[c + 1] - mech.port.row[c]):
-                add(order, w.L.A1, row + a, row + a, 1.0)
-    for i in range(nz):
-        add(order, w.L.A1, size - nz + i, size - nz + i, 1.0)
-    for i in range(w.ab.shape[0]):
-        w.ab[i] = w.L.A0[i] + w.L.A1[i]
-    return factor_band(w.ab, w.pivots, order.sizes)
-
-
-@kernel
-def solve_instant(mech: Mech, w: Instant) -> None:
-    """Solve with the factored matrix: ``w.x`` from ``w.r``."""
-    place = mech.order.place
-    for i in range(place.shape[0]):
-        w.x[place[i]] = w.r[i]
-    solve_band(w.ab, w.pivots, mech.order.sizes, w.x)
-    for i in range(place.shape[0]):
-        w.r[i] = w.x[place[i]]
 
 
 @kernel
@@ -226,7 +180,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
         last = error
     else:
         return False
-    share_load(mech, k, y.mode, y.N, y.F, 1.0)
+    share_load(mech, k, w, y, y.mode, y.N, y.F, y.lam, 1.0)
     # of what has been found: iterates on the way there may be anything
     k.borne = max(k.borne_before, largest(y.lam), largest(y.F), largest_load(mech, y))
     instant_residual(mech, k, w, y)

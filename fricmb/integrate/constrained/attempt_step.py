@@ -160,7 +160,7 @@ def radau_step(
             record_step(mech, rec, y, end, st, c, h)
             copy_state(end, y)
         return FAIL_MARGIN
-    worst = violated(mech, k, out, y, end, st)
+    worst = violated(mech, k, w, out, y, end, st)
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:

@@ -223,7 +223,7 @@ def multistep(
     find_kinks(mech, k, y, st, out)
     passed = may_have_passed(mech, k, w, end, out, h)
     unique = margins(mech, k, w, end, out, False) > 0.0
-    changes = violated(mech, k, out, y, end, st) >= 0 or has_come_to_rest(mech, k, out, y, end) >= 0
+    changes = violated(mech, k, w, out, y, end, st) >= 0 or has_come_to_rest(mech, k, out, y, end) >= 0
     if mech.port.knots.shape[0] > 0:
         changes = changes or passes_bend(mech, k, y, end, st, c, h)
     if mech.bends.address.shape[0] > 0:

@@ -6,12 +6,13 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import call_joint, is_open, move
 from fricmb.integrate.constrained.load_kinks import BEFORE, BEHIND, law_side
-from fricmb.integrate.constrained.load_share import may_share, share_stages
+from fricmb.integrate.constrained.load_share import share_stages
+from fricmb.integrate.constrained.loop_mobility import may_share
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import lack, plane, slip_speed, spare
 from fricmb.integrate.constrained.stages import Stages
-from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats
@@ -92,7 +93,7 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
 
 
 @block
-def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages) -> int:
+def violated(mech: Mech, k: Moving, w: Instant, out: Watch, y: State, end: State, st: Stages) -> int:
     """The trigger that falls furthest below 0 in the step from y to end, or -1; values at the end stay in ``trigger``.
 
     ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.
@@ -100,7 +101,7 @@ def violated(mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages
     s = st.tab.c.shape[0]
     worst, least = -1, 0.0
     out.where = 1.0
-    shared = share_stages(mech, k, y, end, st)
+    shared = share_stages(mech, k, w, y, end, st)
     triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
     out.inner[0] = out.trigger
     if out.opened > 0:

@@ -49,7 +49,7 @@ def locate_trigger(
             step = inside * high
         if not step_to(mech, k, w, y, end, st, c, step):
             return 0.0, j
-        worst = violated(mech, k, out, y, end, st)
+        worst = violated(mech, k, w, out, y, end, st)
         if inside < 1.0 and (worst < 0 or (out.where < 1.0 and i >= DOUBTS)):
             return step, -1
         inside = out.where

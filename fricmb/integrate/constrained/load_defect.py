@@ -12,8 +12,8 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, move
+from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.law_defect import bring_up_to_date
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech

@@ -43,7 +43,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     n_c = y.mode.shape[0]
     count, anew = 0, True
     k.answer[:] = -1.0
-    mark_loops(mech, k, y, part)
+    mark_loops(mech, k, w, y, part)
     freely = forced < 0
     for c in range(n_c):
         freely = freely and part[c] != LETS_GO

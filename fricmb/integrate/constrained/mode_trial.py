@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, react, solve_instant
+from fricmb.integrate.constrained.accelerations import react
+from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT, SLIGHT, aim, lack, lightness, plane, slip_speed, spare

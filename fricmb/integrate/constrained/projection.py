@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, STUCK, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import forces, move
+from fricmb.integrate.constrained.instant_matrix import NONE, STUCK, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State

@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.band import factor_band, spread_of_pivots
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, solve_instant
+from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, first_multiplier
 from fricmb.integrate.constrained.radau_step import Control

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import NONE, instant_matrix, react
+from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import move
+from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix
 from fricmb.integrate.constrained.load_share import give_way, join_rest
 from fricmb.integrate.constrained.mode_decision import decide
 from fricmb.integrate.constrained.mode_enumeration import FOUND, SEVERAL
@@ -149,14 +150,14 @@ def change_modes(
                 point_along(row, port, y.g, 1.0, y.n)
                 part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.top_slip else SLIPS_ON
         elif y.mode[port] == STICK:
-            forced = -1 if give_way(mech, k, y, part, LETS_GO) else port
+            forced = -1 if give_way(mech, k, w, y, part, LETS_GO) else port
         elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.top_slip:
             part[port] = ARRIVES
         else:
             # one that had no load to speak of has gone on through rest
             part[port] = SLIPS_ON
             y.n[row[port]] = -y.n[row[port]]
-    join_rest(mech, k, y, part, 1e-9 * out.top_slip, ARRIVES)
+    join_rest(mech, k, w, y, part, 1e-9 * out.top_slip, ARRIVES)
     code = decide(mech, k, w, y, part, forced)
     if code != FOUND:
         margins(mech, k, w, y, out, True)

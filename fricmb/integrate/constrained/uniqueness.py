@@ -7,8 +7,8 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor
-from fricmb.integrate.constrained.accelerations import ALL, instant_matrix, solve_instant
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
+from fricmb.integrate.constrained.instant_matrix import ALL, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State
