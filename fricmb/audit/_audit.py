@@ -108,8 +108,9 @@ def _look(
         _put(weak, gathered, difference / allowed, first.t, "")
     points.look(take(middle, sure), rng)
     # where a function of time jumps, what begins a step has seen it, and what ends one has not yet
-    points.look(replace(begin, t=begin.t + ROUND_OFF * np.abs(begin.t)), rng)
-    points.look(replace(end, t=end.t - ROUND_OFF * np.abs(end.t)), rng)
+    beside = ROUND_OFF * (np.abs(begin.t) + np.abs(end.t))
+    points.look(replace(begin, t=begin.t + beside), rng)
+    points.look(replace(end, t=end.t - beside), rng)
 
 
 def _put(weak: Weak, gathered: Gathered, ratio: Floats, t: Floats, where: str) -> None:
