@@ -6,8 +6,8 @@ import sympy
 
 import fricmb as fm
 
-T = fm.t
-STEP = sympy.Heaviside(T - 1)
+time = fm.t
+STEP = sympy.Heaviside(time - 1)
 K, N, MU = 10.0, 4.0, 0.1
 
 
@@ -64,11 +64,11 @@ def test_a_base_that_jumps_in_runs_that_go_on(between, tmp_path):
 
 
 def test_bases_that_jump_again_and_again():
-    square = fm.Driven("base", position={"x": 0.1 * sympy.sign(sympy.sin(sympy.sqrt(7) * T))})
+    square = fm.Driven("base", position={"x": 0.1 * sympy.sign(sympy.sin(sympy.sqrt(7) * time))})
     sol = fm.simulate(pulled(square), t_end=10.0, rtol=1e-6)
     assert np.abs(sol.energy.residual).max() < 1e-6 and sol.energy.input[-1] > 1.0
-    stairs = fm.Driven("base", position={"x": 0.1 * sympy.floor(3 * T)})
-    steps = fm.Driven("base", position={"x": sum(0.1 * sympy.Heaviside(3 * T - k) for k in range(1, 13))})
+    stairs = fm.Driven("base", position={"x": 0.1 * sympy.floor(3 * time)})
+    steps = fm.Driven("base", position={"x": sum(0.1 * sympy.Heaviside(3 * time - k) for k in range(1, 13))})
     found = [fm.simulate(pulled(base), t_end=4.1, rtol=1e-8) for base in (stairs, steps)]
     np.testing.assert_allclose(*[sol["block.x"][-1] for sol in found], atol=1e-9)
     np.testing.assert_allclose(*[sol.energy.input[-1] for sol in found], atol=1e-9)
@@ -87,7 +87,7 @@ def test_jumps_that_would_be_infinite_speeds_are_refused():
     with pytest.raises(fm.SceneError, match="Contact 'lining' would feel an infinite speed"):
         fm.simulate(fm.Scene("rubs", [block, base, rubs]), t_end=3.0)
     bar = fm.RigidBody("bar", mass=1.0, inertia=1.0)
-    turn = sympy.Piecewise((T, T < 1), (2 * T, True))
+    turn = sympy.Piecewise((time, time < 1), (2 * time, True))
     crank = fm.Scene("crank", [bar, fm.Revolute("pin", bar), fm.DrivenAngle("drive", bar, angle=turn)])
     with pytest.raises(fm.SceneError, match="DrivenAngle 'drive': angle jumps by 1 at t = 1"):
         fm.simulate(crank, t_end=3.0)
@@ -97,7 +97,7 @@ def test_jumps_that_would_be_infinite_speeds_are_refused():
 
 
 @pytest.mark.parametrize("velocity", [
-    sympy.sign(sympy.sin(sympy.sqrt(7) * T)), sympy.Abs(sympy.sin(2 * T)) - 0.3, sympy.Max(0.2, sympy.cos(3 * T)),
+    sympy.sign(sympy.sin(sympy.sqrt(7) * time)), sympy.Abs(sympy.sin(2 * time)) - 0.3, sympy.Max(0.2, sympy.cos(3 * time)),
 ])  # fmt: skip
 def test_belts_that_switch_without_end(velocity):
     """The default method took steps as short as the tolerance, and hardly came to an end."""
@@ -111,7 +111,7 @@ def test_belts_that_switch_without_end(velocity):
 
 def test_a_belt_whose_way_is_not_known_is_not_made_up():
     """What SymPy finds for the integral of |sin| falls back wherever the sine changes its sign."""
-    velocity = sympy.Abs(sympy.sin(2 * T))
+    velocity = sympy.Abs(sympy.sin(2 * time))
     with pytest.raises(fm.SceneError, match="has no closed form and the scene depends on the position"):
         fm.simulate(pulled(fm.Driven("base", velocity={"x": velocity})), t_end=5.0)
 
@@ -119,7 +119,7 @@ def test_a_belt_whose_way_is_not_known_is_not_made_up():
 @pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
 def test_a_belt_that_jumps_as_a_run_ends(method):
     """What switches at the last instant was not seen as such, and the run's last power was that behind it."""
-    pieces = [(0.3 * k - 0.5, T < sympy.Rational(k + 1, 2)) for k in range(10)]
-    stairs, steps = carried(0.3 * sympy.floor(2 * T) - 0.5), carried(sympy.Piecewise(*pieces, (2.5, True)))
+    pieces = [(0.3 * k - 0.5, time < sympy.Rational(k + 1, 2)) for k in range(10)]
+    stairs, steps = carried(0.3 * sympy.floor(2 * time) - 0.5), carried(sympy.Piecewise(*pieces, (2.5, True)))
     one, other = (fm.simulate(scene, t_end=5.0, rtol=1e-7, method=method) for scene in (stairs, steps))
     np.testing.assert_allclose(one.energy.friction_loss[-1], other.energy.friction_loss[-1], rtol=1e-9)
