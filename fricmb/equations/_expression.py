@@ -95,7 +95,7 @@ def _quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str
 def integrate(value: Any, t: Any) -> Any | None:
     """Integral from 0 to t by the quick methods, or None.
 
-    Of what switches without end, as ``Abs(sin(t))`` does, SymPy knows an integral of each piece; put together they jump.
+    Of what switches without end, as ``Abs(sin(t))`` does, SymPy knows integrals of the pieces; put together they jump.
     """
     if not all(function.is_polynomial(t) for function in switching_functions(value) if function.has(t)):
         return None

@@ -13,8 +13,8 @@ from fricmb.integrate.problem import Floats
 
 #: A search looks at this many points at first, and at twice as many until it finds no more sign changes.
 _FIRST, _MOST = 512, 2**18
-#: It goes beyond the ends of a run by this part of it: what switches at an end does so as exactly as elsewhere.  Round-off
-#: of a time, relative to the ends.
+#: It goes beyond the ends of a run by this part of it: what switches at an end does so as exactly as elsewhere.
+#: Round-off of a time, relative to the ends.
 _BEYOND, _SAME = 1e-7, 1e-14
 
 

@@ -52,7 +52,7 @@ def one_expression(error: type[FricmbError], label: str, method: str, value: Any
     if left:
         names = ", ".join(sorted(map(str, left)))
         raise error(
-            f"{label}: {method}: undefined symbols in a derived expression: {names}; accepted are its arguments and fields"
+            f"{label}: {method}: undefined symbols in a derived expression: {names}; accepted are arguments and fields"
         )
     if found.has(sympy.I):
         raise error(f"{label}: {method} must return a real expression, got {found}")

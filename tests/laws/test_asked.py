@@ -1,4 +1,4 @@
-"""What authors' methods are asked and what they give back: each mistake is an error with class, method and what is expected."""
+"""What authors' methods are asked and give back: a mistake is an error with class, method and what is expected."""
 
 from dataclasses import dataclass
 

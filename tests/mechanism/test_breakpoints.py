@@ -98,3 +98,16 @@ def test_a_pivot_whose_speed_jumps(method, drive):
     assert not any("ledger" in note for note in sol.stats.notes)
     audit = sol.audit()
     assert audit.ok, str(audit)
+
+
+def test_friction_of_joints_has_no_part_in_an_impulse():
+    """It is not computed, and the run says so; without friction there is nothing to say."""
+    speed = sympy.Piecewise((1.0, fm.t < 0.5), (2.0, True))
+    rod = fm.RigidBody("rod", mass=MASS, inertia=J, position=(0.0, -LENGTH), points={"eye": (0.0, LENGTH)})
+    for friction, notes in ((None, 0), (fm.laws.Coulomb(mu_s=0.2), 1)):
+        pin = fm.Revolute("pin", rod.point("eye"), friction=friction, radius=0.05)
+        drive = fm.DrivenAngle("drive", rod, speed=speed)
+        sol = fm.simulate(fm.Scene("turned", [rod, pin, drive]), t_end=1.0, rtol=1e-8)
+        found = [note for note in sol.stats.notes if "velocities jump at t = 0.5" in note]
+        assert len(found) == notes
+        assert np.abs(sol.energy.residual).max() < 1e-8
