@@ -29,8 +29,7 @@ def ask(error: type[FricmbError], label: str, method: str, function: Callable[..
         except TypeError:
             takes = ", ".join(["self", *map(str, signature.parameters.values())])
             wanted = ", ".join(["self", *arguments])
-            message = f"{label}: {method} takes ({takes}); expected is {method}({wanted})"
-            raise error(message) from None
+            raise error(f"{label}: {method} takes ({takes}); expected is {method}({wanted})") from None
     with in_symbols(error, label, method):
         return function(*arguments.values())
 

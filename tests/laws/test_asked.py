@@ -15,11 +15,11 @@ def law(**methods):
     return dataclass(frozen=True, kw_only=True)(kind)
 
 
-def run(kind):
+def run(kind, **options):
     block, belt = fm.Body("block", mass=1.0), fm.Driven("belt", velocity={"x": 1.0})
     lining = fm.Contact("lining", block, belt, law=kind(), normal_force=1.0)
     spring = fm.Spring("spring", block, axis="x", stiffness=1.0)
-    return fm.simulate(fm.Scene("own", [block, belt, spring, lining]), t_end=0.1, rtol=1e-4)
+    return fm.simulate(fm.Scene("own", [block, belt, spring, lining]), **{"t_end": 0.1, "rtol": 1e-4, **options})
 
 
 def bristle(rate, force=lambda self, v, N, z: [-z[0]]):
@@ -125,3 +125,9 @@ def test_elements_are_asked_alike(kind, said):
     block = fm.Body("block", mass=1.0)
     with pytest.raises(fm.SceneError, match=said):
         fm.simulate(fm.Scene("pulled", [block, kind("own", block)]), t_end=0.1)
+
+
+def test_a_rate_in_steps_is_named_where_a_run_does_not_get_on():
+    """Driven back to where it jumps, a state made steps shorter without end, and nothing said why."""
+    with pytest.raises(fm.IntegrationError, match=r"the rate of Own of Contact 'lining' jumps \(floor\(.*\)\)"):
+        run(bristle(lambda self, v, N, z: [v[0] - 2 * sympy.floor(3 * z[0] + 1)]), t_end=1.0, time_limit=1.0)

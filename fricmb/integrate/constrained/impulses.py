@@ -25,6 +25,6 @@ def impulse_notes(problem: Problem, span: Floats2, values: Floats3) -> tuple[str
         return ()
     more = f" and {times.size - 1} more times" if times.size > 1 else ""
     return (
-        f"velocities jump at t = {times[0]:.6g}{more}, as a prescribed speed does: in that instant joints bear an impulse,"
-        " and the friction that belongs to it is left out",
+        f"velocities jump at t = {times[0]:.6g}{more}, as a prescribed speed does: in that instant joints bear an"
+        " impulse, and the friction that belongs to it is left out",
     )
