@@ -23,7 +23,9 @@ ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md")]
 PAGE = "\n".join(path.read_text(encoding="utf-8") for path in PAGES)
 #: What is raised with a message of its own.
-RAISED = {"SceneError", "LawError", "AnalysisError", "ArgumentError", "FricmbError", "IntegrationError", "no_start"}
+RAISED = {
+    "SceneError", "LawError", "AnalysisError", "ArgumentError", "FricmbError", "IntegrationError", "no_start", "error",
+}  # fmt: skip
 
 
 def text_of(node):

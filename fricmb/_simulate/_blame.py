@@ -49,6 +49,28 @@ def _formula_without_value(mechanics: SceneMechanics, t: float, q: Floats, v: Fl
     return ""
 
 
+def jumping_rate(mechanics: SceneMechanics) -> str:
+    """A law whose states change at a rate in steps, as the end of a sentence; "" where there is none.
+
+    Where such a state is driven back to where its rate jumps, steps get shorter without end.
+    """
+    for contact in mechanics.scene.frictional:
+        law = contact.law
+        if law is None or not law.states or law.kind != "smooth" or contact.name not in mechanics.names.contacts:
+            continue
+        import sympy
+
+        from fricmb.laws._numeric import force_expression
+        from fricmb.values import symbolic
+
+        d = len(mechanics.names.directions[mechanics.names.contacts.index(contact.name)])
+        rates = force_expression(law, symbolic(law), d)[4]
+        steps = sorted({str(step) for rate in rates for step in rate.atoms(sympy.floor, sympy.ceiling)})
+        if steps:
+            return f"; the rate of {law._label()} of {contact._label()} jumps ({steps[0]}), which no step looks for"
+    return ""
+
+
 def undefined(mechanics: SceneMechanics, trajectory: Trajectory, t: float) -> str:
     """Why a joint has no meaning where the run has come to; "" where all have."""
     q = trajectory.motion(np.array([t])).q[:, 0]

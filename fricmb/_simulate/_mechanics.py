@@ -30,6 +30,7 @@ from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
 from fricmb.scene._family import NUMBERS, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
+from fricmb.values import is_expression
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,6 +129,12 @@ class SceneMechanics:
     def potential(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
         return self._sum(samples, moving, lambda system, part: system.potential(part))
+
+    def leaps(self, t_start: float, t_end: float) -> Floats | None:
+        """Times between two others at which driven positions jump, rising; None where none can."""
+        if not any(is_expression(value) for body in self.placed.driven for value in body.position.values()):
+            return None
+        return np.unique(np.concatenate([m.system.leaps_between(t_start, t_end) for m in self.members]))
 
     def _sum(
         self, samples: MotionSamples, moving: Ints | None, energy: Callable[[System, MotionSamples], Floats]

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from fricmb._simulate._arguments import Span
-from fricmb._simulate._blame import blame, blame_end, undefined
+from fricmb._simulate._blame import blame, blame_end, jumping_rate, undefined
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._digits import digit_notes
 from fricmb._simulate._joined import JoinedRun, island_stats
@@ -60,7 +60,7 @@ def make_solution(
             t, reason, end = unsound.t, unsound.reason, unsound.end
     else:
         t = trajectory.ends[1]
-        reason, end = failure, t
+        reason, end = f"{failure}{jumping_rate(mechanics)}", t
     if not ended:
         digits = "".join(f"; {note}" for note in digit_notes(trajectory, None))
         reason = undefined(mechanics, trajectory, t) or f"{reason}{blame(mechanics, trajectory, t)}{digits}"

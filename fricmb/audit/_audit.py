@@ -107,9 +107,10 @@ def _look(
         difference, allowed = weak.residual(first, last, rng, statements.jump(first, last))
         _put(weak, gathered, difference / allowed, first.t, "")
     points.look(take(middle, sure), rng)
-    points.look(begin, rng)
-    # where a function of time jumps, what ends a step has not seen it yet
-    points.look(replace(end, t=end.t - ROUND_OFF * np.abs(end.t)), rng)
+    # where a function of time jumps, what begins a step has seen it, and what ends one has not yet
+    beside = ROUND_OFF * (np.abs(begin.t) + np.abs(end.t))
+    points.look(replace(begin, t=begin.t + beside), rng)
+    points.look(replace(end, t=end.t - beside), rng)
 
 
 def _put(weak: Weak, gathered: Gathered, ratio: Floats, t: Floats, where: str) -> None:

@@ -23,12 +23,14 @@ Row = list[tuple[int, Any]]
 class Frame:
     """What tells a name's motion: the scene, the rows of degrees of freedom, positions of driven bodies.
 
-    ``driven``: position of a driven motion by name at given times, where a formula gives only its velocity.
+    ``driven``: position of a driven motion by name at given times, where a formula gives only its velocity;
+    ``breaks``: times at which functions of time of a scene with joints jump.
     """
 
     scene: Scene
     index: dict[str, int]
     driven: Callable[[str, Floats], Floats]
+    breaks: Floats
     _given: dict[str, tuple[Given | None, Given | float]] = field(default_factory=dict)
 
     def prescribed(self, name: str) -> tuple[Given | None, Given | float]:

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from fricmb import stated
+from fricmb.audit._drives import Drive
 from fricmb.audit._functions import Given, function
 from fricmb.audit._motions import Moment, Row
 from fricmb.equations import numbers
@@ -121,7 +122,7 @@ class Joins:
     def add(self, moment: Moment, found: Found) -> None:
         """Reactions of the run; what the constraints and the slip are."""
         motions: list[tuple[Any, Any, Row]] = [moment.form(form) for form in self.forms]
-        motions += [(*drive.at(moment.t), []) for drive in self.drives]
+        motions += [(*drive.at(moment.t, moment.frame.breaks), []) for drive in self.drives]
         lam = moment.lam[self.name]
         values = self.function(*[m[0] for m in motions], *[m[1] for m in motions], *lam, *self.numbers)
         shape, n, n_phi = moment.t.shape, self.count, len(lam)
@@ -142,35 +143,6 @@ class Joins:
             found.rows[self.contact] = [_combined(motions, slip) for slip in slips]
             for i, row in enumerate(found.rows[self.contact]):
                 found.push(row, moment.F[self.own + i])
-
-
-class Drive:
-    """A prescribed function of time of a joint, and its rate."""
-
-    def __init__(self, given: str, value: Any, start: float) -> None:
-        self.integrated, self.start = given == "rate", start
-        self.value, self.rate = Given(value), Given(value, derivative=True)
-
-    def at(self, t: Floats) -> tuple[Any, Any]:
-        """Value and rate (n_t,)."""
-        if not self.integrated:
-            return self.value.over(t) + self.start, self.rate.over(t)
-        return self.start + _integral(self.value, t), self.value.over(t)
-
-
-def _integral(value: Given, t: Floats) -> Floats:
-    """The integral from 0 to each of t, by Gauss's rule on short stretches."""
-    if value.number is not None:
-        return value.number * t
-    order = np.argsort(t, kind="stable")
-    ends = np.concatenate([np.linspace(0.0, t[order[0]], 257)[:-1], t[order]]) if t.size else t
-    x, w = np.polynomial.legendre.leggauss(8)
-    half = 0.5 * np.diff(ends)
-    nodes = ends[:-1, None] + half[:, None] * (1.0 + x)
-    sums = np.cumsum(half * (value.over(nodes) @ w))
-    found = np.empty_like(t)
-    found[order] = sums[255:]
-    return found
 
 
 def _combined(motions: list[tuple[Any, Any, Row]], slopes: Any) -> Row:

@@ -35,7 +35,8 @@ class Statements:
         scene, held = mechanics.placed, set(mechanics.plan.parts)
         index = dict(self.names.dof_index)
         self.scene = scene
-        self.frame = Frame(scene=scene, index=index, driven=self._driven)
+        breaks = piece.trajectory.problem.signals.breakpoints if scene.is_mechanism else np.zeros(0)
+        self.frame = Frame(scene=scene, index=index, driven=self._driven, breaks=breaks)
         self.mass, self.mass_matrices = masses(scene, held, index)
         self.weight = np.maximum(self.mass, least_masses(scene, index))
         numbers = self.names.contact_index

@@ -16,6 +16,8 @@ ROOT = float(np.sqrt(np.finfo(float).eps))
 CUBE_ROOT = float(np.cbrt(np.finfo(float).eps))
 CLEAR = 1e4 * float(np.finfo(float).eps)
 ROUNDS = 5
+#: How often, and by how much, derivatives are moved further at a start, and how far: from 1e-3 on.
+FURTHER, WIDER, FURTHEST = 33, 2.0**30, 1e290
 
 
 class Given:
@@ -90,12 +92,38 @@ class Differences:
                     rate = 2.0**-10 * np.maximum(np.abs(yp), 1.0)
                 if not self._columns(self.matrix.dyp, t, y, yp, f, (yp + rate) - yp, False, entries):
                     return False
+                if c == 0.0:
+                    self._look_further(t, y, yp, f, rate)
             drowned = self._drowned(y, yp, f, size, c)
             if not len(drowned):
                 break
             self.floor[drowned] = 1e3 * size[drowned]
             entries = [self._entries(drowned[k : k + 1]) for k in range(len(drowned))]
         return True
+
+    def _look_further(self, t: float, y: Floats, yp: Floats, f: Floats, rate: Floats) -> None:
+        """Move derivatives by more and more where nothing is seen of them: beside terms of 1e15 one of 1 is none.
+
+        What then has no effect at all is algebraic; no unit of its own tells how large a derivative will be.
+        """
+        m, p = self.matrix, self.matrix.pattern
+        left = np.arange(p.n)
+        for _ in range(FURTHER):
+            effect = np.zeros(p.n)
+            np.maximum.at(effect, m.columns, np.abs(m.dyp[p.place]) * rate[m.columns] / self._level(y, yp, f)[p.rows])
+            left = left[(effect[left] < CLEAR) & (rate[left] < FURTHEST)]
+            if not left.size:
+                return
+            rate = rate.copy()
+            rate[left] *= WIDER
+            groups = [np.intersect1d(columns, left) for columns in p.groups]
+            for columns in (columns for columns in groups if columns.size):
+                entries = self._entries(columns)
+                before = m.dyp[entries[3]].copy()
+                fine = self._columns(m.dyp, t, y, yp, f, rate, False, [entries])
+                if not (fine and np.isfinite(m.dyp[entries[3]]).all()):
+                    m.dyp[entries[3]] = before
+                    left = np.setdiff1d(left, columns)
 
     def _drowned(self, y: Floats, yp: Floats, f: Floats, size: Floats, c: float) -> Any:
         """Columns whose largest effect is not well above the round-off of the equations it is in."""

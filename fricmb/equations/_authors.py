@@ -10,7 +10,7 @@ from fricmb.equations._element import ElementMath, local_symbols
 from fricmb.equations._law import derive_coefficient, derive_smooth
 from fricmb.errors import SceneError
 from fricmb.laws._numeric import coefficient_expression, force_expression
-from fricmb.values import in_symbols, symbolic
+from fricmb.values import ask, expressions, one_expression, symbolic
 
 
 def element_math(element: Any, n: int) -> ElementMath:
@@ -19,35 +19,27 @@ def element_math(element: Any, n: int) -> ElementMath:
     x, v, d, t = local_symbols(n)
     author = stand.standin
     label = f"{type(element).__name__} {element.name!r}"
-    with in_symbols(SceneError, label, "define_potential"):
-        potential = author.define_potential(x)
-    with in_symbols(SceneError, label, "define_dissipation"):
-        dissipation = author.define_dissipation(x, v)
-    with in_symbols(SceneError, label, "define_force"):
-        force = author.define_force(x, v, t)
-    entries = _vector(force, n, label)
-    for what, expression in (("define_potential", potential), ("define_dissipation", dissipation)):
-        if isinstance(expression, list | tuple):
-            raise SceneError(f"{label}: {what} must return one expression, got {expression!r}")
+    said, known = (SceneError, label), {*x, *v, t, *stand.flat}
+    energy = ask(*said, "define_potential", author.define_potential, x=x)
+    loss = ask(*said, "define_dissipation", author.define_dissipation, x=x, x_dot=v)
+    force = ask(*said, "define_force", author.define_force, x=x, x_dot=v, t=t)
+    nothing = (sympy.S.Zero,) * n
+    what = "expression(s), one a coordinate"
+    entries = nothing if force is None else expressions(*said, "define_force", force, n, known, what)
+    potential, dissipation = (
+        sympy.S.Zero if value is None else one_expression(*said, method, value, known)
+        for method, value in (("define_potential", energy), ("define_dissipation", loss))
+    )
     return ElementMath(
         x=x,
         v=v,
         d=d,
         t=t,
         parameters=stand.flat,
-        potential=sympy.S.Zero if potential is None else sympy.sympify(potential),
-        dissipation=sympy.S.Zero if dissipation is None else sympy.sympify(dissipation),
+        potential=potential,
+        dissipation=dissipation,
         force=entries,
     )
-
-
-def _vector(force: Any, n: int, label: str) -> tuple[Any, ...]:
-    if force is None:
-        return (sympy.S.Zero,) * n
-    entries = tuple(force) if isinstance(force, list | tuple | sympy.MatrixBase) else (force,)
-    if len(entries) != n:
-        raise SceneError(f"{label}: define_force must return {n} expression(s), one a coordinate, got {len(entries)}")
-    return tuple(sympy.sympify(entry) for entry in entries)
 
 
 def derive_law(law: Any, d: int) -> tuple[dict[str, Any], str | None]:

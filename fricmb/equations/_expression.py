@@ -53,18 +53,18 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
     quadrature in the kernel where it has no closed form and does not switch).  One parameter more than the expression
     has is added to u: where the motion stood when a run went on from another.
     """
-    value = sympy.sympify(value)
+    value = without_mod(sympy.sympify(value))
     offset = sympy.Dummy("offset", real=True)
     closed = True
     if given == "value":
-        outputs = [value + offset, sympy.diff(value, t), sympy.diff(value, t, 2)]
+        outputs = [value + offset, slope(value, t), slope(slope(value, t), t)]
     else:
         integral = integrate(value, t)
         if integral is None and not switches(value, t, parameters):
             facts = {"closed": True, "switches": []}
             return facts, _quadrature_kernel(value, t, [*parameters, offset], title)
         closed = integral is not None
-        outputs = [offset if integral is None else integral + offset, value, sympy.diff(value, t)]
+        outputs = [offset if integral is None else integral + offset, value, slope(value, t)]
     for expression in outputs:
         _code.check(expression, title)
     facts = {"closed": closed, "switches": switches(value, t, parameters), "uniform": bool(outputs[2] == 0)}
@@ -103,7 +103,12 @@ def _quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str
 
 
 def integrate(value: Any, t: Any) -> Any | None:
-    """Integral from 0 to t by the quick methods, or None."""
+    """Integral from 0 to t by the quick methods, or None.
+
+    Of what switches without end, as ``Abs(sin(t))`` does, SymPy knows integrals of the pieces; put together they jump.
+    """
+    if not all(function.is_polynomial(t) for function in switching_functions(value) if function.has(t)):
+        return None
     plain = sympy.piecewise_fold(value.rewrite(sympy.Heaviside, sympy.Piecewise).replace(sympy.Heaviside, _step))
     try:
         result = sympy.integrate(plain, t, risch=False, meijerg=False, heurisch=False)
@@ -113,6 +118,17 @@ def integrate(value: Any, t: Any) -> Any | None:
         return None
     start = result.subs(t, 0)
     return None if start.has(sympy.nan, sympy.zoo, sympy.oo) else result - start
+
+
+def without_mod(value: Any) -> Any:
+    """An expression in whose remainders steps are written as such."""
+    return value.replace(sympy.Mod, lambda a, b: a - b * sympy.floor(a / b))
+
+
+def slope(value: Any, t: Any) -> Any:
+    """Derivative by t between jumps: steps are level."""
+    steps = {step: sympy.Dummy(real=True) for step in value.atoms(sympy.floor, sympy.ceiling)}
+    return sympy.diff(value.xreplace(steps), t).xreplace({dummy: step for step, dummy in steps.items()})
 
 
 def _step(argument: Any, *_: Any) -> Any:

@@ -8,16 +8,16 @@ import sympy
 
 from fricmb.equations import _code
 from fricmb.errors import LawError
-from fricmb.values import in_symbols, symbolic
+from fricmb.values import ask, one_expression, symbolic
 
 
 def normal_expression(law: Any) -> tuple[Any, Any, Any, tuple[Any, ...]]:
     """Symbols e and e', the normal force before the cut at 0, and the symbols of the parameters."""
     e, rate = sympy.Symbol("e", real=True), sympy.Symbol("w", real=True)
     stand = symbolic(law)
-    with in_symbols(LawError, type(law).__name__, "define_normal"):
-        force = stand.standin.define_normal(e, rate)
-    return e, rate, sympy.sympify(force), stand.flat
+    said = LawError, type(law).__name__, "define_normal"
+    force = ask(*said, stand.standin.define_normal, e=e, e_dot=rate)
+    return e, rate, one_expression(*said, force, {e, rate, *stand.flat}), stand.flat
 
 
 def normal_text(law: Any) -> str:

@@ -11,9 +11,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fricmb.errors import LawError, shown
+from fricmb.errors import LawError
 from fricmb.laws._without_sympy import alike, numbers_of
-from fricmb.values import Declaration, Symbolic, held, in_symbols, symbolic
+from fricmb.values import Declaration, Symbolic, ask, expressions, held, one_expression, symbolic
 
 _Functions = dict[tuple[Any, ...], Callable[..., Any]]
 _functions: WeakKeyDictionary[type, _Functions] = WeakKeyDictionary()
@@ -28,9 +28,11 @@ def coefficient_expression(law: Any, stand: Symbolic) -> tuple[Any, Any, Any]:
     import sympy
 
     r, N = sympy.Symbol("|v|", nonnegative=True), sympy.Symbol("N[]", nonnegative=True)
-    with in_symbols(LawError, law._label(), "define_coefficient"):
-        mu = stand.standin.define_coefficient(r, N) if law.load_dependent else stand.standin.define_coefficient(r)
-    return r, N, sympy.sympify(mu)
+    given = {"r": r, "N": N} if law.load_dependent else {"r": r}
+    said = LawError, law._label(), "define_coefficient"
+    mu = ask(*said, stand.standin.define_coefficient, **given)
+    # a law inside may depend on the load where its own does not say so
+    return r, N, one_expression(*said, mu, {r, N, *stand.flat})
 
 
 def force_expression(law: Any, stand: Symbolic, d: int) -> tuple[Any, Any, Any, Any, Any]:
@@ -40,22 +42,14 @@ def force_expression(law: Any, stand: Symbolic, d: int) -> tuple[Any, Any, Any, 
     v = tuple(sympy.Symbol(f"v[{i}]", real=True) for i in range(d))
     z = tuple(sympy.Symbol(f"z[{i}]", real=True) for i in range(law.n_states(d)))
     N = sympy.Symbol("N[]", nonnegative=True)
-    with in_symbols(LawError, law._label(), "define_force"):
-        force = _vector(law, "define_force", stand.standin.define_force(v, N, z), d)
-    with in_symbols(LawError, law._label(), "define_rate"):
-        rate = _vector(law, "define_rate", stand.standin.define_rate(v, N, z), len(z)) if z else ()
-    return v, N, z, force, rate
-
-
-def _vector(law: Any, method: str, value: Any, n: int) -> tuple[Any, ...]:
-    import sympy
-
-    entries = tuple(value) if isinstance(value, list | tuple | sympy.MatrixBase) else (value,)
-    if len(entries) != n:
-        raise LawError(f"{law._label()}: {method} must return {n} expressions for this contact, got {len(entries)}")
-    if any(entry is None or isinstance(entry, str | bool) for entry in entries):
-        raise LawError(f"{law._label()}: {method} must return {n} expressions for this contact, got {shown(value)}")
-    return tuple(sympy.sympify(entry) for entry in entries)
+    given, known = {"v": v, "N": N, "z": z}, {*v, N, *z, *stand.flat}
+    said, what = (LawError, law._label()), "expressions for this contact"
+    pull = ask(*said, "define_force", stand.standin.define_force, **given)
+    force = expressions(*said, "define_force", pull, d, known, what)
+    if not z:
+        return v, N, z, force, ()
+    change = ask(*said, "define_rate", stand.standin.define_rate, **given)
+    return v, N, z, force, expressions(*said, "define_rate", change, len(z), known, what)
 
 
 def _shape(law: Any) -> tuple[Any, ...]:
@@ -73,21 +67,23 @@ def _make(law: Any, what: str, d: int) -> Callable[..., Any]:
     if what in ("coefficient", "derivative"):
         r, N, mu = coefficient_expression(law, stand)
         expression = mu if what == "coefficient" else sympy.diff(mu, r)
-        _only_known(law, (mu,), {r, N, *stand.flat})
+        _only_known(law, (mu,))
         return sympy.lambdify([r, N, *stand.flat], expression, _MODULES)  # type: ignore[no-any-return]
     v, N, z, force_, rate_ = force_expression(law, stand, d)
     chosen = force_ if what == "force" else rate_
     arguments = [*v, N, *z, *stand.flat]
-    _only_known(law, chosen, set(arguments))
+    _only_known(law, chosen)
     return sympy.lambdify(arguments, [_lengths(e) for e in chosen], _MODULES)  # type: ignore[no-any-return]
 
 
-def _only_known(law: Any, expressions: tuple[Any, ...], known: set[Any]) -> None:
-    """Refuse symbols that are neither fields nor arguments."""
-    left = set().union(*(e.free_symbols for e in expressions)) - known
-    if left:
-        names = ", ".join(sorted(map(str, left)))
-        raise LawError(f"{law._label()}: undefined symbols in a derived expression: {names}")
+def _only_known(law: Any, stated: tuple[Any, ...]) -> None:
+    """Refuse functions that nobody has defined."""
+    from sympy.core.function import AppliedUndef
+
+    for expression in stated:
+        for call in sorted(expression.atoms(AppliedUndef), key=str):
+            if type(call).__name__ not in _MODULES[0]:
+                raise LawError(f"{law._label()}: the function {call} is not known; write it in functions of SymPy")
 
 
 def _lengths(expression: Any, length: Any = None) -> Any:

@@ -15,6 +15,7 @@ from fricmb.integrate import MotionSamples, Samples, Start, Trajectory
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import concatenate, take
 from fricmb.solution._energy import Reference
+from fricmb.solution._leaps import Leaps
 
 Flags = NDArray[np.bool_]
 _Samples = TypeVar("_Samples", bound=MotionSamples)
@@ -40,6 +41,9 @@ class Mechanics(Protocol):
 
     def potential(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
+
+    def leaps(self, t_start: float, t_end: float) -> Floats | None:
+        """Times between two others at which driven positions jump, rising; None where none can."""
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_u, n_t)."""
@@ -119,13 +123,34 @@ class Piece:
         """Whether the piece reaches to the end of its trajectory."""
         return self.t_end >= self.trajectory.ends[1]
 
+    @cached_property
+    def leaps(self) -> Leaps:
+        """Where driven positions jump."""
+        return Leaps.of(self.trajectory, self.mechanics)
+
     def rows(self) -> Samples:
         """Values at the accepted steps."""
-        return self._cut(self.trajectory.rows())
+        return self._with_leaps(self._cut(self.trajectory.rows()))
+
+    def sample(self, t: Floats) -> Samples:
+        """Values at times within the run, in any order."""
+        return self._with_leaps(self.trajectory.sample(t))
+
+    def motion(self, t: Floats) -> MotionSamples:
+        """The same without energies, where these cost something."""
+        return self._with_leaps(self.trajectory.motion(t))
+
+    def _with_leaps(self, samples: _Samples) -> _Samples:
+        return self.leaps.added(samples) if isinstance(samples, Samples) and self.leaps.t.size else samples
+
+    def energies(self, samples: MotionSamples, moving: Ints | None = None) -> tuple[Floats, Floats]:
+        """Kinetic and potential energy (n_t,); ``moving``: degrees of freedom that may move (None: all)."""
+        seen = samples if self.leaps.span is None else self.leaps.seen(samples)
+        return self.mechanics.kinetic(samples, moving), self.mechanics.potential(seen, moving)
 
     def row_motion(self) -> MotionSamples:
         """The same without energies, where these cost something."""
-        return self._cut(self.trajectory.row_motion())
+        return self._with_leaps(self._cut(self.trajectory.row_motion()))
 
     def _cut(self, rows: _Samples) -> _Samples:
         if self.is_whole:
@@ -133,7 +158,8 @@ class Piece:
         return take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**vars(self), "_mechanics": None}  # a trajectory pickles without its problem
+        kept = {name: value for name, value in vars(self).items() if name != "leaps"}
+        return {**kept, "_mechanics": None}  # a trajectory pickles without its problem
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,16 +229,16 @@ class Run:
     def sample(self, t: Floats) -> Record[Samples]:
         """Values at times within the run, in any order; right-hand values where two pieces meet."""
         if len(self.pieces) == 1:
-            trajectory = self.pieces[0].trajectory
-            return Record(samples=trajectory.sample(t), moving=trajectory.moving)
-        return self._by_piece(t, lambda k, t: self._add(k, self.pieces[k].trajectory.sample(t)), Samples)
+            piece = self.pieces[0]
+            return Record(samples=piece.sample(t), moving=piece.trajectory.moving)
+        return self._by_piece(t, lambda k, t: self._add(k, self.pieces[k].sample(t)), Samples)
 
     def motion(self, t: Floats) -> Record[MotionSamples]:
         """The same without energies, where these cost something."""
         if len(self.pieces) == 1:
-            trajectory = self.pieces[0].trajectory
-            return Record(samples=trajectory.motion(t), moving=trajectory.moving)
-        return self._by_piece(t, lambda k, t: self.pieces[k].trajectory.motion(t), MotionSamples)
+            piece = self.pieces[0]
+            return Record(samples=piece.motion(t), moving=piece.trajectory.moving)
+        return self._by_piece(t, lambda k, t: self.pieces[k].motion(t), MotionSamples)
 
     def _by_piece(
         self, t: Floats, sampled: Callable[[int, Floats], _Samples], kind: type[_Samples]
@@ -229,13 +255,11 @@ class Run:
         """Kinetic and potential energy (n_t,)."""
         samples, piece = record.samples, record.piece
         if piece is None:
-            mechanics = self.pieces[0].mechanics
-            return mechanics.kinetic(samples, record.moving), mechanics.potential(samples, record.moving)
+            return self.pieces[0].energies(samples, record.moving)
         kinetic, potential = np.empty(samples.t.size), np.empty(samples.t.size)
         for k in np.unique(piece):
             mine = piece == k
-            part, mechanics = take(samples, mine), self.pieces[k].mechanics
-            kinetic[mine], potential[mine] = mechanics.kinetic(part), mechanics.potential(part)
+            kinetic[mine], potential[mine] = self.pieces[k].energies(take(samples, mine))
         return kinetic, potential
 
     def reaction(self, joint: str, record: Record[MotionSamples]) -> Floats:
@@ -274,8 +298,8 @@ class Run:
         damping = brought = energy = 0.0
         before = []
         for k, piece in enumerate(self.pieces):
-            ends = piece.trajectory.sample(np.array([piece.t_start, piece.t_end]))
-            total = piece.mechanics.kinetic(ends) + piece.mechanics.potential(ends)
+            ends = piece.sample(np.array([piece.t_start, piece.t_end]))
+            total = np.add(*piece.energies(ends))
             if k:
                 brought += float(total[0] - energy)
             before.append((np.broadcast_to(friction, ends.friction_loss.shape[:1]).astype(float), damping, brought))

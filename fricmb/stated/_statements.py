@@ -209,9 +209,11 @@ def expression(value: Any, symbols: tuple[Any, ...], order: int = 0) -> Statemen
     def make() -> tuple[Sequence[Any], Sequence[Any]]:
         import sympy
 
-        plain = sympy.sympify(value).rewrite(sympy.Heaviside, sympy.Piecewise)
+        from fricmb.equations._expression import slope, without_mod
+
+        plain = without_mod(sympy.sympify(value).rewrite(sympy.Heaviside, sympy.Piecewise))
         for _ in range(order):
-            plain = sympy.diff(plain, symbols[0]).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
+            plain = slope(plain, symbols[0]).replace(sympy.DiracDelta, lambda *_: sympy.S.Zero)
         return list(symbols), [plain]
 
     return Statement(key=("expression", value, symbols, order), make=make)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,9 @@ from fricmb.integrate.problem import Floats
 
 #: A search looks at this many points at first, and at twice as many until it finds no more sign changes.
 _FIRST, _MOST = 512, 2**18
+#: It goes beyond the ends of a run by this part of it: what switches at an end does so as exactly as elsewhere.
+#: Round-off of a time, relative to the ends.
+_BEYOND, _SAME = 1e-7, 1e-14
 
 
 @dataclass(frozen=True)
@@ -29,10 +33,11 @@ class Switch:
             return 0.0
 
     def instants(self, t_start: float, t_end: float) -> Floats:
-        """Sign changes between two times, rising."""
+        """Sign changes from one time to another, both included, rising."""
         count, found = _FIRST, np.zeros(0)
+        beyond = _BEYOND * (t_end - t_start)
         while count <= _MOST:
-            brackets = self.brackets(np.linspace(t_start, t_end, count + 1))
+            brackets = self.brackets(np.linspace(t_start - beyond, t_end + beyond, count + 1))
             if len(brackets) == len(found) and count > _FIRST:
                 break
             found = np.array([self.root(low, high) for low, high in brackets])
@@ -40,7 +45,9 @@ class Switch:
             if count >= 64 * (len(found) + 1):
                 break
             count *= 2
-        return found
+        for end in (t_start, t_end):
+            found[np.abs(found - end) <= _SAME * max(abs(t_start), abs(t_end))] = end
+        return found[(found >= t_start) & (found <= t_end)]
 
     def brackets(self, grid: Floats) -> list[tuple[float, float]]:
         """Neighbouring times of a grid between which the function changes its sign."""
@@ -53,7 +60,16 @@ class Switch:
         """Where it does so between two such times."""
         from scipy.optimize import brentq
 
-        return float(brentq(self.value, low, high, xtol=1e-15, rtol=1e-15))
+        root = float(brentq(self.value, low, high, xtol=1e-15, rtol=1e-15))
+        # to the last digit: integrators ask for values on either side of it, as near as two digits
+        reach = 16.0 * math.ulp(root)
+        low, high = max(low, root - reach), min(high, root + reach)
+        below = self.value(low) > 0.0
+        while True:
+            middle = 0.5 * (low + high)
+            if not low < middle < high:
+                return high
+            low, high = (middle, high) if (self.value(middle) > 0.0) == below else (low, middle)
 
 
 def switches_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Floats, tuple[Switch, ...]]:

@@ -20,6 +20,7 @@ from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
+from fricmb.system._leaps import leaps_of
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._same_parts import half_of
@@ -190,6 +191,7 @@ def _system(
         stores=tuple(structure.stores),
         lined=tuple(structure.lined.stores),
         switches=searched,
+        leaps=leaps_of(scene, signals.index),
     )
     if structure.nonlinear:
         u = system.signals(np.zeros(1))[0, :, 0]

@@ -20,6 +20,7 @@ from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
 from fricmb.system._joints import JointArrays, Kept
+from fricmb.system._leaps import leaps_of
 from fricmb.system._mechanism_system import MechanismSystem
 from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._structure import Structure
@@ -91,6 +92,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         state_names=tuple(contacts.states),
         stores=tuple(structure.stores),
         switches=searched,
+        leaps=leaps_of(scene, signals.index),
         joint_forms=dict(zip(joints.names, joints.forms, strict=True)),
     )
 

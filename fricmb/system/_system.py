@@ -13,6 +13,7 @@ from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import NORMAL_LAW, Floats, Problem, SparseLinear, Start, Templates
 from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._breakpoints import Switch
+from fricmb.system._leaps import Leap, leap_times
 from fricmb.system._lined import LinedStores
 from fricmb.system._stored import Stored, stored_of
 from fricmb.system._structure import Store
@@ -39,6 +40,8 @@ class System:
         Those of elements along letters, many at a time.
     switches : tuple of Switch
         Functions of time whose sign changes have to be searched: see :meth:`problem_for`.
+    leaps : tuple of Leap
+        Prescribed positions that may jump: see :meth:`leaps_between`.
     """
 
     problem: Problem
@@ -49,6 +52,7 @@ class System:
     stores: tuple[Store, ...]
     lined: tuple[LinedStores, ...] = ()
     switches: tuple[Switch, ...] = ()
+    leaps: tuple[Leap, ...] = ()
 
     @property
     def dof_names(self) -> tuple[str, ...]:
@@ -64,12 +68,23 @@ class System:
         """The problem with every instant between two times at which an expression of time switches.
 
         Expressions such as ``sign(sin(t))`` switch without end: their breakpoints are known for a given run alone.
+
+        Raises
+        ------
+        SceneError
+            If a prescribed position jumps on which something depends that its speed acts on.
         """
-        if not self.switches:
-            return self.problem
-        signals = self.problem.signals
-        found = [signals.breakpoints, *(s.instants(t_start, t_end) for s in self.switches)]
-        return replace(self.problem, signals=replace(signals, breakpoints=np.unique(np.concatenate(found))))
+        problem = self.problem
+        if self.switches:
+            signals = problem.signals
+            found = [signals.breakpoints, *(s.instants(t_start, t_end) for s in self.switches)]
+            problem = replace(problem, signals=replace(signals, breakpoints=np.unique(np.concatenate(found))))
+        leap_times(self.leaps, problem, t_start, t_end)
+        return problem
+
+    def leaps_between(self, t_start: float, t_end: float) -> Floats:
+        """Times at which prescribed positions jump, and with them what springs store."""
+        return leap_times(self.leaps, self.problem_for(t_start, t_end), t_start, t_end) if self.leaps else np.zeros(0)
 
     def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t); there is none without joints."""

@@ -1,5 +1,6 @@
 """Values of declarations: numbers, named parameters, expressions, and how they are checked, listed and replaced."""
 
+from fricmb.values._asked import ask, expressions, one_expression
 from fricmb.values._declaration import Declaration
 from fricmb.values._held import Held, held, is_foreign
 from fricmb.values._in_symbols import in_symbols
@@ -19,12 +20,15 @@ __all__ = [
     "Symbolic",
     "Units",
     "as_float",
+    "ask",
+    "expressions",
     "held",
     "in_symbols",
     "is_expression",
     "is_foreign",
     "is_plain",
     "is_sparse",
+    "one_expression",
     "parameter",
     "parameters_in",
     "symbolic",

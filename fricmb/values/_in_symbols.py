@@ -53,6 +53,8 @@ def _cure(raised: Exception) -> str | None:
     text = str(raised)
     if "truth value of Relational" in text:
         return "a comparison has no truth value: write sympy.Piecewise((value, condition), ...), sympy.Max or sympy.Min"
+    if re.search(r"operand.*'tuple'|multiply sequence", text):
+        return "its arguments are tuples, one entry a direction or coordinate: write tuple(-k * c for c in v)"
     function = re.search(r"no callable (\w+) method", text)
     if function is None and "Cannot convert expression to float" not in text:
         return None

@@ -165,3 +165,23 @@ def test_exception_in_fun_is_passed_on():
 
     with pytest.raises(KeyError, match="mine"):
         solve_dae(fun, (0.0, 1.0), [1.0])
+
+
+@pytest.mark.parametrize("unit", [1e-100, 1e15, 1e20, 1e250])
+@pytest.mark.parametrize("rate", [1e-30, 1.0, 1e18])
+def test_units_do_not_make_a_state_algebraic(unit, rate):
+    """Beside terms of 1e15 a derivative moved by 1e-3 has no effect: y was solved for, and 0 throughout."""
+    result = solve_dae(
+        lambda t, y, yp: yp + rate * y, (0.0, 2.0 / rate), [unit], rtol=1e-8, atol=1e-8 * unit, dense_output=True
+    )
+    assert result.success
+    np.testing.assert_allclose(result.y[0] / unit, np.exp(-rate * result.t), atol=1e-6)
+
+
+@pytest.mark.parametrize("unit", [1e-18, 1e18])
+def test_algebraic_components_beside_states_in_any_unit_of_time(unit):
+    def swing(t, y, yp):
+        return np.array([yp[0] - unit * y[1], yp[1] + unit * y[2], y[2] - y[0]])
+
+    result = solve_dae(swing, (0.0, 2.0 / unit), [0.0, 1.0, 7.0], rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(result.y[:, -1], [np.sin(2.0), np.cos(2.0), np.sin(2.0)], atol=1e-6)

@@ -62,3 +62,52 @@ def test_a_body_that_rests_on_a_belt_whose_speed_jumps(method, later):
     way = speed * JUMP + 0.5 * (speed + later) * lasts + later * (END - JUMP - lasts)
     np.testing.assert_allclose([sol["body.x"][-1], sol.velocity("body.x")[-1]], [way, later], atol=1e-8)
     assert np.abs(sol.energy.residual).max() < 1e-7
+
+
+@METHODS
+@pytest.mark.parametrize("drive", ["speed", "distance"])
+def test_a_pivot_whose_speed_jumps(method, drive):
+    """The bob keeps its momentum about the pivot; what the drive brings at once was not in the ledger."""
+    slow, fast = 0.5, -1.5
+    speed = sympy.Piecewise((slow, fm.t < JUMP), (fast, True))
+    way = sympy.Piecewise((slow * fm.t, fm.t < JUMP), (slow * JUMP + fast * (fm.t - JUMP), True))
+    cart = fm.RigidBody("cart", mass=M, inertia=J, velocity=(slow, 0.0))
+    bar = fm.RigidBody(
+        "bar", mass=MASS, inertia=J, position=(LENGTH * np.sin(0.8), -LENGTH * np.cos(0.8)), angle=0.8,
+        velocity=(slow, 0.0), points={"eye": (0.0, LENGTH)},
+    )  # fmt: skip
+    scene = fm.Scene("carried", [
+        cart, bar, fm.Prismatic("guide", cart), fm.Revolute("pin", bar.point("eye"), cart),
+        fm.Gravity("gravity", acceleration={"y": -G}),
+        fm.DrivenSlide("drive", cart, **{drive: speed if drive == "speed" else way}),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=END, rtol=1e-9, method=method)
+    (before, behind) = np.flatnonzero(sol.t == JUMP)
+    angle, turns = sol["bar.angle"][behind], sol.velocity("bar.angle")
+    kick = -MASS * LENGTH * np.cos(angle) * (fast - slow) / (J + MASS * LENGTH**2)
+    np.testing.assert_allclose(turns[behind] - turns[before], kick, rtol=1e-9)
+
+    def rates(t, y):
+        return [y[1], -MASS * G * LENGTH * np.sin(y[0]) / (J + MASS * LENGTH**2)]
+
+    swing = solve_ivp(rates, (0.0, JUMP), [0.8, 0.0], method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    swing[1] -= MASS * LENGTH * np.cos(swing[0]) * (fast - slow) / (J + MASS * LENGTH**2)
+    swing = solve_ivp(rates, (JUMP, END), swing, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    np.testing.assert_allclose([sol["bar.angle"][-1], turns[-1]], swing, atol=1e-6)
+    assert np.abs(sol.energy.residual).max() < 1e-7
+    assert not any("ledger" in note for note in sol.stats.notes)
+    audit = sol.audit()
+    assert audit.ok, str(audit)
+
+
+def test_friction_of_joints_has_no_part_in_an_impulse():
+    """It is not computed, and the run says so; without friction there is nothing to say."""
+    speed = sympy.Piecewise((1.0, fm.t < 0.5), (2.0, True))
+    rod = fm.RigidBody("rod", mass=MASS, inertia=J, position=(0.0, -LENGTH), points={"eye": (0.0, LENGTH)})
+    for friction, notes in ((None, 0), (fm.laws.Coulomb(mu_s=0.2), 1)):
+        pin = fm.Revolute("pin", rod.point("eye"), friction=friction, radius=0.05)
+        drive = fm.DrivenAngle("drive", rod, speed=speed)
+        sol = fm.simulate(fm.Scene("turned", [rod, pin, drive]), t_end=1.0, rtol=1e-8)
+        found = [note for note in sol.stats.notes if "velocities jump at t = 0.5" in note]
+        assert len(found) == notes
+        assert np.abs(sol.energy.residual).max() < 1e-8

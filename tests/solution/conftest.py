@@ -88,6 +88,9 @@ class Mechanics:
     def smooth(self):
         return np.array([False])
 
+    def leaps(self, t_start, t_end):
+        return None
+
     def kinetic(self, samples, moving=None):
         return 0.5 * samples.v[0] ** 2
 

@@ -217,7 +217,7 @@ class NotEqual(Own):
         (TwoPotentials, "define_potential must return one expression"),
         (Stray, "undefined symbols in a derived expression: c"),
         (Unknown, "f(x_0), x_0) has no closed form"),
-        (WrongSignature, "its forces cannot be derived: TypeError"),
+        (WrongSignature, "define_dissipation takes (self, x_dot); expected is define_dissipation(self, x, x_dot)"),
         (Lax, "strength = nan is accepted"),
         (LaxSign, "strength = -1.0 is accepted"),
         (Nameless, "strength = nan is refused by ValueError without its name"),

@@ -11,6 +11,7 @@ from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.constrained.bdf_history import Formula, formula_of, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
+from fricmb.integrate.constrained.impulses import impulse_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
 from fricmb.integrate.constrained.problem_structs import masses, mech_of, mechanism_of
 from fricmb.integrate.constrained.recorder import record_of
@@ -85,6 +86,7 @@ def run_mechanism(
     if chunks.broken:
         failure = failure or FAILURES[FAIL_INFINITE]
     notes = (*notes, *_dropped_notes(mechanism_of(problem)), *held_notes(problem, span[:, 0], mode, opened))
+    notes = (*notes, *impulse_notes(problem, span, values))
     return StepTrajectory(
         whole, span, values, force, mode, opened, after, chunks.transitions(), counters(counts, notes), last, failure,
         nodes_of(stages),

@@ -82,13 +82,25 @@ def turn_with_slip(mech: Mech, k: Moving, y: State, size: float, but: int) -> No
 
 
 @kernel
+def kinetic_energy(mech: Mech, y: State) -> float:
+    """Of all bodies."""
+    linear, found = mech.linear, 0.0
+    for e in range(linear.M.shape[0]):
+        found += 0.5 * linear.M[e] * y.v[linear.Mi[e]] * y.v[linear.Mj[e]]
+    return float(found)
+
+
+@kernel
 def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
     """Velocities behind a breakpoint: those that driven joints ask for; what stuck slips on ground that has jumped.
 
+    Joints without friction bring nothing in the instant, so that what kinetic energy gains is what the drives bring.
     ``size``: largest slip velocity, of which slip may be round-off to 1e-11.
     """
+    had = kinetic_energy(mech, y)
     if not project_velocities(mech, k, w, y, False, False):
         return False
+    y.work[-1] += kinetic_energy(mech, y) - had
     row = mech.port.row
     for i in range(y.mode.shape[0]):
         if y.mode[i] == STICK and magnitude(row, i, y.g) > 1e-11 * size:

@@ -45,13 +45,16 @@ def integrate_series(net: Net, j: int, h: float, value: float, rate: float, star
 
 
 @kernel
-def polynomial_error(net: Net, j: int, s: float, h: float) -> float:
-    """How far the powers of s are off what function j was last called for, at s, relative to its largest values."""
+def polynomial_error(net: Net, j: int, s: float, h: float, level: bool) -> float:
+    """How far the powers of s are off what function j was last called for, at s, relative to its largest values.
+
+    ``level``: the function stands still.  If its rate does not, its values are not known and nobody needs them.
+    """
     x = net.window
     value, rate = value_at(net.series[j], s), value_at(net.rates[j], s)
     size = net.large[0, j]
     off = abs(rate - x[4]) / (net.large[1, j] + 0.01 * size / h + 1e-300)
-    return float(max(off, abs(value - x[3]) / (size + 1e-300)))
+    return float(off if level else max(off, abs(value - x[3]) / (size + 1e-300)))
 
 
 @kernel
@@ -63,17 +66,19 @@ def signal_series(net: Net, t: float, h: float) -> float:
         if not call_signal(net, j, t):
             return math.inf
         value, rate, start = x[3], x[4], x[5]
+        level = True
         for a in range(1, POINTS):
             if not call_signal(net, j, t + a * h / (POINTS - 1)):
                 return math.inf
+            level = level and x[3] == value
             net.fit[POINTS, a] = x[5] - start
             net.large[0, j] = max(net.large[0, j], abs(x[3]))
             net.large[1, j] = max(net.large[1, j], abs(x[4]))
         integrate_series(net, j, h, value, rate, start)
-        worst = max(worst, polynomial_error(net, j, 1.0, h))
+        worst = max(worst, polynomial_error(net, j, 1.0, h, level))
         # what cancels over the whole step does not in a part of it
         call_signal(net, j, t + PART * h)
-        worst = max(worst, polynomial_error(net, j, PART, h))
+        worst = max(worst, polynomial_error(net, j, PART, h, level))
     return worst
 
 
