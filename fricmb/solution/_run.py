@@ -121,16 +121,20 @@ class Piece:
 
     def rows(self) -> Samples:
         """Values at the accepted steps."""
-        return self._cut(self.trajectory.rows())
+        return self._cut(self.trajectory.rows(), self.trajectory.sample, Samples)
 
     def row_motion(self) -> MotionSamples:
         """The same without energies, where these cost something."""
-        return self._cut(self.trajectory.row_motion())
+        return self._cut(self.trajectory.row_motion(), self.trajectory.motion, MotionSamples)
 
-    def _cut(self, rows: _Samples) -> _Samples:
+    def _cut(self, rows: _Samples, sampled: Callable[[Floats], _Samples], kind: type[_Samples]) -> _Samples:
+        """Rows up to ``t_end``, which is one of them: a cut within a step is the end of the run all the same."""
         if self.is_whole:
             return rows
-        return take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
+        kept = take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
+        if kept.t.size == 0 or kept.t[-1] >= self.t_end:
+            return kept
+        return concatenate([kept, sampled(np.array([self.t_end]))], kind)
 
     def __getstate__(self) -> dict[str, Any]:
         return {**vars(self), "_mechanics": None}  # a trajectory pickles without its problem
