@@ -8,7 +8,7 @@ import sympy
 
 from fricmb.equations._element import ElementMath, local_symbols
 from fricmb.equations._law import derive_coefficient, derive_smooth
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.laws._numeric import coefficient_expression, force_expression
 from fricmb.values import in_symbols, symbolic
 
@@ -28,7 +28,7 @@ def element_math(element: Any, n: int) -> ElementMath:
     entries = _vector(force, n, label)
     for what, expression in (("define_potential", potential), ("define_dissipation", dissipation)):
         if isinstance(expression, list | tuple):
-            raise SceneError(f"{label}: {what} must return one expression, got {expression!r}")
+            raise SceneError(f"{label}: {what} must return one expression, got {shown(expression)}")
     return ElementMath(
         x=x,
         v=v,

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
+from fricmb.values import as_float
 
 #: Ratios a/b of the table: a along the direction of rolling.
 RATIOS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1 / 0.9, 1 / 0.8, 1 / 0.7, 1 / 0.6, 2.0, 2.5, 1 / 0.3, 5.0,
@@ -99,12 +100,12 @@ def kalker(*, a: float, b: float, shear_modulus: float, poisson: float) -> Kalke
     from scipy.interpolate import PchipInterpolator
 
     for name, value in (("a", a), ("b", b), ("shear_modulus", shear_modulus)):
-        if not (math.isfinite(value) and value > 0.0):
-            raise SceneError(f"kalker: {name} must be a finite number > 0, got {value!r}")
+        if not (math.isfinite(as_float(value)) and value > 0.0):
+            raise SceneError(f"kalker: {name} must be a finite number > 0, got {shown(value)}")
     if not RATIOS[0] <= a / b <= RATIOS[-1]:
         raise SceneError(f"kalker: a/b must be from {RATIOS[0]:g} to {RATIOS[-1]:g}, got {a / b:g}")
-    if not POISSON[0] <= poisson <= POISSON[-1]:
-        raise SceneError(f"kalker: poisson must be from {POISSON[0]:g} to {POISSON[-1]:g}, got {poisson!r}")
+    if not POISSON[0] <= as_float(poisson) <= POISSON[-1]:
+        raise SceneError(f"kalker: poisson must be from {POISSON[0]:g} to {POISSON[-1]:g}, got {shown(poisson)}")
     rows = PchipInterpolator(np.log(RATIOS), np.array(TABLE))(math.log(a / b)).reshape(4, 3)
     c11, c22, c23, c33 = (float(np.polyval(np.polyfit(POISSON, row, 2), poisson)) for row in rows)
     G, area = shear_modulus, a * b

@@ -22,7 +22,7 @@ from fricmb.space._joint import SpaceJoint
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
 from fricmb.space._turning import KINDS, kind_of, turning_forms, turning_rows
-from fricmb.values import is_expression, value_of
+from fricmb.values import is_expression, is_one_of, value_of
 
 #: A disc lies flat where the sine of its angle with the plane is no more than this.
 FLAT = 1e-3
@@ -121,7 +121,7 @@ class OnPlane(OneSided, SpaceJoint):
             self._refuse("b", self.b, "left out: the plane is fixed")
         self._set("through", check_triple(self, "through", self.through))
         found = self._shape()
-        if self.shape not in (None, found):
+        if not is_one_of(self.shape, None, found):
             self._refuse("shape", self.shape, f"left out (it is {found!r}, from a)")
         self._set("shape", found)
         self._set("radius", self._radius(found))
