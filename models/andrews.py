@@ -7,6 +7,8 @@ from math import cos, sin
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
+
 #: Joint coordinates (beta, Theta, gamma, Phi, delta, Omega, epsilon) at the start, as published.
 START = (
     -0.0617138900142764496358948458001,
@@ -45,6 +47,7 @@ def _body(name: str, number: int, angle: float, hinge: _Pair, at: _Pair, points:
     )
 
 
+@checked
 def andrews(*, torque: float = 0.033, stiffness: float = 4530.0, friction: fm.FrictionLaw | None = None) -> fm.Scene:
     """Andrews' squeezing mechanism: seven bodies, ten pins, one spring, driven by a constant torque.
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import check_positive, checked
 
+
+@checked
 def ball_in_cylinder(
     *,
     mass: float = 0.05,
@@ -48,6 +51,7 @@ def ball_in_cylinder(
     rate of going round (M. Gualtieri, T. Tokieda, L. Advis-Gaete, B. Carry, E. Reffet, C. Guthmann, Golfer's dilemma,
     American Journal of Physics 74 (2006) 497-501).
     """
+    check_positive("ball_in_cylinder", radius=radius)
     off = cylinder_radius - radius
     ball = fm.space.Ball(
         "ball",

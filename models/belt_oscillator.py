@@ -5,7 +5,10 @@ from __future__ import annotations
 import fricmb as fm
 from fricmb.values import DIMENSIONLESS
 
+from ._arguments import checked
 
+
+@checked
 def belt_oscillator(
     *,
     mass: float = 1.0,

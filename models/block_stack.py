@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import fricmb as fm
+from fricmb.errors import shown
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def block_stack(
     n: int = 3,
     *,
@@ -47,7 +51,7 @@ def block_stack(
     table/(0.9 g), table/(0.4 g) and table/(0.2 g).
     """
     if not isinstance(n, int) or n < 1:
-        raise fm.SceneError(f"block_stack: n must be an integer of at least 1; got {n!r}")
+        raise fm.SceneError(f"block_stack: n must be an integer of at least 1; got {shown(n)}")
     masses = _each("mass", mass, n)
     statics = _each("mu_s", mu_s, n)
     kinetics = statics if mu_k is None else _each("mu_k", mu_k, n)

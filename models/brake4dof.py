@@ -6,7 +6,10 @@ import math
 from types import MappingProxyType
 
 import fricmb as fm
+from fricmb.errors import shown
 from fricmb.values import DIMENSIONLESS
+
+from ._arguments import checked
 
 #: Case -> (Omega1, Omega2, delta).
 CASES = MappingProxyType(
@@ -21,6 +24,7 @@ CASES = MappingProxyType(
 )
 
 
+@checked
 def brake4dof(
     case: str | int = "1",
     *,
@@ -69,7 +73,7 @@ def brake4dof(
     """
     name = str(case)
     if name not in CASES:
-        raise fm.SceneError(f"brake4dof: case must be one of {', '.join(CASES)}; got {case!r}")
+        raise fm.SceneError(f"brake4dof: case must be one of {', '.join(CASES)}; got {shown(case)}")
     if law is not None and mu_s_N is not None:
         raise fm.SceneError("brake4dof: mu_s_N belongs to the built-in Coulomb law; with law= leave it out")
     try:
@@ -77,7 +81,7 @@ def brake4dof(
     except TypeError:  # no number
         is_ratio = False
     if not is_ratio:
-        raise fm.SceneError(f"brake4dof: mass_ratio must be a finite number > 0, got {mass_ratio!r}")
+        raise fm.SceneError(f"brake4dof: mass_ratio must be a finite number > 0, got {shown(mass_ratio)}")
     Omega1, Omega2, delta = (
         given if given is not None else default
         for given, default in zip((Omega1, Omega2, delta), CASES[name], strict=True)

@@ -8,6 +8,8 @@ from typing import Any
 import fricmb as fm
 from fricmb.values import DIMENSIONLESS
 
+from ._arguments import checked
+
 
 @dataclass(frozen=True, eq=False)
 class Perpendicular(fm.Joint):
@@ -22,6 +24,7 @@ class Perpendicular(fm.Joint):
         return (x[0] * x[2] + x[1] * x[3],)
 
 
+@checked
 def car_axis(*, eps: float = 1e-2, mass: float = 10.0, gravity: float = 1.0, bump: float = 0.1) -> fm.Scene:
     """A car axis over a bumpy road: two point masses on stiff springs, held at a distance, one wheel driven.
 

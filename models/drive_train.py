@@ -5,7 +5,10 @@ from __future__ import annotations
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def drive_train(
     *,
     speed: float = 3.0,
@@ -51,6 +54,8 @@ def drive_train(
     The bearing carries the weight of the disc: the twist of the shaft is the friction oscillator with normal force
     ``mass gravity`` on a belt that moves at ``radius speed/ratio``.
     """
+    if ratio == 0.0:
+        raise fm.SceneError("drive_train: ratio must be a finite number other than 0; got 0")
     motor = fm.RigidBody("motor", mass=1.0, inertia=0.01, angular_velocity=-speed)
     wheel = fm.RigidBody("wheel", mass=1.0, inertia=0.02, angular_velocity=speed / ratio)
     disc = fm.RigidBody("disc", mass=mass, inertia=inertia)

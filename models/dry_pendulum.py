@@ -7,7 +7,10 @@ from math import cos, pi, sin
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def dry_pendulum(
     *,
     mass: float = 1.3,

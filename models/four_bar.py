@@ -7,9 +7,12 @@ from math import atan2, cos, hypot, sin, sqrt
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
+
 _Pair = tuple[float, float]
 
 
+@checked
 def four_bar(
     *,
     crank: float = 0.1,

@@ -7,7 +7,10 @@ import math
 import fricmb as fm
 from fricmb.values import DIMENSIONLESS
 
+from ._arguments import checked
 
+
+@checked
 def minimal_flutter(
     mu: float = 0.9,
     *,

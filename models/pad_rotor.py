@@ -13,9 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import fricmb as fm
+from fricmb.errors import shown
 from fricmb.values import SI
 
+from ._arguments import checked
+
 Floats = NDArray[np.float64]
+
+#: More contacts than anybody declares; the factors of the number are looked for.
+MOST_CONTACTS = 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +76,7 @@ def stored_modes() -> PadRotorModes:
         return PadRotorModes(**{name: np.asarray(data[name], dtype=float) for name in data.files})
 
 
+@checked
 def pad_rotor(
     n_pad_modes: int = 3,
     n_rotor_modes: int = 4,
@@ -130,6 +137,8 @@ def pad_rotor(
     convective and gyroscopic terms are left out.  In plane stress; bending of the disc is not in the model.
     """
     data = stored_modes() if modes is None else modes
+    if not isinstance(data, PadRotorModes):
+        raise fm.SceneError(f"pad_rotor: modes must be a PadRotorModes; got {shown(modes)}")
     pad_count = _count("n_pad_modes", n_pad_modes, 1, len(data.pad_frequencies))
     rotor_count = 1 + _count("n_rotor_modes", n_rotor_modes, 0, len(data.rotor_frequencies) - 1)
     places = _grid(data, n_contacts)
@@ -155,20 +164,23 @@ def pad_rotor(
 
 def _count(name: str, value: Any, low: int, high: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise fm.SceneError(f"pad_rotor: {name} must be an integer from {low} to {high}; got {value!r}")
+        raise fm.SceneError(f"pad_rotor: {name} must be an integer from {low} to {high}; got {shown(value)}")
     return value
 
 
 def _grid(data: PadRotorModes, n_contacts: Any) -> list[tuple[float, float]]:
     """Middles of equal cells of the pad."""
-    if isinstance(n_contacts, int) and not isinstance(n_contacts, bool) and n_contacts >= 1:
+    if isinstance(n_contacts, int) and not isinstance(n_contacts, bool) and 1 <= n_contacts <= MOST_CONTACTS:
         across = max(k for k in range(1, math.isqrt(n_contacts) + 1) if n_contacts % k == 0)
         counts = across, n_contacts // across
     else:
         counts = n_contacts
     good = isinstance(counts, tuple) and len(counts) == 2
     if not good or not all(isinstance(k, int) and not isinstance(k, bool) and k >= 1 for k in counts):
-        raise fm.SceneError(f"pad_rotor: n_contacts must be an integer >= 1 or a pair of them; got {n_contacts!r}")
+        raise fm.SceneError(
+            f"pad_rotor: n_contacts must be an integer from 1 to {MOST_CONTACTS} or a pair of them;"
+            f" got {shown(n_contacts)}"
+        )
     r, phi = (
         axis[0] + (axis[-1] - axis[0]) * (np.arange(k) + 0.5) / k
         for k, axis in zip(counts, (data.radii, data.angles), strict=True)

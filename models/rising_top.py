@@ -7,7 +7,10 @@ from math import cos, sin
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def rising_top(
     *,
     mass: float = 0.05,

@@ -9,7 +9,10 @@ import numpy as np
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def rolling_coin(
     *,
     mass: float = 0.1,

@@ -8,9 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 import fricmb as fm
+from fricmb.errors import shown
 from fricmb.values import DIMENSIONLESS
 
+from ._arguments import checked
 
+
+@checked
 def rotor_doublet(
     nodal_diameters: int = 2,
     *,
@@ -59,9 +63,11 @@ def rotor_doublet(
     SceneError
     """
     if isinstance(nodal_diameters, bool) or not isinstance(nodal_diameters, int) or nodal_diameters < 1:
-        raise fm.SceneError(f"rotor_doublet: nodal_diameters must be an integer of at least 1; got {nodal_diameters!r}")
+        raise fm.SceneError(
+            f"rotor_doublet: nodal_diameters must be an integer of at least 1; got {shown(nodal_diameters)}"
+        )
     if len(angles) == 0 or not all(math.isfinite(phi) for phi in angles):
-        raise fm.SceneError(f"rotor_doublet: angles must be one or more finite numbers; got {angles!r}")
+        raise fm.SceneError(f"rotor_doublet: angles must be one or more finite numbers; got {shown(angles)}")
     n = nodal_diameters
     shapes = {f"p{i + 1}": np.array([[math.cos(n * phi), math.sin(n * phi)]]) for i, phi in enumerate(angles)}
     disc = fm.ModalBody(

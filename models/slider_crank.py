@@ -7,7 +7,10 @@ from math import asin, cos, sin
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def slider_crank(
     *,
     crank: float = 0.1,
@@ -49,6 +52,10 @@ def slider_crank(
     Without friction and load ``J(angle) speed^2 / 2`` is constant, J being the inertia of the whole as seen by the
     crank: the motion is a quadrature.
     """
+    if not abs(crank * sin(angle)) < rod:
+        raise fm.SceneError(
+            f"slider_crank: rod must be longer than crank sin(angle), {crank * sin(angle):g}; got {rod:g}"
+        )
     lean = asin(crank * sin(angle) / rod)
     tip = (crank * cos(angle), crank * sin(angle))
     end = tip[0] + rod * cos(lean)

@@ -7,7 +7,10 @@ from math import cos, sin
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def sprag_slip(
     *,
     mu: float = 0.3,

@@ -6,9 +6,13 @@ import math
 from collections.abc import Sequence
 
 import fricmb as fm
+from fricmb.errors import shown
 from fricmb.values import DIMENSIONLESS
 
+from ._arguments import checked
 
+
+@checked
 def stick_slip_chain(
     n: int = 10,
     *,
@@ -59,7 +63,7 @@ def stick_slip_chain(
     Bifurcation and Chaos 5 (1995) 637-651.
     """
     if not isinstance(n, int) or n < 1:
-        raise fm.SceneError(f"stick_slip_chain: n must be an integer of at least 1; got {n!r}")
+        raise fm.SceneError(f"stick_slip_chain: n must be an integer of at least 1; got {shown(n)}")
     if laws is not None and len(laws) != n:
         raise fm.SceneError(f"stick_slip_chain: laws must hold one law for each of {n} blocks; got {len(laws)}")
     if isinstance(mu_s, Sequence) and len(mu_s) != n:

@@ -7,7 +7,10 @@ import numpy as np
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import check_positive, checked
 
+
+@checked
 def turntable(
     *,
     mass: float = 1.0,
@@ -45,6 +48,7 @@ def turntable(
     -----
     ``v' = 2/7 turning e x v`` for a solid ball: circles about a point that the start gives (Earnshaw, 1844).
     """
+    check_positive("turntable", radius=radius)
     start, v = np.array([*position, radius]), np.array([*velocity, 0.0])
     carried = np.cross((0.0, 0.0, turning), start) - v  # what the turns have to bring at the lowest point
     ball = fm.space.Ball(

@@ -5,7 +5,10 @@ from __future__ import annotations
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import check_positive, checked
 
+
+@checked
 def wheelset(
     *,
     mass: float = 1250.0,
@@ -67,6 +70,7 @@ def wheelset(
     K. Knothe, S. Stichel, Rail Vehicle Dynamics, Springer 2017, chapter 9.  With y, yaw psi and creep linear:
     ``m y'' + ky y + 2 f22 (y'/V - psi) = 0`` and ``Iz psi'' + kpsi psi + 2 f11 a (a psi'/V + conicity y/r0) = 0``.
     """
+    check_positive("wheelset", radius=radius)
     V, cone = fm.parameter("speed", speed), fm.parameter("conicity", conicity)
     axle = fm.space.Rotor(
         "axle",

@@ -5,7 +5,10 @@ from __future__ import annotations
 import fricmb as fm
 from fricmb.values import SI
 
+from ._arguments import checked
 
+
+@checked
 def wobbling_disc_brake(
     *,
     mass: float = 18.0,

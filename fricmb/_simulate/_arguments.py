@@ -60,7 +60,10 @@ def check_span(t_start: float, t_end: Any, t_eval: Any) -> Span:
     """Start, end and output times."""
     end = number("t_end", t_end, f"a finite time after t_start = {t_start:.10g}", lambda t: t > t_start)
     if t_start + (end - t_start) / 2 in (t_start, end):
-        raise SceneError(f"t_end: got {t_end!r}, next to t_start = {t_start!r}; expected room for a step between them")
+        raise SceneError(
+            f"t_end: got {shown(t_end)}, next to t_start = {t_start!r};"
+            " expected room for a step between them"
+        )
     return Span(t_start=t_start, t_end=end, t_eval=None if t_eval is None else check_times(t_eval, t_start, end))
 
 
@@ -128,7 +131,10 @@ def check_step(step: Any, adaptive: bool, method: str, length: float) -> float |
     """The step of a method of fixed step, and of no other."""
     if adaptive:
         if step is not None:
-            raise SceneError(f"step: got {step!r}, but the method {method!r} chooses its steps itself; expected None")
+            raise SceneError(
+                f"step: got {shown(step)}, but the method {method!r} chooses its steps itself;"
+                " expected None"
+            )
         return None
     accepted = f"a positive step of at most the run's length {length:g}, which the method {method!r} needs"
     return number("step", step, accepted, lambda h: 0 < h <= length)

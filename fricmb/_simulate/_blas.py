@@ -36,7 +36,8 @@ def blas_threads(scene: Scene) -> AbstractContextManager[Any]:
     The setting belongs to the process: of several threads the first that asks has it (so does threadpoolctl), and has
     given it back when its run ends.
     """
-    if len(getattr(scene, "dof_names", ())) > MANY:  # what is no scene is told so further on
+    names = getattr(scene, "dof_names", ())
+    if isinstance(names, tuple) and len(names) > MANY:  # what is no scene is told so further on
         return nullcontext()
     return _OneThread(_controller().lib_controllers)
 

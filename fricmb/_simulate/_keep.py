@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate._arguments import Span, number
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.integrate import Integrator, Problem, Start, Trajectory
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.chunked_run import MEMORY, pieces, run_kept
 from fricmb.solution import Solution
+from fricmb.values import is_flag
 
 #: Bytes of rows at a time where no dense output is wanted.
 SMALL = 3e7
@@ -30,12 +31,15 @@ class Keep:
 
 def check_keep(dense: Any, chunk: Any, on_chunk: Any, span: Span) -> Keep:
     """Check the arguments of these names."""
-    if dense not in (None, True, False):
-        raise SceneError(f"dense: got {dense!r}; expected True, False or None")
+    if dense is not None and not is_flag(dense):
+        raise SceneError(f"dense: got {shown(dense)}; expected True, False or None")
     if on_chunk is not None and not callable(on_chunk):
-        raise SceneError(f"on_chunk: got {on_chunk!r}; expected a function of one argument, the Solution of a part")
+        raise SceneError(
+            f"on_chunk: got {shown(on_chunk)};"
+            " expected a function of one argument, the Solution of a part"
+        )
     if chunk is not None and on_chunk is None:
-        raise SceneError(f"chunk: got {chunk!r} without on_chunk; expected both or neither")
+        raise SceneError(f"chunk: got {shown(chunk)} without on_chunk; expected both or neither")
     length = span.t_end - span.t_start
     if chunk is None:
         return Keep(dense=dense, chunk=length / 100.0, on_chunk=on_chunk)

@@ -30,7 +30,7 @@ from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
 from fricmb.scene._family import NUMBERS, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
-from fricmb.values import is_expression
+from fricmb.values import has_entries, is_expression
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,11 +211,14 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
     """Check scene, values and names to observe, and build."""
     check_scene(scene)
     if parameters is not None and not isinstance(parameters, Mapping):
-        raise SceneError(f"parameters: got {parameters!r}; expected a dict of names in scene.parameters and values")
+        raise SceneError(
+            f"parameters: got {shown(parameters)};"
+            " expected a dict of names in scene.parameters and values"
+        )
     if parameters:
         scene = scene.with_parameters(parameters)
-    if observe is not None and (isinstance(observe, str) or not isinstance(observe, Iterable)):
-        raise SceneError(f"observe: got {observe!r}; expected a list of names of dofs, points and contacts")
+    if observe is not None and (isinstance(observe, str) or not has_entries(observe)):
+        raise SceneError(f"observe: got {shown(observe)}; expected a list of names of dofs, points and contacts")
     names = None if observe is None else tuple(observe)
     if names is not None and not all(isinstance(name, str) for name in names):
         raise SceneError(f"observe: got {shown(observe)}; expected a list of names of dofs, points and contacts")

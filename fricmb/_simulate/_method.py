@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import Integrator, Problem
 
 
@@ -39,7 +39,7 @@ def _named(method: Any) -> Integrator | None:
 
     if not isinstance(method, str):
         names = ", ".join(repr(name) for name in ("auto", *integrators))
-        raise SceneError(f"method: got {method!r}; expected one of {names}, or an instance of an integrator")
+        raise SceneError(f"method: got {shown(method)}; expected one of {names}, or an instance of an integrator")
     if method not in integrators:
         raise unknown_name("method", method, ["auto", *integrators])
     return integrators[method]()

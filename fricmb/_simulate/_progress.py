@@ -9,15 +9,25 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from fricmb.errors import SceneError
+from fricmb.errors import shown as shown_as
+from fricmb.values import is_flag
+
 Progress = Callable[[float], None]
 #: Told how many pieces of work are done, and the name of the one under way.
 Told = Callable[[int, str], None]
 
 
+def _is_shown(progress: Any) -> bool:
+    if not is_flag(progress):
+        raise SceneError(f"progress: got {shown_as(progress)}; expected True or False")
+    return bool(progress)
+
+
 @contextmanager
 def progress_bar(shown: bool, t_start: float, t_end: float) -> Iterator[Progress | None]:
     """A bar over simulated time on stderr, as a function of the time reached; None if it is not to be shown."""
-    if not shown:
+    if not _is_shown(shown):
         yield None
         return
     from tqdm import tqdm
@@ -39,7 +49,7 @@ class _NoBar:
 @contextmanager
 def bar(total: int, unit: str, what: str, shown: bool, *, done: int = 0) -> Iterator[Any]:
     """A bar over pieces of work with ``update(n)``, or nothing that has the same; ``done``: pieces that are there."""
-    if not shown:
+    if not _is_shown(shown):
         yield _NoBar()
         return
     from tqdm import tqdm

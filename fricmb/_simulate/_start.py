@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb._simulate._arguments import number
 from fricmb._simulate._mechanics import SceneMechanics, mechanics_of
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import SLIP, Start
 from fricmb.integrate.problem import Floats
 from fricmb.solution import Names, Solution
@@ -28,7 +28,7 @@ def find_start(mechanics: SceneMechanics, initial: Any, t_start: float) -> tuple
         start = _given(mechanics, initial)
     else:
         keys = ", ".join(KEYS)
-        raise SceneError(f"initial: got {initial!r}; expected a Solution or a dict with any of the keys {keys}")
+        raise SceneError(f"initial: got {shown(initial)}; expected a Solution or a dict with any of the keys {keys}")
     if t_start == 0.0:
         return start, mechanics
     return replace(start, t=t_start), _with_driven_at(mechanics, {}, t_start)
@@ -74,20 +74,20 @@ def _states(given: Any, names: Names, declared: Floats) -> Floats:
         count = len(names.states[k])
         what = f"initial['state'][{contact!r}]"
         if not count:
-            raise SceneError(f"{what}: got {value!r}, but the law of this contact has no states")
+            raise SceneError(f"{what}: got {shown(value)}, but the law of this contact has no states")
         try:
             state = np.atleast_1d(np.asarray(value, dtype=float))
         except (TypeError, ValueError, OverflowError):
             state = np.empty(0)
         if state.shape != (count,) or not np.isfinite(state).all():
-            raise SceneError(f"{what}: got {value!r}; expected {count} finite number(s), for {names.states[k]!r}")
+            raise SceneError(f"{what}: got {shown(value)}; expected {count} finite number(s), for {names.states[k]!r}")
         values[names.z_start[k] : names.z_start[k + 1]] = state
     return values
 
 
 def _mapping(key: str, given: Any) -> Mapping[str, Any]:
     if not isinstance(given, Mapping):
-        raise SceneError(f"initial[{key!r}]: got {given!r}; expected a dict of names and values")
+        raise SceneError(f"initial[{key!r}]: got {shown(given)}; expected a dict of names and values")
     return given
 
 
@@ -98,7 +98,8 @@ def _continued(mechanics: SceneMechanics, before: Solution, t_start: float) -> t
     end, old, new = before.end, before.names, mechanics.names
     if t_start not in (0.0, end.t):
         raise SceneError(
-            f"t_start: got {t_start!r}, but the run goes on from a solution that ends at {end.t:.17g}; leave it out"
+            f"t_start: got {shown(t_start)}, but the run goes on from a solution that ends at {end.t:.17g};"
+            " leave it out"
         )
     for name in new.dofs:
         if name not in old.dof_index:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import FricmbError, SceneError, unknown_name
+from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 
 if TYPE_CHECKING:
     import pandas
@@ -223,7 +223,7 @@ def _is_number(value: Any) -> bool:
 
 def _number(value: Any, what: str) -> float:
     if not _is_number(value):
-        raise SceneError(f"{what}: got {value!r}; expected a number")
+        raise SceneError(f"{what}: got {shown(value)}; expected a number")
     return float(value)
 
 

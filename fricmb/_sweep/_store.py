@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from fricmb._sweep._fingerprint import Fingerprint
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.integrate.compile.cache_files import say
 
 _DIGEST = 32
@@ -32,7 +32,7 @@ class Store:
 
     def __init__(self, path: str | PathLike[str], shared: tuple[Any, ...]) -> None:
         if not isinstance(path, str | PathLike):
-            raise SceneError(f"store: got {path!r}; expected a folder, or a path for a new one")
+            raise SceneError(f"store: got {shown(path)}; expected a folder, or a path for a new one")
         self.path = Path(path)
         if self.path.exists() and not self.path.is_dir():
             raise SceneError(f"store: got {str(path)!r}, which is a file; expected a folder, or a path for a new one")

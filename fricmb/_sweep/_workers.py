@@ -14,7 +14,7 @@ from fricmb._simulate import simulate
 from fricmb._simulate._blas import blas_threads
 from fricmb._sweep._processes import lost, run_in_processes
 from fricmb._sweep._threads import run_in_threads
-from fricmb.errors import FricmbError, IntegrationError, SceneError
+from fricmb.errors import FricmbError, IntegrationError, SceneError, shown
 from fricmb.integrate.compile.cache_files import say
 from fricmb.solution import Solution
 
@@ -61,7 +61,8 @@ def outcomes(job: Job, runs: Mapping[int, dict[str, Any]], workers: Any, limit: 
         workers = _cores()
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise SceneError(
-            f"workers: got {workers!r}; expected None, a number of processes (at least 1), {THREADS!r}, an Executor of "
+            f"workers: got {shown(workers)};"
+            f" expected None, a number of processes (at least 1), {THREADS!r}, an Executor of "
             "concurrent.futures or a dask.distributed.Client"
         )
     workers = min(workers, len(runs))

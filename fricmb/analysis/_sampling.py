@@ -16,7 +16,7 @@ from fricmb.analysis._errors import (
     checked_number,
     checked_solution,
 )
-from fricmb.errors import unknown_name
+from fricmb.errors import shown, unknown_name
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -92,7 +92,7 @@ def uniform(
     given = dt is not None
     step = _first_interval(sol, begin, end) if dt is None else checked_interval(_WHO, dt)
     if (end - begin) / step < 15:
-        raise AnalysisError(f"{_WHO}: dt must leave 16 samples or more in {end - begin:g}; got {dt!r}")
+        raise AnalysisError(f"{_WHO}: dt must leave 16 samples or more in {end - begin:g}; got {shown(dt)}")
     t, x, folded = _sampled(sol, name, begin, end, step)
     while not given and folded > ACCEPTED and 2 * len(t) <= MOST_SAMPLES:
         step /= 2

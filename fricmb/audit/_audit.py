@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._simulate._arguments import check_tolerance, floors, number
 from fricmb._simulate._closes import unclosed
 from fricmb.audit import _onset
 from fricmb.audit._fading import Fading
@@ -17,6 +18,7 @@ from fricmb.audit._statements import Statements
 from fricmb.audit._transitions import Changes
 from fricmb.audit._units import ROUND_OFF, Units, at_rest, units_of
 from fricmb.audit._weak import NODES, Weak
+from fricmb.errors import SceneError, shown
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import KeptTrajectory, take
 from fricmb.integrate.trajectory import Samples
@@ -32,8 +34,12 @@ DENSE = 10.0
 def audit(sol: Any, *, rtol: float | None = None, atol: Any = None, seed: int = 0) -> Audit:
     """See :meth:`fricmb.Solution.audit`."""
     tolerance = sol.stats.rtol if rtol is None else rtol
-    tolerance = FIXED if tolerance is None else float(tolerance)
-    floor = atol if atol is not None else sol.stats.atol
+    if tolerance is None:
+        tolerance = FIXED
+    tolerance = number("audit: rtol", tolerance, "a finite number > 0", lambda r: r > 0.0)
+    floor = sol.stats.atol if atol is None else floors(check_tolerance(FIXED, atol, len(sol.names.dofs)))
+    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
+        raise SceneError(f"audit: seed: got {shown(seed)}; expected an integer of at least 0")
     gathered, notes = Gathered(), []
     rng = np.random.default_rng(seed)
     steps = looked = 0

@@ -14,7 +14,7 @@ from types import ModuleType
 from typing import Any
 
 import fricmb as fm
-from fricmb.errors import FricmbError, SceneError, unknown_name
+from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 from fricmb.models import catalogue
 from fricmb.values import DIMENSIONS, Units
 
@@ -50,7 +50,7 @@ def setting(text: str) -> tuple[str, Any]:
     """``name=value``; a value that is no Python literal is a string."""
     name, equals, value = text.partition("=")
     if not (name and equals and value):
-        raise SceneError(f"--set: expected NAME=VALUE; got {text!r}")
+        raise SceneError(f"--set: expected NAME=VALUE; got {shown(text)}")
     try:
         return name.strip(), ast.literal_eval(value.strip())
     except (SyntaxError, ValueError):
@@ -129,5 +129,5 @@ def _place(error: Exception, path: Path) -> str:
 def _with_parameters(scene: fm.Scene, values: dict[str, Any]) -> fm.Scene:
     for name, value in values.items():
         if name in scene.parameters and not isinstance(value, (int, float, tuple, list)):
-            raise SceneError(f"--set: {name} takes a number; got {value!r}")
+            raise SceneError(f"--set: {name} takes a number; got {shown(value)}")
     return scene.with_parameters(values) if values else scene

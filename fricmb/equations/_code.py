@@ -25,6 +25,8 @@ _KNOWN = (
 )  # fmt: skip
 
 
+#: Pieces that follow one another in a chain; more of them are halved.
+CHAIN = 24
 #: The value of a Piecewise where none of its conditions holds: no number, as in SymPy.
 NOWHERE = "(1e308*10.0 - 1e308*10.0)"
 
@@ -73,11 +75,28 @@ class _Printer(PythonCodePrinter):  # type: ignore[misc]
         return f"lgamma({self._print(expr.args[0])})"
 
     def _print_Piecewise(self, expr: Any) -> str:
+        if len(expr.args) > CHAIN:
+            return self._halved(expr.args, certain=False)
         text = NOWHERE
         for value, condition in reversed(expr.args):
             value_text = f"1.0*({self._print(value)})"
             text = value_text if condition == sympy.true else f"({value_text} if {self._print(condition)} else {text})"
         return text
+
+    def _halved(self, pieces: Sequence[Any], *, certain: bool) -> str:
+        """The same of many pieces, a measured record, say: halves of halves, for Python reads no chain of hundreds.
+
+        ``certain``: whether one of the conditions holds.
+        """
+        if len(pieces) == 1:
+            value, condition = pieces[0]
+            text = f"1.0*({self._print(value)})"
+            sure = certain or condition == sympy.true
+            return text if sure else f"({text} if {self._print(condition)} else {NOWHERE})"
+        middle = len(pieces) // 2
+        first = " or ".join(f"({self._print(condition)})" for _, condition in pieces[:middle])
+        one, other = self._halved(pieces[:middle], certain=True), self._halved(pieces[middle:], certain=certain)
+        return f"({one} if {first} else {other})"
 
 
 _PRINTER = _Printer()

@@ -9,7 +9,7 @@ from typing import Any
 import sympy
 
 from fricmb.equations import _code
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.values import symbolic
 
 
@@ -52,13 +52,13 @@ def _slip(value: Any, count: int, n: int, label: str) -> tuple[tuple[Any, ...], 
     """Factors of slip by directions, drives that come behind being 0."""
     rows = [_vector(row, label, "define_slip") for row in ([value] if count == 1 else value)]
     if len(rows) != count or any(len(row) > n for row in rows):
-        raise SceneError(f"{label}: define_slip must return {count} rows of at most {n} factors, got {value!r}")
+        raise SceneError(f"{label}: define_slip must return {count} rows of at most {n} factors, got {shown(value)}")
     return tuple((*row, *(sympy.S.Zero for _ in range(n - len(row)))) for row in rows)
 
 
 def _vector(value: Any, label: str, method: str) -> tuple[Any, ...]:
     if not isinstance(value, list | tuple | sympy.MatrixBase) or not len(value):
-        raise SceneError(f"{label}: {method} must return a tuple of expressions, got {value!r}")
+        raise SceneError(f"{label}: {method} must return a tuple of expressions, got {shown(value)}")
     return tuple(sympy.sympify(entry) for entry in value)
 
 

@@ -16,6 +16,7 @@ from fricmb.equations._latex import typeset
 from fricmb.equations._mechanism import Constraint, add_gravity, add_joint, add_rigid_body, add_space_body
 from fricmb.equations._names import coordinate_symbols, subscript
 from fricmb.equations._tree import in_joint_coordinates
+from fricmb.errors import SceneError, shown
 from fricmb.scene import (
     Body,
     Contact,
@@ -30,7 +31,7 @@ from fricmb.scene import (
     SpaceBody,
 )
 from fricmb.scene._space_body import with_inner
-from fricmb.values import is_expression, value_of
+from fricmb.values import is_expression, is_flag, value_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,6 +117,8 @@ class SceneEquations:
 
 def scene_equations(scene: Any, *, joint_coordinates: bool = False) -> SceneEquations:
     """The equations of motion of a scene."""
+    if not is_flag(joint_coordinates):
+        raise SceneError(f"equations: joint_coordinates must be True or False, got {shown(joint_coordinates)}")
     key = "equations in joint coordinates" if joint_coordinates else "equations"
     found = scene._cache.get(key)
     if found is None:

@@ -35,7 +35,7 @@ class Guard(Integrator):
         """See :class:`Integrator`."""
         options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
         run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # that of the class behind
-        if run.failure is None or ended() is not None:
+        if run.failure is None or run.of_scene or ended() is not None:
             return run
         other = self.reserve()
         why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"

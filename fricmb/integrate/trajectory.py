@@ -94,6 +94,8 @@ class Trajectory(ABC):
         Why the run stopped before its end, with the condition that failed.
     instead : (name, why) or None
         Who did the run in place of the integrator that was asked, which could not finish it.
+    of_scene : bool
+        Whether the failure is one of the scene, at which every method stops.
     """
 
     problem: Problem
@@ -104,6 +106,7 @@ class Trajectory(ABC):
     #: Degrees of freedom that move; None: all may.  The others keep their position, which is finite.
     moving: Ints | None = None
     instead: tuple[str, str] | None = None
+    of_scene: bool = False
 
     def __init__(
         self, problem: Problem, transitions: Transitions, counters: Counters, end: Start, failure: str | None

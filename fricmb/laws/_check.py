@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.errors import LawError, shown, unknown_name
-from fricmb.values import Declaration
+from fricmb.values import Declaration, depth_of
 
 
 def required_numbers(kind: Any) -> dict[str, float]:
@@ -40,7 +40,7 @@ def field_value(law: Any, name: str) -> Any:
     kind: Any = type(law)
     value, annotation = getattr(law, name), _annotations(kind)[name]
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
-    if isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1:
+    if isinstance(value, list | tuple | np.ndarray) and depth_of(value) == 1:
         return tuple(law._number(f"{name}[{i}]", entry) for i, entry in enumerate(value))
     if isinstance(value, Declaration):
         return value
@@ -102,10 +102,10 @@ def check_cone(law: Any) -> None:
     """The break-away coefficient is not below the limit of slip, and both are finite and >= 0."""
     limit, mu_s = law.slip_limit(), law.break_away()
     if not np.isfinite(limit):
-        raise LawError(f"{law._label()}: the coefficient must be finite at r = 0, got {limit!r}")
+        raise LawError(f"{law._label()}: the coefficient must be finite at r = 0, got {shown(limit)}")
     if limit < 0.0:
-        raise LawError(f"{law._label()}: the coefficient must be >= 0 at r = 0, got {limit!r}")
+        raise LawError(f"{law._label()}: the coefficient must be >= 0 at r = 0, got {shown(limit)}")
     if mu_s < limit * (1.0 - 1e-12):
         raise LawError(
-            f"{law._label()}: mu_s must be at least the coefficient of slip for r -> 0 ({limit:g}), got {mu_s!r}"
+            f"{law._label()}: mu_s must be at least the coefficient of slip for r -> 0 ({limit:g}), got {shown(mu_s)}"
         )

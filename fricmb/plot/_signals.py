@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb.plot._arguments import looked_at
 from fricmb.plot._fine import span_of
 from fricmb.plot._style import drawn, figure_of, panels
 from fricmb.plot._units import Units
@@ -127,9 +128,10 @@ class SignalPlots:
         draw_orders(order_map(running, mean, np.linspace(0.0, top, 400)), name, panel, self.units, hz)
         return figure_of([panel])
 
+    @looked_at
     def animation(
         self,
-        path: Any = None,
+        path: Any | None = None,
         *,
         t_start: float | None = None,
         t_end: float | None = None,
@@ -162,6 +164,7 @@ class SignalPlots:
 
         return animate(self.sol, path, t_start=t_start, t_end=t_end, frames=frames, fps=fps, magnify=magnify)
 
+    @looked_at
     def sound(
         self,
         name: str,
@@ -178,6 +181,7 @@ class SignalPlots:
         span = span_of(self.sol, t_start, t_end)
         return write_sound(self.sol, name, path, seconds=seconds, speed=speed, span=span)
 
+    @looked_at
     def view(self, path: Any, *, t_start: float | None = None, t_end: float | None = None) -> Any:
         """Write an interactive view of the run: one HTML file that needs no network; returns its path.
 

@@ -9,7 +9,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
-from fricmb.analysis import OrderMap, Peaks, Samples, Spectrogram, maximum_entropy_spectrum, spectral_peaks
+from fricmb.analysis import (
+    AnalysisError,
+    OrderMap,
+    Peaks,
+    Samples,
+    Spectrogram,
+    maximum_entropy_spectrum,
+    spectral_peaks,
+)
 from fricmb.plot._style import THIN, finish, paint, remark
 from fricmb.plot._units import Units
 
@@ -74,6 +82,11 @@ def draw_spectrogram(running: Spectrogram, name: str, highest: float | None, ax:
 def draw_orders(found: OrderMap, name: str, ax: Axes, units: Units, hz: bool) -> None:
     """Density over time and order."""
     divisor = 2.0 * np.pi if hz else 1.0
+    if np.ma.getmaskarray(found.power).all():
+        raise AnalysisError(
+            "orders: got a stretch in which no order is seen: nothing slides, or orders lie beyond what is sampled; "
+            "expected one in which the contact slides, or a smaller highest="
+        )
     _map(ax, found.t, found.order / divisor, found.power * divisor, f"power density of {name}")
     ax.set_xlabel(f"time [{units.time}]")
     per = "1" if units.dimensionless else f"1/{units.length}"

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb.plot._arguments import refuse
 from fricmb.plot._style import DASHES, NAMED_CURVES, THIN, drawn, figure_of, finish, line, paint, panels
 from fricmb.plot._units import Units
 
@@ -42,10 +43,16 @@ def eigenvalues(
     units : Units, optional
         For the labels; default: those of the scene.
     """
+    from fricmb.analysis import Eigenvalues
+
+    if not isinstance(found, Eigenvalues):
+        refuse("eigenvalues", "found", found, "what complex_eigenvalues returns")
     units = found.units if units is None else units
     top, bottom = panels(2, None, height=5.2, sharex=True)
     count = found.eigenvalues.shape[1]
     chosen = list(range(count)) if modes is None else list(modes)
+    if not all(0 <= mode < count for mode in chosen):
+        refuse("eigenvalues", "modes", modes, f"a list of numbers of modes, 0 to {count - 1}")
     critical = {c.mode for c in found.critical}
     turn = 2.0 * np.pi if hz else 1.0
     for i, k in enumerate(chosen):
@@ -96,6 +103,10 @@ def stability(found: StabilityMap, *, ax: Axes | None = None, units: Units | Non
     units : Units, optional
         For the labels; default: those of the scene.
     """
+    from fricmb.analysis import StabilityMap
+
+    if not isinstance(found, StabilityMap):
+        refuse("stability", "found", found, "what stability_map returns")
     units = found.units if units is None else units
     (panel,) = panels(1, ax, height=4.2)
     y, x = found.values

@@ -20,6 +20,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from fricmb.errors import unknown_name
+from fricmb.plot._arguments import looked_at
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -95,7 +96,7 @@ def use(name: str | None) -> None:
         None, as at the start: dark where matplotlib's own figures are dark (``plt.style.use("dark_background")``).
     """
     global _chosen
-    if name is not None and name not in THEMES:
+    if name is not None and not (isinstance(name, str) and name in THEMES):
         raise unknown_name("theme", name, THEMES)
     _chosen = name
 
@@ -125,8 +126,9 @@ def theme_in_use(ax: Axes | None = None) -> str:
 
 
 def drawn(method: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Let a function draw with the style sheet of the theme in use."""
+    """Let a function draw with the style sheet of the theme in use; its options are looked at before."""
 
+    @looked_at
     @functools.wraps(method)
     def draws(*args: _P.args, **kwargs: _P.kwargs) -> _R:
         ax: Any = kwargs.get("ax")
@@ -179,6 +181,7 @@ def remark(ax: Axes, text: str, *, loc: Literal["left", "right"] = "right") -> N
     ax.set_title(text, loc=loc, fontsize="small")
 
 
+@looked_at
 def finish(ax: Axes, *, x: str, y: str, legend: bool = False, columns: int = 4) -> None:
     """Labels, a quiet grid, and a legend above the panel, where no curve is."""
     ax.set_xlabel(x)

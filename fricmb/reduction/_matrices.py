@@ -10,7 +10,7 @@ import scipy.linalg
 import scipy.sparse
 from scipy.sparse.linalg import eigsh, splu
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.reduction._modes import Floats, Reduced, ritz, split_damping
 from fricmb.values import is_sparse
 
@@ -57,7 +57,10 @@ def reduce_matrices(
     rows = {name: _rows(label, name, value, n_axes, n) for name, value in points.items()}
     whole = isinstance(n_modes, int | np.integer) and not isinstance(n_modes, bool)
     if n_modes is not None and not (whole and 1 <= n_modes <= n):
-        raise SceneError(f"{label}: n_modes must be an integer from 1 to {n} (rows of M), or None; got {n_modes!r}")
+        raise SceneError(
+            f"{label}: n_modes must be an integer from 1 to {n} (rows of M), or None;"
+            f" got {shown(n_modes)}"
+        )
     omega, modes = _modes(label, M, K, n if n_modes is None else n_modes)
     neglected, extra = 0.0, 0
     if residual and omega.size < n:
@@ -189,7 +192,7 @@ def _rows(label: str, name: str, value: Any, n_axes: int, n: int) -> Floats:
     if given.dtype.kind in "iu" and given.shape in ((n_axes,), () if n_axes == 1 else (n_axes,)):
         places = np.atleast_1d(given)
         if (places < 0).any() or (places >= n).any():
-            raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got {value!r}")
+            raise SceneError(f"{label}: points[{name!r}] must be {accepted}; got {shown(value)}")
         return np.eye(n)[places] if n <= DENSE else _unit_rows(places, n)
     if given.dtype.kind not in "iuf" or given.shape not in ((n_axes, n), (n,) if n_axes == 1 else (n_axes, n)):
         got = f"an array of shape {given.shape}" if given.dtype.kind in "iuf" and given.shape else repr(value)

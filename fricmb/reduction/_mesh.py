@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.reduction._modes import Floats
 
 #: Vector element of second order for each kind of mesh that is taken.
@@ -99,7 +99,7 @@ def _held(label: str, mesh: Any, basis: Any, fixed: Any) -> Any:
     if isinstance(fixed, str):
         known = sorted(mesh.boundaries or {})
         if fixed not in known:
-            raise SceneError(f"{label}: fixed must be a boundary of the mesh; got {fixed!r}, it has {known}")
+            raise SceneError(f"{label}: fixed must be a boundary of the mesh; got {shown(fixed)}, it has {known}")
         return basis.get_dofs(fixed).flatten()
     if not callable(fixed):
         raise SceneError(f"{label}: fixed must be the name of a boundary, a function of coordinates, or None")
@@ -116,7 +116,7 @@ def _point_rows(label: str, mesh: Any, basis: Any, name: str, at: Any) -> Floats
     except (TypeError, ValueError):
         place = np.zeros(0)
     if place.shape != (mesh.dim(),):
-        raise SceneError(f"{label}: points[{name!r}] must be {mesh.dim()} coordinates, got {at!r}")
+        raise SceneError(f"{label}: points[{name!r}] must be {mesh.dim()} coordinates, got {shown(at)}")
     try:
         rows = basis.probes(place[:, None])
     except ValueError:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.values import Declaration
+from fricmb.values import Declaration, depth_of
 
 
 def check_vector(
@@ -23,19 +23,12 @@ def check_vector(
     accepted = "a sequence of numbers" if n is None else f"a sequence of {n} numbers"
     if (
         not isinstance(value, list | tuple | np.ndarray)
-        or _depth(value) != 1
+        or depth_of(value) != 1
         or len(value) == 0
         or (n is not None and len(value) != n)
     ):
         owner._refuse(argument, value, accepted)
     return tuple(owner._number(f"{argument}[{i}]", v, above=above, minimum=minimum) for i, v in enumerate(value))
-
-
-def _depth(value: Any) -> int:
-    try:
-        return np.ndim(value)
-    except ValueError:  # rows of different length
-        return 2
 
 
 def check_array(owner: Declaration, argument: str, value: Any) -> NDArray[Any]:

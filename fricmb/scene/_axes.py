@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import LETTERS, End, Part
-from fricmb.values import Parameter, is_expression, value_of
+from fricmb.values import Parameter, is_expression, is_list, value_of
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,8 @@ def is_end(owner: Part, argument: str, value: Any) -> End:
     if isinstance(value, Part):
         hint = "; of a modal body take a point: body.point('tip')"
     raise SceneError(
-        f"{owner._label()}: {argument} must be a Body, a Driven, a point of a ModalBody or GROUND, got {value!r}{hint}"
+        f"{owner._label()}: {argument} must be a Body, a Driven, a point of a ModalBody or GROUND,"
+        f" got {shown(value)}{hint}"
     )
 
 
@@ -69,14 +70,14 @@ def check_axis(owner: Part, argument: str, axis: Any) -> Any:
         if axis not in LETTERS:
             owner._refuse(argument, axis, "'x', 'y', 'z' or a direction tuple")
         return axis
-    if isinstance(axis, list | tuple | np.ndarray) and 1 <= len(axis) <= 3:
+    if is_list(axis) and 1 <= len(axis) <= 3:
         return tuple(owner._number(argument, entry) for entry in axis)
     owner._refuse(argument, axis, "'x', 'y', 'z' or a direction tuple")
 
 
 def is_direction_tuple(value: Any) -> bool:
     """Whether ``value`` is one direction (a sequence of numbers), not a sequence of directions."""
-    return isinstance(value, list | tuple | np.ndarray) and len(value) > 0 and all(_is_scalar(v) for v in value)
+    return is_list(value) and len(value) > 0 and all(_is_scalar(v) for v in value)
 
 
 def _is_scalar(value: Any) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from fricmb.errors import SceneError, UnknownNameError, unknown_name
+from fricmb.errors import SceneError, UnknownNameError, shown, unknown_name
 from fricmb.scene._expressions import Uses
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._part import GROUND, End, Ground, Part
@@ -21,7 +21,7 @@ def check_scene(scene: Scene) -> None:
     label = f"Scene {scene.name!r}"
     for part in scene.parts:
         if not isinstance(part, Part) or isinstance(part, Ground):
-            raise SceneError(f"{label}: parts must hold parts (Body, Spring, Contact, ...), got {part!r}")
+            raise SceneError(f"{label}: parts must hold parts (Body, Spring, Contact, ...), got {shown(part)}")
     held = {part.name: part for part in scene.parts}
     if len(held) < len(scene.parts):
         name, _ = Counter(part.name for part in scene.parts).most_common(1)[0]

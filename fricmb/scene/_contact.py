@@ -8,14 +8,13 @@ from itertools import combinations
 from math import inf
 from typing import Any, ClassVar, Literal, Self
 
-import numpy as np
-
 from fricmb.errors import SceneError
 from fricmb.laws import FrictionLaw
 from fricmb.normal import Constant, NormalLaw, Prescribed
 from fricmb.scene._axes import Direction, check_axis, check_ends, direction, from_vector, is_direction_tuple
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._part import GROUND, LETTERS, End, Part
+from fricmb.values import is_list
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +106,7 @@ class Contact(Part):
             entries: tuple[Any, ...] = tuple(axes)
         elif is_direction_tuple(axes):
             entries = (axes,)
-        elif isinstance(axes, list | tuple | np.ndarray):
+        elif is_list(axes):
             entries = tuple(axes)
         else:
             self._refuse("axes", axes, "letters such as 'xy', or one or two direction tuples")
@@ -207,7 +206,7 @@ class Contact(Part):
 
     # -- slide --------------------------------------------------------------------------------------------------
     def _checked_slide(self, d: int) -> tuple[Any, ...]:
-        given = tuple(self.slide) if isinstance(self.slide, list | tuple | np.ndarray) else (self.slide,)
+        given = tuple(self.slide) if is_list(self.slide) else (self.slide,)
         if len(given) != d:
             self._refuse("slide", self.slide, f"{d} value(s), one for each tangential direction")
         return tuple(check_expression(self, "slide", value, motions=False) for value in given)

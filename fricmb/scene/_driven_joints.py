@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._expressions import check_expression
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
@@ -105,6 +105,9 @@ class DrivenSlide(PlaneJoint):
 def check_drive(joint: Joint, first: str, value: Any, second: str, rate: Any) -> None:
     """Exactly one of a value and a rate, as expressions of time."""
     if (value is None) == (rate is None):
-        raise SceneError(f"{joint._label()}: one of {first} and {second} must be given, got {value!r} and {rate!r}")
+        raise SceneError(
+            f"{joint._label()}: one of {first} and {second} must be given,"
+            f" got {shown(value)} and {rate!r}"
+        )
     argument = first if rate is None else second
     joint._set(argument, check_expression(joint, argument, value if rate is None else rate, motions=False))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._axes import check_axis, direction, is_end
 from fricmb.scene._element import Element
 from fricmb.scene._expressions import check_expression, expression_uses
@@ -37,7 +37,7 @@ class Force(Element):
         super().__post_init__()
         body = is_end(self, "body", self.body)
         if not body.movable:
-            raise SceneError(f"{self._label()}: body must have degrees of freedom, got {body.end_name!r}")
+            raise SceneError(f"{self._label()}: body must have degrees of freedom, got {shown(body.end_name)}")
         self._set("axis", check_axis(self, "axis", self.axis))
         self._set("value", check_expression(self, "value", self.value, motions=True))
         self.local_coordinates()

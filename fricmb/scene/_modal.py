@@ -15,7 +15,7 @@ from fricmb.scene._arrays import check_array, check_vector
 from fricmb.scene._bodies import check_keys, check_letters
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import End, Part, PointEnd
-from fricmb.values import value_of
+from fricmb.values import depth_of, value_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ class ModalBody(Part):
         self._set("axes", check_letters(self, "axes", self.axes))
         self._set("frequencies", check_vector(self, "frequencies", self.frequencies, minimum=0.0))
         n = len(self.frequencies)
-        if np.ndim(self.damping_ratios) == 0:
+        if depth_of(self.damping_ratios) == 0:
             self._set("damping_ratios", self._number("damping_ratios", self.damping_ratios, minimum=0.0))
         else:
             self._set("damping_ratios", check_vector(self, "damping_ratios", self.damping_ratios, n, minimum=0.0))

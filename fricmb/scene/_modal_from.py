@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.values import value_of
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def from_matrices(
 
     label = f"ModalBody {name!r}"
     if not isinstance(axes, str) or not axes:
-        raise SceneError(f"{label}: axes must be any of 'x', 'y', 'z' in a string, got {axes!r}")
+        raise SceneError(f"{label}: axes must be any of 'x', 'y', 'z' in a string, got {shown(axes)}")
     if C is not None and ratios is not None:
         raise SceneError(f"{label}: give C or damping_ratios, not both")
     _check_points(label, points, residual)
@@ -51,9 +51,12 @@ def from_mesh(
 
 def _check_points(label: str, points: Any, residual: Any) -> None:
     if not isinstance(residual, bool):
-        raise SceneError(f"{label}: residual must be True or False, got {residual!r}")
+        raise SceneError(f"{label}: residual must be True or False, got {shown(residual)}")
     if not isinstance(points, Mapping) or not points:
-        raise SceneError(f"{label}: points must be a dict of point name to place, with at least one; got {points!r}")
+        raise SceneError(
+            f"{label}: points must be a dict of point name to place, with at least one;"
+            f" got {shown(points)}"
+        )
 
 
 def _check_solid(label: str, solid: dict[str, float], plane: str) -> None:
@@ -61,9 +64,9 @@ def _check_solid(label: str, solid: dict[str, float], plane: str) -> None:
         low, high = (-1.0, 0.5) if argument == "poisson" else (0.0, np.inf)
         if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not low < value < high:
             accepted = "a number between -1 and 0.5" if argument == "poisson" else "a number > 0"
-            raise SceneError(f"{label}: {argument} must be {accepted}, got {value!r}")
+            raise SceneError(f"{label}: {argument} must be {accepted}, got {shown(value)}")
     if plane not in ("stress", "strain"):
-        raise SceneError(f"{label}: plane must be 'stress' or 'strain', got {plane!r}")
+        raise SceneError(f"{label}: plane must be 'stress' or 'strain', got {shown(plane)}")
 
 
 def _body(cls: type[ModalBody], name: str, found: Reduced, axes: str, ratios: Any, fields: dict[str, Any]) -> ModalBody:

@@ -6,6 +6,7 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from fricmb.scene._joint import Joint
+from fricmb.values import is_one_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +22,7 @@ class OneSided(Joint):
         super().__post_init__()
         if not isinstance(self.push_only, bool):
             self._refuse("push_only", self.push_only, "True or False")
-        if not isinstance(self.when_lost, str) or self.when_lost not in ("end", "open"):
+        if not is_one_of(self.when_lost, "end", "open"):
             self._refuse("when_lost", self.when_lost, "'end' or 'open'")
         if self.when_lost == "open" and not self.push_only:
             self._refuse("when_lost", self.when_lost, "left out: without push_only contact is never lost")

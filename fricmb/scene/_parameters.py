@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene._expressions import expression_uses
 from fricmb.scene._part import Part
 from fricmb.values import is_expression, parameter, parameters_in
@@ -37,7 +37,7 @@ def apply(scene: Scene, values: Mapping[str, Any]) -> dict[str, Part]:
     A value for a slot that a named parameter gives detaches the slot from it.
     """
     if not isinstance(values, Mapping):
-        raise SceneError(f"Scene {scene.name!r}: parameters must be a dict of name to value, got {values!r}")
+        raise SceneError(f"Scene {scene.name!r}: parameters must be a dict of name to value, got {shown(values)}")
     named = {name: value for name, value in values.items() if isinstance(name, str) and "." not in name}
     slots: dict[str, dict[str, Any]] = {}
     for name, value in values.items():

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, ClassVar, Self
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._forms import LinearForm
 from fricmb.values import Declaration, is_expression
@@ -38,7 +38,7 @@ class Part(Declaration):
         if type(name) is str and name.isascii() and name.isidentifier():
             return
         if not isinstance(name, str) or not name or "." in name or name != name.strip() or not name.isprintable():
-            raise SceneError(f"{type(self).__name__}: name must be a non-empty string without dots, got {name!r}")
+            raise SceneError(f"{type(self).__name__}: name must be a non-empty string without dots, got {shown(name)}")
 
     def _label(self) -> str:
         return f"{type(self).__name__} {self.name!r}"

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import sys
+import math
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-import numpy as np
-
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene._bodies import Body, check_keys
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End, Part, PartEnd, PointEnd
-from fricmb.values import is_plain, value_of
+from fricmb.values import as_float, is_list, value_of
 from fricmb.values._same import is_same
 
 PLANE = ("x", "y")
@@ -25,7 +23,7 @@ def check_pair(owner: Part, argument: str, value: Any) -> tuple[Any, Any]:
     if isinstance(value, Mapping):
         given = check_keys(owner, argument, value, PLANE)
         return tuple(owner._number(f"{argument}[{c!r}]", given.get(c, 0.0)) for c in PLANE)
-    if isinstance(value, list | tuple | np.ndarray) and len(value) == 2:
+    if is_list(value) and len(value) == 2:
         return owner._number(f"{argument}[0]", value[0]), owner._number(f"{argument}[1]", value[1])
     owner._refuse(argument, value, "two numbers, (x, y)")
 
@@ -229,7 +227,7 @@ class GroundPoint(End):
 def ground_point(x: float, y: float) -> GroundPoint:
     """A fixed point of the plane, an end for joints and elements."""
     for argument, value in (("x", x), ("y", y)):
-        if not is_plain(value) or not abs(value) <= sys.float_info.max:
+        if not math.isfinite(as_float(value)):
             raise SceneError(f"ground_point: {argument} must be a finite number, got {shown(value)}")
     return GroundPoint(float(x), float(y))
 
@@ -242,9 +240,9 @@ def angle_of(owner: Part, argument: str, end: Any) -> LinearForm:
         return LinearForm.of({f"{end.name}.angle": 1.0})
     if isinstance(end, End) and end.owner is GROUND:
         return LinearForm()
-    shown = end.end_name if isinstance(end, End) else end
+    given = end.end_name if isinstance(end, End) else end
     accepted = "a RigidBody of the plane, one of its points, or GROUND"
-    raise SceneError(f"{owner._label()}: {argument} must turn ({accepted}), got {shown!r}")
+    raise SceneError(f"{owner._label()}: {argument} must turn ({accepted}), got {shown(given)}")
 
 
 def start_angle(end: End) -> float:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene import _parameters
 from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._check import check_scene
@@ -24,7 +24,7 @@ from fricmb.scene._other_values import numbers_alone, with_changed
 from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.scene._space_body import SpaceBody, SpacePoint
-from fricmb.values import DIMENSIONS, Units, value_of
+from fricmb.values import DIMENSIONS, Units, has_entries, value_of
 from fricmb.values._pause import no_collection
 
 #: Parts with degrees of freedom.
@@ -79,11 +79,13 @@ class Scene:
 
     def _fill(self, name: Any, parts: Any, units: Any, shared: dict[Any, Any] | None) -> None:
         if not isinstance(name, str) or not name:
-            raise SceneError(f"Scene: name must be a non-empty string, got {name!r}")
-        if isinstance(parts, Part | str) or not isinstance(parts, Iterable):
-            raise SceneError(f"Scene {name!r}: parts must be a list of parts, got {parts!r}")
+            raise SceneError(f"Scene: name must be a non-empty string, got {shown(name)}")
+        if isinstance(parts, Part | str) or not has_entries(parts):
+            raise SceneError(f"Scene {name!r}: parts must be a list of parts, got {shown(parts)}")
         if not isinstance(units, Units):
-            raise SceneError(f'Scene {name!r}: units must be a Units, such as fm.Units("s", "m", "N"), got {units!r}')
+            raise SceneError(
+                f'Scene {name!r}: units must be a Units, such as fm.Units("s", "m", "N"), got {shown(units)}'
+            )
         put = object.__setattr__
         put(self, "name", name)
         put(self, "units", units)
@@ -236,7 +238,7 @@ class Scene:
 
     def has_motion(self, name: str) -> bool:
         """Whether there is a motion of that name."""
-        return name in self._named_motions()
+        return isinstance(name, str) and name in self._named_motions()
 
     def motion(self, name: str) -> LinearForm:
         """A named motion as a linear form in dofs and prescribed motions (0 for a driven body at rest).

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-import numpy as np
-
 from fricmb.errors import SceneError, unknown_name
 from fricmb.scene._bodies import check_keys
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._part import LETTERS, End, Part, PartEnd, PointEnd
-from fricmb.values import value_of
+from fricmb.values import is_list, value_of
 
 
 def check_triple(owner: Part, argument: str, value: Any) -> tuple[Any, Any, Any]:
@@ -24,7 +22,7 @@ def check_triple(owner: Part, argument: str, value: Any) -> tuple[Any, Any, Any]
         given = check_keys(owner, argument, value, LETTERS)
         x, y, z = (owner._number(f"{argument}[{c!r}]", given.get(c, 0.0)) for c in LETTERS)
         return x, y, z
-    if isinstance(value, list | tuple | np.ndarray) and len(value) == 3:
+    if is_list(value) and len(value) == 3:
         x, y, z = (owner._number(f"{argument}[{i}]", entry) for i, entry in enumerate(value))
         return x, y, z
     owner._refuse(argument, value, "three numbers, (x, y, z)")

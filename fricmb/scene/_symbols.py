@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 
 
 def coordinate(name: str) -> Any:
@@ -36,5 +36,5 @@ def time() -> Any:
 
 def _motion(name: object, what: str) -> str:
     if not isinstance(name, str) or "." not in name or name.startswith(".") or name.endswith("."):
-        raise SceneError(f"{what}: name must be 'body.axis' or 'body.point.axis', got {name!r}")
+        raise SceneError(f"{what}: name must be 'body.axis' or 'body.point.axis', got {shown(name)}")
     return name

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from fricmb.equations._values import _symbolic_slots
-from fricmb.errors import SceneError, unknown_name
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene import Scene
 from fricmb.sensitivity._dual import Dual
-from fricmb.values import Declaration, Parameter, is_expression, parameters_in, value_of
+from fricmb.values import Declaration, Parameter, has_entries, is_expression, parameters_in, value_of
 
 #: Part by which a number is changed to find a slope, a power of 2; shares of it, with weights: Richardson's difference
 #: about the value, and, where it may be no smaller or no larger (no damping, say), differences of the same order to one
@@ -27,9 +26,9 @@ STATE = "state"
 def check_names(scene: Scene, given: Any) -> tuple[str, ...]:
     """Names of parameters, "state" first if it is asked for; errors name those near."""
     names = (given,) if isinstance(given, str) else given
-    if not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
+    if not has_entries(names) or not all(isinstance(name, str) for name in names):
         raise SceneError(
-            f'sensitivities: got {given!r}; expected names in scene.parameters, or "state" for all initial values'
+            f'sensitivities: got {shown(given)}; expected names in scene.parameters, or "state" for all initial values'
         )
     known = scene.parameters
     for name in (names := tuple(dict.fromkeys(names))):

@@ -7,10 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb.errors import FricmbError, shown
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._ledger import Ledger
 from fricmb.solution._recorded import row_of
 from fricmb.solution._rest import resting
+from fricmb.values import is_plain
 
 
 class ContactSignals(Ledger):
@@ -57,6 +59,8 @@ class ContactSignals(Ledger):
 
     def time_shares(self, mode: int) -> Floats:
         """The same of every contact (n_contacts,)."""
+        if not (is_plain(mode) and mode in (0, 1, 2)):
+            raise FricmbError(f"mode: got {shown(mode)}; expected 0 (stick), 1 (slip) or 2 (open)")
         modes, spans = self._rows_of_modes
         if not spans.any():
             return np.zeros(len(self.names.contacts))

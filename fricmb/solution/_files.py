@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 import fricmb
-from fricmb.errors import FricmbError
+from fricmb.errors import FricmbError, shown
 from fricmb.integrate import Samples
 from fricmb.solution._check_file import check_arrays, check_stats
 from fricmb.solution._data import TYPES
@@ -105,7 +105,7 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
 
 def _path(path: object) -> Path:
     if not isinstance(path, str | PathLike) or "\0" in str(path):
-        raise FricmbError(f"path: got {path!r}; expected the path of a file")
+        raise FricmbError(f"path: got {shown(path)}; expected the path of a file")
     return Path(path)
 
 

@@ -7,11 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.solution._events import Events
 from fricmb.solution._run import ROUND_OFF, Run
 from fricmb.solution._solution import Solution
 from fricmb.solution._stats import Stats
+from fricmb.values import has_entries
 
 
 def join(solutions: Iterable[Solution]) -> Solution:
@@ -20,14 +21,14 @@ def join(solutions: Iterable[Solution]) -> Solution:
     Where all of them hold their accepted steps the joined one does, else it has the times of all, one after the other.
     Raises SceneError where dofs, contacts or times do not match.
     """
-    if not isinstance(solutions, Iterable):
-        raise SceneError(f"Solution.join: got {solutions!r}; expected a list of solutions")
+    if not has_entries(solutions):
+        raise SceneError(f"Solution.join: got {shown(solutions)}; expected a list of solutions")
     parts = list(solutions)
     if not parts:
         raise SceneError("Solution.join: got no solution; expected one or more")
     for i, part in enumerate(parts):
         if not isinstance(part, Solution):
-            raise SceneError(f"Solution.join: entry {i} is {part!r}; expected a Solution")
+            raise SceneError(f"Solution.join: entry {i} is {shown(part)}; expected a Solution")
     for earlier, later in pairwise(parts):
         _check(earlier, later)
     if len(parts) == 1:

@@ -130,7 +130,7 @@ class Piece:
 
     def rows(self) -> Samples:
         """Values at the accepted steps."""
-        return self._with_leaps(self._cut(self.trajectory.rows()))
+        return self._with_leaps(self._cut(self.trajectory.rows(), self.trajectory.sample, Samples))
 
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order."""
@@ -150,12 +150,16 @@ class Piece:
 
     def row_motion(self) -> MotionSamples:
         """The same without energies, where these cost something."""
-        return self._with_leaps(self._cut(self.trajectory.row_motion()))
+        return self._with_leaps(self._cut(self.trajectory.row_motion(), self.trajectory.motion, MotionSamples))
 
-    def _cut(self, rows: _Samples) -> _Samples:
+    def _cut(self, rows: _Samples, sampled: Callable[[Floats], _Samples], kind: type[_Samples]) -> _Samples:
+        """Rows up to ``t_end``, which is one of them: a cut within a step is the end of the run all the same."""
         if self.is_whole:
             return rows
-        return take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
+        kept = take(rows, slice(0, int(np.searchsorted(rows.t, self.t_end, side="right"))))
+        if kept.t.size == 0 or kept.t[-1] >= self.t_end:
+            return kept
+        return concatenate([kept, sampled(np.array([self.t_end]))], kind)
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {name: value for name, value in vars(self).items() if name != "leaps"}

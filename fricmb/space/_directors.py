@@ -16,7 +16,7 @@ from fricmb.scene._joint import Joint
 from fricmb.scene._part import LETTERS
 from fricmb.scene._space_body import InnerConstraint, Read, SpaceBody, SpacePoint, check_triple, plain
 from fricmb.space._turn import dot, rotation
-from fricmb.values import value_of
+from fricmb.values import is_list, value_of
 
 #: Moments that a body is flat by are equal to this; what an axis without mass counts in changes, beside the others.
 FLAT, LEAST = 1e-12, 1e-2
@@ -96,7 +96,7 @@ class RigidBody(SpaceBody):
 
     def _principal(self) -> tuple[Any, ...]:
         """Principal moments that a body can have."""
-        if not isinstance(self.inertia, list | tuple | np.ndarray) or len(self.inertia) != 3:
+        if not is_list(self.inertia) or len(self.inertia) != 3:
             self._refuse("inertia", self.inertia, "three numbers, the principal moments about the centre of mass")
         found = tuple(self._number(f"inertia[{i}]", value, above=0.0) for i, value in enumerate(self.inertia))
         a, b, c = (float(value_of(value)) for value in found)

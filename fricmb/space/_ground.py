@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End, Part
-from fricmb.values import is_plain
+from fricmb.values import as_float
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,6 @@ def ground_point(x: float, y: float, z: float) -> SpaceGroundPoint:
     'ground(0, 0, 1)'
     """
     for argument, value in (("x", x), ("y", y), ("z", z)):
-        if not is_plain(value) or not math.isfinite(value):
-            raise SceneError(f"ground_point: {argument} must be a finite number, got {value!r}")
+        if not math.isfinite(as_float(value)):
+            raise SceneError(f"ground_point: {argument} must be a finite number, got {shown(value)}")
     return SpaceGroundPoint(float(x), float(y), float(z))

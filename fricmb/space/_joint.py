@@ -29,11 +29,6 @@ def constant(vector: Any) -> Forms:
     return x, y, z
 
 
-def is_word(value: Any, word: str) -> bool:
-    """Whether a value is this word (comparing an array with one gives an array)."""
-    return isinstance(value, str) and value == word
-
-
 class SpaceJoint(Joint):
     """A joint between two ends in space."""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.values import as_float
 
 #: Ratios a/b of the table: a along the direction of rolling.
@@ -101,11 +101,11 @@ def kalker(*, a: float, b: float, shear_modulus: float, poisson: float) -> Kalke
 
     for name, value in (("a", a), ("b", b), ("shear_modulus", shear_modulus)):
         if not 0.0 < as_float(value) < math.inf:
-            raise SceneError(f"kalker: {name} must be a finite number > 0, got {value!r}")
+            raise SceneError(f"kalker: {name} must be a finite number > 0, got {shown(value)}")
     if not RATIOS[0] <= a / b <= RATIOS[-1]:
         raise SceneError(f"kalker: a/b must be from {RATIOS[0]:g} to {RATIOS[-1]:g}, got {a / b:g}")
     if not POISSON[0] <= as_float(poisson) <= POISSON[-1]:
-        raise SceneError(f"kalker: poisson must be from {POISSON[0]:g} to {POISSON[-1]:g}, got {poisson!r}")
+        raise SceneError(f"kalker: poisson must be from {POISSON[0]:g} to {POISSON[-1]:g}, got {shown(poisson)}")
     rows = PchipInterpolator(np.log(RATIOS), np.array(TABLE))(math.log(a / b)).reshape(4, 3)
     c11, c22, c23, c33 = (float(np.polyval(np.polyfit(POISSON, row, 2), poisson)) for row in rows)
     G, area = shear_modulus, a * b

@@ -18,11 +18,11 @@ from fricmb.scene._part import GROUND
 from fricmb.scene._space_body import SpacePoint, check_triple
 from fricmb.space._ball import Ball
 from fricmb.space._directors import RigidBody
-from fricmb.space._joint import SpaceJoint, is_word
+from fricmb.space._joint import SpaceJoint
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
 from fricmb.space._turning import KINDS, kind_of, turning_forms, turning_rows
-from fricmb.values import is_expression, value_of
+from fricmb.values import is_expression, is_one_of, value_of
 
 #: A disc lies flat where the sine of its angle with the plane is no more than this.
 FLAT = 1e-3
@@ -121,7 +121,7 @@ class OnPlane(OneSided, SpaceJoint):
             self._refuse("b", self.b, "left out: the plane is fixed")
         self._set("through", check_triple(self, "through", self.through))
         found = self._shape()
-        if self.shape is not None and not is_word(self.shape, found):
+        if not is_one_of(self.shape, None, found):
             self._refuse("shape", self.shape, f"left out (it is {found!r}, from a)")
         self._set("shape", found)
         self._set("radius", self._radius(found))

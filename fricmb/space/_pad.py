@@ -13,11 +13,11 @@ from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End
 from fricmb.scene._space_body import check_triple
-from fricmb.space._joint import PARALLEL, SpaceJoint, is_word
+from fricmb.space._joint import PARALLEL, SpaceJoint
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
 from fricmb.space._turning import kind_of, turning_forms, turning_rows
-from fricmb.values import value_of
+from fricmb.values import is_one_of, value_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,7 @@ class Pad(SpaceJoint):
                 f" body of revolution are across it, got {tuple(value_of(self.normal))}"
             )
         found = kind_of(self, "a")
-        if self.turning is not None and not is_word(self.turning, found):
+        if not is_one_of(self.turning, None, found):
             self._refuse("turning", self.turning, f"left out (it is {found!r}, from a)")
         self._set("turning", found)
 

@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import LETTERS
-from fricmb.space._joint import SpaceJoint, is_word
+from fricmb.space._joint import SpaceJoint
 from fricmb.space._turning import KINDS, kind_of, turning_forms, turning_rows
+from fricmb.values import is_one_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,7 @@ class Spherical(SpaceJoint):
         self._number("radius", self.radius, above=0.0)
         kinds = (kind_of(self, "a"), kind_of(self, "b"))
         found = " ".join(kinds)
-        if self.turning is not None and not is_word(self.turning, found):
+        if not is_one_of(self.turning, None, found):
             self._refuse("turning", self.turning, f"left out (it is {found!r}, from a and b)")
         self._set("turning", found)
 

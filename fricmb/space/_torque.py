@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._space_body import SpacePoint, check_triple
@@ -51,8 +51,8 @@ class Torque(Element):
         if isinstance(self.body, SpacePoint):
             self._set("body", self.body.body)
         if not isinstance(self.body, Ball | Rotor | RigidBody):
-            shown = getattr(self.body, "end_name", self.body)
-            raise SceneError(f"Torque {self.name!r}: body must be a body of fm.space, got {shown!r}")
+            given = getattr(self.body, "end_name", self.body)
+            raise SceneError(f"Torque {shown(self.name)}: body must be a body of fm.space, got {shown(given)}")
         super().__post_init__()
         self._set("axis", check_triple(self, "axis", self.axis))
         unit(self._label(), "axis", value_of(self.axis))

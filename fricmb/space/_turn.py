@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.integrate.problem import Floats
+from fricmb.values import as_float
 
 Vector = tuple[Any, Any, Any]
 
@@ -27,11 +28,11 @@ def unit(label: str, argument: str, value: Any) -> Floats:
     """A direction as a unit vector (3,); SceneError for what has none."""
     try:
         given = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         given = np.zeros(0)
     length = float(np.linalg.norm(given)) if given.shape == (3,) else 0.0
     if not (math.isfinite(length) and length > 0.0):
-        raise SceneError(f"{label}: {argument} must be three finite numbers, not all 0, got {value!r}")
+        raise SceneError(f"{label}: {argument} must be three finite numbers, not all 0, got {shown(value)}")
     found: Floats = given / length
     return found
 
@@ -77,8 +78,8 @@ def turned(*, axis: Any, angle: float) -> tuple[tuple[float, ...], ...]:
     array([0., 1., 0.])
     """
     e = unit("turned", "axis", axis)
-    if not (isinstance(angle, int | float | np.integer | np.floating) and math.isfinite(angle)):
-        raise SceneError(f"turned: angle must be a finite number, got {angle!r}")
+    if not math.isfinite(as_float(angle)):
+        raise SceneError(f"turned: angle must be a finite number, got {shown(angle)}")
     K = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
     R = np.eye(3) + math.sin(angle) * K + 2.0 * math.sin(0.5 * angle) ** 2 * K @ K
     return tuple(tuple(float(x) for x in row) for row in R)
@@ -92,11 +93,11 @@ def rotation(label: str, value: Any) -> tuple[tuple[float, ...], ...]:
     """The rotation matrix nearest to what is given; SceneError for what is none."""
     try:
         R = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         R = np.zeros(0)
     off = np.abs(R.T @ R - np.eye(3)).max() if R.shape == (3, 3) and np.isfinite(R).all() else math.inf
     if off > ORTHONORMAL or np.linalg.det(R) < 0.0:
         accepted = "a rotation matrix (3 x 3, orthonormal, determinant 1), such as turned(axis=(0, 0, 1), angle=0.1)"
-        raise SceneError(f"{label}: orientation must be {accepted}, got {value!r}")
+        raise SceneError(f"{label}: orientation must be {accepted}, got {shown(value)}")
     left, _, right = np.linalg.svd(R)
     return tuple(tuple(float(x) for x in row) for row in left @ right)

@@ -14,10 +14,10 @@ from fricmb.scene._forms import LinearForm
 from fricmb.scene._one_sided import OneSided
 from fricmb.scene._part import GROUND
 from fricmb.scene._space_body import SpacePoint, check_triple
-from fricmb.space._joint import SpaceJoint, is_word
+from fricmb.space._joint import SpaceJoint
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot
-from fricmb.values import value_of
+from fricmb.values import is_one_of, value_of
 
 #: Directions of the rail are at right angles to this.
 SQUARE = 1e-9
@@ -111,7 +111,7 @@ class WheelRail(OneSided, SpaceJoint):
             raise SceneError(f"{self._label()}: the axle lies along the rail or stands up; turn its axis across")
         # which end of the axle, and which way its axis points: both say where the flange is
         end = "front" if self.a.offset[0] > 0.0 else "back"
-        if self.end is not None and not is_word(self.end, end):
+        if not is_one_of(self.end, None, end):
             self._refuse("end", self.end, f"left out (it is {end!r}, from a)")
         self._set("end", end)
         self._set("speed", check_expression(self, "speed", self.speed, motions=False))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.errors import FricmbError
+from fricmb.errors import FricmbError, shown
 from fricmb.integrate import Integrator
 from fricmb.laws import Coulomb
 from fricmb.scene import Body, Contact, Damper, Driven, Force, Scene, Spring, t
@@ -67,7 +67,10 @@ def check_integrator(
     >>> fm.testing.check_integrator(integrators["radau"](stages=5))
     """
     if not isinstance(integrator, Integrator):
-        raise ConformanceError(f"check_integrator takes an instance of fricmb.integrate.Integrator, got {integrator!r}")
+        raise ConformanceError(
+            "check_integrator takes an instance of fricmb.integrate.Integrator,"
+            f" got {shown(integrator)}"
+        )
     most = 1e3 * rtol if bound is None else bound
     name = str(getattr(integrator, "name", type(integrator).__name__))
     findings(name, [_declared, pickles], integrator)
@@ -85,7 +88,7 @@ def _declared(integrator: Integrator) -> Iterator[str]:
             yield f"{field} must be a string that is not empty, got {getattr(kind, field, None)!r}"
     takes = getattr(kind, "takes", None)
     if not isinstance(takes, frozenset) or not takes or not takes <= PARTS:
-        yield f"takes must be a frozenset of {', '.join(sorted(PARTS))}, got {takes!r}"
+        yield f"takes must be a frozenset of {', '.join(sorted(PARTS))}, got {shown(takes)}"
     how = getattr(kind, "__dataclass_params__", None)
     if how is None or not how.frozen:
         yield "must be a frozen dataclass: its fields are its options"
@@ -105,7 +108,7 @@ def _takes(integrator: Integrator, scene: Scene) -> bool:
 
     why = integrator.refuses(build(scene).problem)
     if why is not None and integrator.name not in why:
-        raise ConformanceError(f"{integrator.name}: a refusal must name the integrator, got {why!r}")
+        raise ConformanceError(f"{integrator.name}: a refusal must name the integrator, got {shown(why)}")
     return why is None
 
 

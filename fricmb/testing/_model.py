@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from fricmb.errors import FricmbError
+from fricmb.errors import FricmbError, shown
 from fricmb.integrate import Integrator
 from fricmb.scene import Scene
 from fricmb.testing._base import ConformanceError, Rule, findings, pickles
@@ -67,7 +67,7 @@ def check_model(
     except Exception as error:
         raise ConformanceError(f"{name}: default arguments fail: {type(error).__name__}: {error}") from error
     if not isinstance(scene, Scene):
-        raise ConformanceError(f"{name}: must return a Scene, got {scene!r}")
+        raise ConformanceError(f"{name}: must return a Scene, got {shown(scene)}")
     rules: list[Rule] = [pickles, _same, _unique, _round_trip, _settable, _derives, _refuses]
     if run:
         rules.append(lambda scene, _: run_findings(scene, Trip(t_end=t_end, method=method, rtol=rtol, bound=bound)))

@@ -4,7 +4,20 @@ from fricmb.values._asked import ask, expressions, one_expression
 from fricmb.values._declaration import Declaration
 from fricmb.values._held import Held, held, is_foreign
 from fricmb.values._in_symbols import in_symbols
-from fricmb.values._numbers import Number, as_float, is_expression, is_plain, is_sparse, parameters_in, value_of
+from fricmb.values._numbers import (
+    Number,
+    as_float,
+    depth_of,
+    has_entries,
+    is_expression,
+    is_flag,
+    is_list,
+    is_one_of,
+    is_plain,
+    is_sparse,
+    parameters_in,
+    value_of,
+)
 from fricmb.values._parameter import Parameter, parameter
 from fricmb.values._standin import Symbolic, symbolic
 from fricmb.values._units import DIMENSIONLESS, DIMENSIONS, SI, Units
@@ -21,11 +34,16 @@ __all__ = [
     "Units",
     "as_float",
     "ask",
+    "depth_of",
     "expressions",
+    "has_entries",
     "held",
     "in_symbols",
     "is_expression",
+    "is_flag",
     "is_foreign",
+    "is_list",
+    "is_one_of",
     "is_plain",
     "is_sparse",
     "one_expression",

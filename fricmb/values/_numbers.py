@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -33,6 +33,34 @@ def as_float(value: Any) -> float:
         return float(value) if is_plain(value) else math.nan
     except OverflowError:
         return math.nan
+
+
+def is_flag(value: object) -> bool:
+    """Whether ``value`` is True or False, of Python or numpy."""
+    return isinstance(value, bool | np.bool_)
+
+
+def is_one_of(value: object, *options: object) -> bool:
+    """Whether ``value`` is one of some words, flags or None; whatever else it may be, arrays and all, it is none."""
+    return any(value is option or (type(value) is type(option) and value == option) for option in options)
+
+
+def is_list(value: object) -> bool:
+    """Whether ``value`` is a list, a tuple, or an array that has entries to go through."""
+    return isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
+
+
+def has_entries(value: object) -> bool:
+    """Whether ``value`` can be gone through; an array without dimensions only looks so."""
+    return isinstance(value, Iterable) and not (isinstance(value, np.ndarray) and value.ndim == 0)
+
+
+def depth_of(value: Any) -> int:
+    """How deep a list is nested; that of rows of different lengths counts as 2."""
+    try:
+        return np.ndim(value)
+    except ValueError:
+        return 2
 
 
 def is_sparse(value: object) -> bool:

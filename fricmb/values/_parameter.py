@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,10 +33,10 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name or "." in self.name or self.name != self.name.strip():
-            raise SceneError(f"parameter: name must be a non-empty string without dots, got {self.name!r}")
+            raise SceneError(f"parameter: name must be a non-empty string without dots, got {shown(self.name)}")
         value = self.value
         number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-        if not number or not abs(value) <= sys.float_info.max:
+        if not number or not _fits(value):
             raise SceneError(f"parameter {self.name!r}: value must be a finite number, got {shown(value)}")
         object.__setattr__(self, "value", float(value))
 
@@ -83,6 +83,14 @@ class Parameter:
 
     def __rpow__(self, other: Any) -> Any:
         return other ** self._sympy_()
+
+
+def _fits(value: Any) -> bool:
+    """Whether a number is a finite float: whole numbers may be too large for one."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def parameter(name: str, value: float) -> Parameter:

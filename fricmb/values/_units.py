@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 
 #: A thousand times the first is the second: what the reciprocal of a unit of time is called.
 _FREQUENCIES = {"s": "Hz", "ms": "kHz", "us": "MHz", "µs": "MHz", "min": "1/min", "h": "1/h"}
@@ -38,7 +38,7 @@ class Units:
         for field in fields(self):
             value = getattr(self, field.name)
             if not isinstance(value, str) or not value:
-                raise SceneError(f"Units: {field.name} must be a non-empty string, got {value!r}")
+                raise SceneError(f"Units: {field.name} must be a non-empty string, got {shown(value)}")
 
     @property
     def velocity(self) -> str:

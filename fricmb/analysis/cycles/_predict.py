@@ -128,5 +128,5 @@ def check_parameter(orbit: Orbit, over: str, to: float, who: str) -> float:
     except (TypeError, ValueError, OverflowError):
         raise AnalysisError(f"{who}: {over} = {shown(values[over])} and to = {shown(to)} must be numbers") from None
     if not np.isfinite(end) or end == value:
-        raise AnalysisError(f"{who}: to must be a finite number other than {over} = {value:g}; got {to!r}")
+        raise AnalysisError(f"{who}: to must be a finite number other than {over} = {value:g}; got {shown(to)}")
     return value

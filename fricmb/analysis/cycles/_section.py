@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fricmb.analysis._errors import AnalysisError, Floats
-from fricmb.errors import unknown_name
+from fricmb.errors import shown, unknown_name
 from fricmb.integrate import STICK
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def checked_section(section: Any, names: Names, who: str) -> Section:
         value = float(value)
     except (TypeError, ValueError):
         raise AnalysisError(
-            f'{who}: section must be a name and a value such as ("mass.x.velocity", 0.0); got {section!r}'
+            f'{who}: section must be a name and a value such as ("mass.x.velocity", 0.0); got {shown(section)}'
         ) from None
     known = [*names.dofs, *(f"{dof}.velocity" for dof in names.dofs)]
     if name not in known:

@@ -19,6 +19,8 @@ SHARE = 0.1
 SEEN = 2e-14
 #: Speeds below this part of what friction may bring in the step are those of slip that begins.
 UNMOVED = 1e-3
+#: Place in ``groups.work`` of the least coefficient that any law had in a run, 0 if none was negative.
+LEAST = 7
 
 
 @kernel
@@ -34,6 +36,7 @@ def coefficient_at(net: Net, c: int, r: float) -> float:
     work[0] = max(r, 0.0)
     work[1] = net.groups.N[c]
     call(laws.address[c], work, 0, laws.p, laws.p_start[c], work, 2)
+    work[LEAST] = min(work[LEAST], work[2])
     return float(work[2])
 
 

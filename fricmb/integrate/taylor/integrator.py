@@ -14,6 +14,8 @@ from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, watched
 from fricmb.integrate.suits_taylor import fastest
+from fricmb.integrate.taylor.driving import Driving, find_driving
+from fricmb.integrate.taylor.friction_curve import LEAST
 from fricmb.integrate.taylor.layout import GOES_ON
 from fricmb.integrate.taylor.network import OF_RUN, Net
 from fricmb.integrate.taylor.prepare import net_lent, no_samples, refusal
@@ -32,7 +34,7 @@ from fricmb.integrate.taylor.step_loop import (
     WIDE,
     drive_taylor,
 )  # fmt: skip
-from fricmb.integrate.taylor.trajectory import Checkpoints, TaylorRun
+from fricmb.integrate.taylor.trajectory import Checkpoints, TaylorRun, samples_of
 from fricmb.integrate.trajectory import Counters, Trajectory
 
 FAILURES = {
@@ -106,7 +108,11 @@ class Taylor(Integrator):
             watched(settle_start, net)
             marks = Checkpoints(problem.n)
             code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
-            return _trajectory(problem, net, degree, marks, code, t_eval)
+            done = _trajectory(problem, net, degree, marks, code, t_eval)
+            if net.groups.work[LEAST] >= 0.0:
+                return done
+        driving = find_driving(problem, done, done.steps, tolerance.rtol)
+        return done if driving is None else done.until(driving.end, _drives(problem, driving))
 
 
 def set_start(
@@ -135,6 +141,7 @@ def set_start(
     net.noise = 1e-13 * speed
     net.limit = crowd * problem.n_c + 1000
     net.phase = SETTLE
+    net.groups.work[LEAST] = 0.0
     net.loss[:], net.large[:] = 0.0, 0.0
     net.mode[:], net.sigma[:] = SLIP, 1.0
     net.free[:] = 1.0
@@ -184,6 +191,10 @@ def _longer(table: Floats, wanted: int) -> Floats:
     return longer
 
 
+def _drives(problem: Problem, driving: Driving) -> str:
+    return f"the friction coefficient of contact {problem.contact_names[driving.contact]!r} is negative"
+
+
 def _trajectory(
     problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
 ) -> TaylorRun:
@@ -197,6 +208,5 @@ def _trajectory(
         direction=net.sigma.copy(),
     )  # fmt: skip
     failure = None if code == DONE else ended() or failure_text(problem, net, code)
-    taken = int(net.n_samples)
-    held = None if t_eval is None else net
-    return TaylorRun(problem, degree, net.steps[:steps].copy(), events, counters, end, failure, marks, held, taken)
+    kept = None if t_eval is None else samples_of(problem, net, slice(0, int(net.n_samples)))
+    return TaylorRun(problem, degree, net.steps[:steps].copy(), events, counters, end, failure, marks.held, kept)

@@ -16,6 +16,9 @@ from fricmb.integrate.taylor.series import taylor_series
 from fricmb.integrate.taylor.signals import belt_grain, belt_value, signal_series
 from fricmb.integrate.taylor.turning import MARGIN, keep_event, set_mode
 
+#: Relative velocity that a contact may have got in stick, of the largest velocity of its ends: round-off of its steps.
+DRIFT = 1e-11
+
 
 @kernel
 def set_window(net: Net) -> None:
@@ -33,8 +36,10 @@ def speed_noise(net: Net, row: int, given: bool, before_it: float) -> float:
     # a belt that starts from rest does so at a time that is round-off away
     noise = net.noise + 1e-12 * (abs(belt_value(net, row, 0.5)) + abs(belt_value(net, row, 1.0)))
     if given and net.mode[row] == STICK:
-        # it has moved with the belt as powers of s have
+        # it has moved with the belt as powers of s have, and with its other end but for round-off of many steps
         noise += belt_grain(net, row, before_it)
+        for e in range(net.row_start[row], net.row_start[row + 1]):
+            noise += DRIFT * abs(net.row_coef[e]) * net.top[net.row_dof[e]]
     return float(noise)
 
 

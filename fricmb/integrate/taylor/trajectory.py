@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fricmb.integrate.compile.exchange import numbers_of, put_numbers, with_arrays
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
+from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.run.stop import watched
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare import net_lent, no_samples
@@ -49,7 +50,7 @@ class TaylorRun(Trajectory):
 
     def __init__(
         self, problem: Problem, degree: int, steps: Floats, events: Floats, counters: Counters, end: Start,
-        failure: str | None, marks: Checkpoints, held: Net | None, taken: int,
+        failure: str | None, marks: list[dict[str, Any]], kept: Samples | None,
     ) -> None:  # fmt: skip
         self.problem = problem
         self.counters = counters
@@ -58,8 +59,23 @@ class TaylorRun(Trajectory):
         self._degree = degree
         self._steps = steps
         self._events = events
-        self._marks = marks.held
-        self._kept = None if held is None else _samples(problem, held, slice(0, taken))
+        self._marks = marks
+        self._kept = kept
+
+    @property
+    def steps(self) -> Floats:
+        """Begin and length of the steps (n_steps, 2)."""
+        return self._steps
+
+    def until(self, end: Start, failure: str) -> TaylorRun:
+        """The run up to ``end``, where the scene does not let it go on."""
+        held = self._kept if self._kept is None else take(self._kept, self._kept.t <= end.t)
+        cut = TaylorRun(
+            self.problem, self._degree, self._steps[self._steps[:, 0] < end.t], self._events, self.counters, end,
+            failure, self._marks, held,
+        )  # fmt: skip
+        cut.of_scene = True
+        return cut
 
     @cached_property
     def transitions(self) -> Transitions:  # type: ignore[override]
@@ -120,7 +136,7 @@ class TaylorRun(Trajectory):
         problem = self.problem
         with net_lent(problem, self._degree) as lent:
             if len(t) == 0:
-                return _samples(problem, with_arrays(lent, **no_samples(problem.n, problem.m)), slice(0, 0))
+                return samples_of(problem, with_arrays(lent, **no_samples(problem.n, problem.m)), slice(0, 0))
             state = self._state_before(float(t[0]))
             for name in STATE:
                 if name != "stops":
@@ -139,7 +155,7 @@ class TaylorRun(Trajectory):
                 pass
             for at in range(int(net.n_samples), len(t)):  # of a run that could not begin
                 net.out_q[at], net.out_v[at], net.out_mode[at] = net.q, net.v, net.mode
-            return _samples(problem, net, slice(0, len(t)))
+            return samples_of(problem, net, slice(0, len(t)))
 
     def _state_before(self, t: float) -> dict[str, Any]:
         times = [state["t"] for state in self._marks]
@@ -161,7 +177,8 @@ def _beside(t: Floats, events: Floats) -> NDArray[np.bool_]:
     return found
 
 
-def _samples(problem: Problem, net: Net, part: slice) -> Samples:
+def samples_of(problem: Problem, net: Net, part: slice) -> Samples:
+    """What a run has kept at wanted times."""
     t = net.times[part]
     # islands joined write their rows into it
     N = np.repeat(np.asarray(problem.contacts.N, float)[:, None], len(t), axis=1)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.integrate.compile.exchange import with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
@@ -73,11 +73,17 @@ class TimeStepping(Integrator):
     def __post_init__(self) -> None:
         h = self.fixed_step
         if h is not None and not (isinstance(h, int | float) and 0.0 < h < np.inf):
-            raise SceneError(f"TimeStepping: fixed_step: got {h!r}; expected a positive time or None")
+            raise SceneError(f"TimeStepping: fixed_step: got {shown(h)}; expected a positive time or None")
         if not (isinstance(self.residual, float) and 1e-14 <= self.residual <= 1e-3):
-            raise SceneError(f"TimeStepping: residual: got {self.residual!r}; expected a number from 1e-14 to 1e-3")
+            raise SceneError(
+                f"TimeStepping: residual: got {shown(self.residual)};"
+                " expected a number from 1e-14 to 1e-3"
+            )
         if self.contacts not in (None, "band", "condensed"):
-            raise SceneError(f"TimeStepping: contacts: got {self.contacts!r}; expected 'band', 'condensed' or None")
+            raise SceneError(
+                f"TimeStepping: contacts: got {shown(self.contacts)};"
+                " expected 'band', 'condensed' or None"
+            )
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb.laws._base import FrictionLaw
 from fricmb.laws._curves import along, check_order, chunks, norm, stribeck
+from fricmb.values import is_list
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +100,7 @@ class GeneralisedMaxwellSlip(FrictionLaw):
 
     def copies(self) -> dict[str, int]:
         """One deflection an element."""
-        return {"z": len(self.stiffness)}
+        return {"z": len(self.stiffness) if is_list(self.stiffness) else 1}
 
     @classmethod
     def example(cls) -> Self:

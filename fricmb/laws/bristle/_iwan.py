@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb.laws._base import FrictionLaw
 from fricmb.laws._curves import chunks, yielding
+from fricmb.values import is_list
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +71,7 @@ class Iwan(FrictionLaw):
 
     def copies(self) -> dict[str, int]:
         """One deflection an element."""
-        return {"z": len(self.stiffness)}
+        return {"z": len(self.stiffness) if is_list(self.stiffness) else 1}
 
     @classmethod
     def from_backbone(cls, displacement: Any, coefficient: Any, *, corner: float = 1e-2) -> Self:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb.laws._base import FrictionLaw
 from fricmb.laws._curves import check_order, chunks, norm, stribeck, yielding
+from fricmb.values import is_list
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +105,7 @@ class Leuven(FrictionLaw):
 
     def copies(self) -> dict[str, int]:
         """One deflection an element."""
-        return {"y": len(self.stiffness)}
+        return {"y": len(self.stiffness) if is_list(self.stiffness) else 1}
 
     @classmethod
     def example(cls) -> Self:
