@@ -17,7 +17,7 @@ from fricmb.integrate.model.forces import element_forces
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.element_bends import ASKED, put_signs
-from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE
+from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE, narrowed
 from fricmb.integrate.step.law_defect import ROUND_OFF
 from fricmb.integrate.step.slow_slip import NEARER, TIMES, WITHIN, line_at
 from fricmb.integrate.step.tableau import by_line
@@ -38,7 +38,7 @@ def where_turned(
     mech: Mech, k: Moving, y: State, st: Stages, h: float, b: int, low: float, high: float, signs: Floats2,
     line: Floats, state: Floats2,
 ) -> float:  # fmt: skip
-    """Where function b changes its sign between two places with ``signs`` (2, n_b), by straight lines (Illinois)."""
+    """Where function b changes its sign between two places with ``signs`` (2, n_b)."""
     first, last = signs[0, b], signs[1, b]
     here, moved, x = np.empty(signs.shape[1]), 0, low
     for _ in range(TIMES):
@@ -48,12 +48,7 @@ def where_turned(
             break
         look(mech, k, y, st, x, h, line, state)
         put_signs(mech.bends, mech.bend_start, k.s, here)
-        if (here[b] < 0.0) == (last < 0.0):
-            first *= 0.5 if moved > 0 else 1.0
-            high, last, moved = x, here[b], 1
-        else:
-            last *= 0.5 if moved < 0 else 1.0
-            low, first, moved = x, here[b], -1
+        low, first, high, last, moved = narrowed(low, first, high, last, moved, x, here[b])
     return float(min(max(x, low), high))
 
 

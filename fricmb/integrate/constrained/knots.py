@@ -27,6 +27,16 @@ def has_knots(mech: Mech, y: State, p: int) -> bool:
 
 
 @kernel
+def some_with_knots(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
+    """Whether some port slips under a law with knots; if so all is ready for ``missed`` in the step h just solved."""
+    for p in range(y.mode.shape[0]):
+        if has_knots(mech, y, p):
+            look_at_step(mech, k, y, st, c, h)
+            return True
+    return False
+
+
+@kernel
 def port_knot(
     mech: Mech, k: Moving, y: State, st: Stages, c: Control, p: int, h: float, free: float, space: Floats2
 ) -> float:
@@ -61,13 +71,12 @@ def port_knot(
 @block
 def knot_within(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> float:
     """Part of the step h just solved up to the first knot that its polynomials do not know; ``NOWHERE`` without one."""
-    found, ready = NOWHERE, False
+    found = NOWHERE
+    if not some_with_knots(mech, k, y, st, c, h):
+        return found
     space = np.empty((5, st.tab.c.shape[0] + 1))
     for p in range(y.mode.shape[0]):
         if has_knots(mech, y, p):
-            if not ready:
-                look_at_step(mech, k, y, st, c, h)
-                ready = True
             found = min(found, port_knot(mech, k, y, st, c, p, h, free_by_force(mech, k, y, c, p), space))
     return found
 
@@ -76,15 +85,14 @@ def knot_within(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: floa
 def off_near_ends(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> float:
     """Error of the step h just solved, of laws with knots near its start and its end; by the scale of velocities."""
     nodes = st.tab.c
-    count, worst, ready = nodes.shape[0], 0.0, False
+    count, worst = nodes.shape[0], 0.0
+    if not some_with_knots(mech, k, y, st, c, h):
+        return worst
     before = nodes[count - 2] if count > 1 else 0.0
     line = np.empty(count + 1)
     for p in range(y.mode.shape[0]):
         if not has_knots(mech, y, p):
             continue
-        if not ready:
-            look_at_step(mech, k, y, st, c, h)
-            ready = True
         free = free_by_force(mech, k, y, c, p)
         worst = max(worst, missed(mech, k, y, st, c, p, 0.0, nodes[0], h, free, line))
         worst = max(worst, missed(mech, k, y, st, c, p, 1.0, before - 1.0, h, free, line))
@@ -94,13 +102,11 @@ def off_near_ends(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: fl
 @block
 def passes_bend(mech: Mech, k: Moving, y: State, end: State, st: Stages, c: Control, h: float) -> bool:
     """Whether slip passes a knot in a step h of BDF from y to ``end``, where the law bends enough to matter."""
-    ready = False
+    if not some_with_knots(mech, k, y, st, c, h):
+        return False
     for p in range(y.mode.shape[0]):
         if not has_knots(mech, y, p):
             continue
-        if not ready:
-            look_at_step(mech, k, y, st, c, h)
-            ready = True
         r0, r1 = magnitude(mech.port.row, p, y.g), magnitude(mech.port.row, p, end.g)
         load = carried(mech, p, max(y.N[p], end.N[p]))
         allowed = IN_HISTORY * asked(c) / max(h * free_by_force(mech, k, y, c, p) * load, 1e-290)

@@ -15,7 +15,7 @@ from fricmb.integrate.model.problem_structs import Packed, Table
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.step.knots import AT_AN_END, IN_HISTORY, NEAR, NOWHERE, SLIGHT
+from fricmb.integrate.step.knots import AT_AN_END, IN_HISTORY, NEAR, NOWHERE, SLIGHT, narrowed
 from fricmb.integrate.step.law_defect import CREEP, ROUND_OFF, felt
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slow_slip import NEARER, TIMES, WITHIN, line_at
@@ -49,7 +49,7 @@ def where_turned(
     packed: Packed, s: Scratch, y: State, one: OneStep, h: float, b: int, low: float, high: float, signs: Floats2,
     line: Floats, state: Floats2,
 ) -> float:  # fmt: skip
-    """Where function b changes its sign between two places with ``signs`` (2, n_b), by straight lines (Illinois)."""
+    """Where function b changes its sign between two places with ``signs`` (2, n_b)."""
     first, last = signs[0, b], signs[1, b]
     here, moved, x = np.empty(signs.shape[1]), 0, low
     for _ in range(TIMES):
@@ -59,12 +59,7 @@ def where_turned(
             break
         look(packed, s, y, one, x, h, line, state)
         put_signs(packed.bends, packed.bend_start, s, here)
-        if (here[b] < 0.0) == (last < 0.0):
-            first *= 0.5 if moved > 0 else 1.0
-            high, last, moved = x, here[b], 1
-        else:
-            last *= 0.5 if moved < 0 else 1.0
-            low, first, moved = x, here[b], -1
+        low, first, high, last, moved = narrowed(low, first, high, last, moved, x, here[b])
     return float(min(max(x, low), high))
 
 

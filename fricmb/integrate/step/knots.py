@@ -39,11 +39,21 @@ def has_knots(ports: Ports, y: State, k: int) -> bool:
 
 
 @kernel
-def where_passed(slip: Floats2, d: int, low: float, high: float, knot: float) -> float:
-    """Where slip speed passes ``knot`` between two places at which it is on either side of it.
+def narrowed(
+    low: float, first: float, high: float, last: float, moved: int, x: float, here: float
+) -> tuple[float, float, float, float, int]:
+    """Two places between which a function changes its sign, its values there, and which moved, after one more look.
 
-    By straight lines, where an end that stays twice counts half (Illinois); ``slip`` as in ``slow_slip.speed``.
+    An end that stays twice counts half (Illinois); the next look is where the straight line between the values is 0.
     """
+    if (here < 0.0) == (last < 0.0):
+        return low, first * (0.5 if moved > 0 else 1.0), x, here, 1
+    return x, here, high, last * (0.5 if moved < 0 else 1.0), -1
+
+
+@kernel
+def where_passed(slip: Floats2, d: int, low: float, high: float, knot: float) -> float:
+    """Where slip speed passes ``knot`` between two places at which it is on either side; ``slip``: see ``speed``."""
     first, last = speed(slip, d, low) - knot, speed(slip, d, high) - knot
     x, moved = low, 0
     for _ in range(TIMES):
@@ -51,13 +61,7 @@ def where_passed(slip: Floats2, d: int, low: float, high: float, knot: float) ->
         x = (low * last - high * first) / (last - first)
         if not low < x < high or abs(x - before) <= WITHIN * x:
             break
-        here = speed(slip, d, x) - knot
-        if (here < 0.0) == (last < 0.0):
-            first *= 0.5 if moved > 0 else 1.0
-            high, last, moved = x, here, 1
-        else:
-            last *= 0.5 if moved < 0 else 1.0
-            low, first, moved = x, here, -1
+        low, first, high, last, moved = narrowed(low, first, high, last, moved, x, speed(slip, d, x) - knot)
     return float(min(max(x, low), high))
 
 
