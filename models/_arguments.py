@@ -6,7 +6,7 @@ import functools
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, TypeAlias
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from fricmb.errors import shown
 from fricmb.values import Parameter, as_float, is_expression, is_plain
 
 P = ParamSpec("P")
+#: A number that the model itself looks at.
+Own: TypeAlias = float
 
 
 def checked(build: Callable[P, fm.Scene]) -> Callable[P, fm.Scene]:

@@ -7,9 +7,9 @@ from types import MappingProxyType
 
 import fricmb as fm
 from fricmb.errors import shown
-from fricmb.values import DIMENSIONLESS
+from fricmb.values import DIMENSIONLESS, as_float
 
-from ._arguments import checked
+from ._arguments import Own, checked
 
 #: Case -> (Omega1, Omega2, delta).
 CASES = MappingProxyType(
@@ -33,7 +33,7 @@ def brake4dof(
     delta: float | None = None,
     mu_k_N: float = 15.0,
     mu_s_N: float | None = None,
-    mass_ratio: float = 1000.0,
+    mass_ratio: Own = 1000.0,
     u0: float = 10.0,
     v0: float = 0.01,
     law: fm.FrictionLaw | None = None,
@@ -76,11 +76,7 @@ def brake4dof(
         raise fm.SceneError(f"brake4dof: case must be one of {', '.join(CASES)}; got {shown(case)}")
     if law is not None and mu_s_N is not None:
         raise fm.SceneError("brake4dof: mu_s_N belongs to the built-in Coulomb law; with law= leave it out")
-    try:
-        is_ratio = 0.0 < mass_ratio < math.inf
-    except TypeError:  # no number
-        is_ratio = False
-    if not is_ratio:
+    if not 0.0 < as_float(mass_ratio) < math.inf:
         raise fm.SceneError(f"brake4dof: mass_ratio must be a finite number > 0, got {shown(mass_ratio)}")
     Omega1, Omega2, delta = (
         given if given is not None else default
