@@ -227,6 +227,10 @@ def _calm_and_fast(problem: Problem, rtol: float) -> str | None:
     each turn is beyond the polynomials of a step, 1 rtol at 1e-6, 100 at 1e-8, 10 000 at 1e-10; and where they creep
     back without swinging, steps follow them, thousands where implicit ones took 150.
     """
+    return once_per(problem.linear, ("calm and fast", rtol), lambda: _calm_and_fast_modes(problem, rtol))
+
+
+def _calm_and_fast_modes(problem: Problem, rtol: float) -> str | None:
     modes = free_blocks(problem)
     omega = np.sqrt(np.abs(modes.w2))
     if not (omega.size and modes.d.any()):

@@ -34,10 +34,14 @@ def too_far_apart(problem: Problem) -> str | None:
     Eigenvalues are right to round-off of the largest: a tie 1e12 times as stiff as the spring to ground left an error
     of 1e-3 after eight periods (docs/decisions/0023-stiffness-and-round-off.md).
     """
+    return once_per(problem.linear, "too far apart", lambda: _too_far_apart(problem))
+
+
+def _too_far_apart(problem: Problem) -> str | None:
     w2 = np.abs(free_blocks(problem).w2)
     most = w2.max(initial=0.0)
     least = w2[w2 > most / NOTHING].min(initial=most)
-    if bool((w2 <= most / NOTHING).any()) and once_per(problem.linear, "hides", lambda: hides_springs(problem)):
+    if bool((w2 <= most / NOTHING).any()) and hides_springs(problem):
         return f"frequencies of {np.sqrt(most):.3g} beside some that an eigenproblem cannot tell from 0"
     if most <= APART * least:
         return None

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks
 from fricmb.integrate.compile.piece import Pattern, Piece
 from fricmb.integrate.model.friction_cone import stick_limits
+from fricmb.integrate.model.problem_structs import moved_by
 from fricmb.integrate.model.structure import dense_inverse
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Floats, Problem
@@ -69,14 +69,6 @@ def load_pattern(n: int, m: int) -> Pattern:
     return Pattern(Run, {"belt": (m,), **dict.fromkeys(LOADS, (n,))})
 
 
-@cached_by_content
-def _port(M: Floats, W: Floats) -> tuple[Floats, Floats, Floats]:
-    """Inverse mass, motion of the dofs per contact force, Delassus matrix."""
-    Minv = dense_inverse(M).dense()
-    MW = Minv @ W
-    return Minv, MW, W.T @ MW
-
-
 def _put_blocks(held: dict[str, Any], z: int, part: Blocks, M: Floats) -> None:
     """Blocks of the structure in slip (0) or in stick (1)."""
     b = len(part.w2)
@@ -117,7 +109,7 @@ def _structure(problem: Problem) -> Structure:
     M, K, C = (np.asarray(x, float) for x in (linear.M, linear.Kx[:n, :n], linear.Cx[:n, :n]))
     W = np.ascontiguousarray(problem.contacts.W)
     slip, stick = free_blocks(problem), blocks(M, K, C, W, tuple(range(m)))
-    Minv, MW, D = _port(M, W)
+    MW, D = moved_by(M, W)
     Dinv = np.asarray(np.linalg.inv(D), dtype=float)
     piece = structure_pattern(n, m).zeros()
     held = piece.arrays
@@ -126,7 +118,7 @@ def _structure(problem: Problem) -> Structure:
     _put_hold(held, stick, Dinv @ MW.T, K, C)
     _put_contact(held, slip, W)
     held["wt"][...], held["mw"][...], held["D"][...], held["D_inv"][...] = W.T, MW.T, D, Dinv
-    held["stiff"][...], held["visc"][...], held["minv"][...] = K, C, Minv
+    held["stiff"][...], held["visc"][...], held["minv"][...] = K, C, dense_inverse(M).dense()
     frequencies, linked, b = np.sqrt(np.abs(slip.w2)), held["linked"], len(stick.w2)
     rates = np.maximum(frequencies, np.abs(slip.d))
     numbers = {
