@@ -18,7 +18,7 @@ import fricmb as fm
 from .judge import Case
 from .laws import parts_of
 from .problem import Contact, Problem
-from .turning import EZ, Body, Pose, Tree, about, axle, ball_joint, floor, wheel
+from .turning import EZ, Body, Pose, Tree, about, axle, ball_joint, cross, floor, wheel
 
 G = 9.81
 EX = np.array([1.0, 0.0, 0.0])
@@ -194,7 +194,7 @@ def changes(spec: Bodies, i: int, poses: list[Pose]) -> np.ndarray:
     """Of slip, if all rates stayed."""
     link, pose = spec.links[i], poses[i]
     if link.on_floor:
-        return (pose.bv + np.cross(pose.bw, pose.touch) + np.cross(pose.omega, pose.touch_rate))[:2]
+        return (pose.bv + cross(pose.bw, pose.touch) + cross(pose.omega, pose.touch_rate))[:2]
     if link.joint == "spherical":
         return link.radius * (pose.bw - before(i, poses, "bw"))
     return np.zeros(len(levers(link)))
@@ -213,10 +213,10 @@ def contact(spec: Bodies, tree: Tree, i: int, n: int) -> Contact:
             return float(np.linalg.norm(force))
         e = tree.poses(q, v)[i].R @ np.array(link.axis)
         radial = force - (force @ e) * e
-        couple = np.cross(torque, e) / link.length if link.length else np.zeros(3)
+        couple = cross(torque, e) / link.length if link.length else np.zeros(3)
         ends = [radial / 2 + couple, radial / 2 - couple]
         if link.joint == "prismatic":  # each end is two shoes, side by side along what was x at the start
-            w = np.cross(e, tree.poses(q, v)[i].R @ turned(link).T @ EX)
+            w = cross(e, tree.poses(q, v)[i].R @ turned(link).T @ EX)
             twist = torque @ e / link.width / 2 * w if link.width else np.zeros(3)
             ends = [end / 2 + sign * twist for end in ends for sign in (1.0, -1.0)]
         thrust = link.thrust / link.radius * abs(force @ e) if link.thrust else 0.0
@@ -323,7 +323,7 @@ def seen(spec: Bodies, tree: Tree) -> Any:
             rates.append(pose.v)
             for k in () if link.joint == "ball" else (2,) if link.round else (0, 1, 2):
                 where.append(pose.R[:, k])
-                rates.append(np.cross(pose.omega, pose.R[:, k]))
+                rates.append(cross(pose.omega, pose.R[:, k]))
         return np.concatenate(where), np.concatenate(rates)
 
     return of
