@@ -29,6 +29,7 @@ from fricmb.equations._templates import (
     formula,
     joint_template,
     law_template,
+    normal_bend_template,
     normal_template,
     place_template,
 )
@@ -66,6 +67,7 @@ __all__ = [
     "function",
     "joint_template",
     "law_template",
+    "normal_bend_template",
     "normal_template",
     "numbers",
     "place_template",

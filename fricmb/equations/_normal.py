@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import sympy
@@ -10,6 +11,9 @@ from fricmb.equations import _code
 from fricmb.errors import LawError
 from fricmb.values import ask, one_expression, symbolic
 
+#: A force below this is none: kernels floor roots (``_code.FLOOR``).
+NOTHING = 1e-50
+
 
 def normal_expression(law: Any) -> tuple[Any, Any, Any, tuple[Any, ...]]:
     """Symbols e and e', the normal force before the cut at 0, and the symbols of the parameters."""
@@ -17,7 +21,28 @@ def normal_expression(law: Any) -> tuple[Any, Any, Any, tuple[Any, ...]]:
     stand = symbolic(law)
     said = LawError, type(law).__name__, "define_normal"
     force = ask(*said, stand.standin.define_normal, e=e, e_dot=rate)
-    return e, rate, one_expression(*said, force, {e, rate, *stand.flat}), stand.flat
+    force = one_expression(*said, force, {e, rate, *stand.flat})
+    if isinstance(force, sympy.Max) and sympy.S.Zero in force.args:
+        # it is cut at 0 anyway, and what is left changes its sign where the contact opens
+        force = sympy.Max(*(part for part in force.args if part != 0))
+    return e, rate, force, stand.flat
+
+
+def _mirrored(N: Any, e: Any, rate: Any) -> list[tuple[Any, Any]]:
+    """For every function that a law switches on: how far away that is, and the force as far on its other side.
+
+    Only a change of sign is found as a transition, and a force of ``Max(0, -e)`` has none: minus the force on the other
+    side of the nearest switch stands for one that is 0 beyond its opening, so that it passes 0 without a bend.
+    """
+    from fricmb.equations._expression import switching_functions
+
+    found = []
+    for f in switching_functions(N):
+        slope = sympy.diff(f, e)
+        if f.free_symbols & {e, rate}:
+            known = slope != 0 and not slope.has(e, rate, sympy.Heaviside, sympy.Piecewise)
+            found.append((f / slope, N.xreplace({e: e - 2 * f / slope})) if known else (f, f))
+    return found
 
 
 def normal_text(law: Any) -> str:
@@ -25,8 +50,32 @@ def normal_text(law: Any) -> str:
     return str(sympy.srepr(normal_expression(law)))
 
 
+def derive_normal_bends(law: Any) -> tuple[dict[str, Any], str | None]:
+    """Kernel of the functions of e and e' at whose sign changes a law jumps or has a kink; their arguments."""
+    from fricmb.equations._expression import derive_bends, switching_functions
+
+    e, rate, N, parameters = normal_expression(law)
+    used: set[Any] = set().union(*(f.free_symbols for f in switching_functions(N)))
+    chosen = [i for i, symbol in enumerate((e, rate)) if symbol in used]
+    arguments = [(e, rate)[i] for i in chosen]
+    facts, source = derive_bends(N, arguments, [e, rate], parameters, type(law).__name__)
+    return facts | {"arguments": chosen}, source
+
+
+def _open_lines(mirrored: Sequence[Any]) -> list[str]:
+    """What makes a force that is 0 (but for the floor of roots) negative, see :func:`_mirrored`."""
+    if not mirrored:
+        return []
+    lines = [f"if max(abs(out[0]), abs(out[1]), abs(out[2])) < {NOTHING}:", "    nearest = 1e308"]
+    for away, force in zip(mirrored[::2], mirrored[1::2], strict=True):
+        lines += ["    " + line for line in _code.body([away], ["away"])]
+        lines += ["    if abs(away) < nearest:", "        nearest = abs(away)"]
+        lines += ["        " + line for line in _code.body([force], ["there"])]
+    return [*lines, "    if nearest < 1e308:", "        out[0] = -max(abs(there), 1e-30*nearest)"]
+
+
 def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
-    """Facts and kernel: x = [e, e'], out = [N, dN/de, dN/de', V, dV/de].
+    """Facts and kernel: x = [e, e'], out = [N, dN/de, dN/de', V, dV/de]; where N is 0, what stands for it is below 0.
 
     V is the potential of N - N(0, 0) on both bodies at e' = 0, with N cut at 0: an antiderivative up to the opening, a
     constant force from there on.  The opening is found by bisection between 0 and e.
@@ -37,8 +86,12 @@ def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
     stored = symbolic(law).standin.define_stored(e)
     stored = sympy.integrate(still, e) if stored is None else sympy.sympify(stored)
     if stored.has(sympy.Integral):
-        raise LawError(f"{title}: the integral of define_normal(e, 0) over e has no closed form")
-    outputs = [N, sympy.diff(N, e), sympy.diff(N, rate), still, stored]
+        raise LawError(
+            f"{title}: SymPy finds no closed form of the integral of define_normal(e, 0) over e; define_stored(self, e)"
+            " gives it"
+        )
+    mirrored = [expression for pair in _mirrored(N, e, rate) for expression in pair]
+    outputs = [N, sympy.diff(N, e), sympy.diff(N, rate), still, stored, *mirrored]
     for expression in outputs:
         _code.check(expression, title)
     rename, reads = _code.read_arguments([e, rate], parameters, outputs)
@@ -49,6 +102,7 @@ def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
         *(line for line in reads if not line.startswith(("x0 ", "x1 "))),
         "x0, x1 = x[0], x[1]",
         *_code.body(plain[:4], ["out[0]", "out[1]", "out[2]", "force"]),
+        *_open_lines(plain[5:]),
         "zero = 0.0",
         *_code.body([plain[3].xreplace({x0: at["zero"]})], ["at_zero"]),
         "turn = x0",

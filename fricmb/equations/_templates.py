@@ -254,6 +254,28 @@ def normal_template(law: Any) -> Template:
     return found
 
 
+def normal_bend_template(law: Any) -> Template | None:
+    """Template of the functions at whose sign changes a normal-force law bends, of somebody else's type; or None.
+
+    Facts: ``count`` of them, and which of e and e' are their ``arguments``.  What this package has bends where the
+    contact opens, and that is a transition.
+    """
+    if type(law).__module__.startswith("fricmb."):
+        return None
+    shape = structure(law)
+    key = ("normal bends", shape)
+    found = _found.get(key)
+    if found is None:
+
+        def derive() -> tuple[dict[str, Any], str | None]:
+            from fricmb.equations._normal import derive_normal_bends
+
+            return derive_normal_bends(law)
+
+        found = _found[key] = get("normal_bends", _content(law, shape, lambda: _normal_text(law)), derive)
+    return found if found.facts["count"] else None
+
+
 def _normal_text(law: Any) -> str:
     from fricmb.equations._normal import normal_text
 

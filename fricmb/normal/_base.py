@@ -42,7 +42,10 @@ class NormalLaw(Declaration):
         """Check the numbers; raises :class:`LawError`."""
 
     def define_normal(self, e: Any, e_dot: Any) -> Any:
-        """The normal force before the cut at 0, in SymPy: ``e``, ``e_dot`` and the fields are symbols."""
+        """The normal force before the cut at 0, in SymPy: ``e``, ``e_dot`` and the fields are symbols.
+
+        It may bend (``Max``, ``Abs``, ``Piecewise``): steps end there.  Beyond its opening it may be negative or 0.
+        """
         raise LawError(f"{type(self).__name__}: defines no define_normal(self, e, e_dot)")
 
     def define_stored(self, e: Any) -> Any:

@@ -12,6 +12,7 @@ from fricmb.equations import (
     Template,
     bend_expression,
     law_template,
+    normal_bend_template,
     normal_template,
     numbers,
     signal_expression,
@@ -193,6 +194,10 @@ class ContactArrays:
             self.normal.append(NORMAL_LAW)
             self.normal_table.add(template.address, numbers(law), [row.value(), row.rate()])
             self._normal(0.0, row, float(value_of(law.preload)))
+            bent = normal_bend_template(law)
+            if bent is not None:
+                given = (row.value(), row.rate())
+                self.bends.append((bent, numbers(law), [given[i] for i in bent.facts["arguments"]]))
         elif kind == "constant":
             self.normal.append(NORMAL_CONSTANT)
             self.normal_table.add(NO_TEMPLATE)

@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.forces import load_at, move
+from fricmb.integrate.constrained.forces import load_at, move, scatter
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, asked
@@ -14,7 +14,7 @@ from fricmb.integrate.constrained.slow_slip import free_by_force, look_at_step
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.forces import element_forces
-from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, Codes, Floats, Floats2
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.element_bends import ASKED, put_signs
 from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE, narrowed
@@ -53,14 +53,19 @@ def where_turned(
 
 
 @kernel
-def forces_at(mech: Mech, k: Moving, n: int, f: Floats) -> None:
-    """Forces of all elements on the n degrees of freedom at X, what acts on places brought to these; behind them loads.
+def forces_at(mech: Mech, k: Moving, n: int, mode: Codes, f: Floats) -> None:
+    """Forces of elements and of normal-force laws on the n degrees of freedom at X; behind them loads.
 
-    Loads are those of contacts, before max with 0; of joints, whose reactions these are, 0.
+    What acts on places is brought to the degrees of freedom.  Loads are those of contacts, before max with 0; of
+    joints, whose reactions these are, and of what is open, 0.
     """
-    place = mech.place
+    place, port = mech.place, mech.port
     k.fy[:] = 0.0
     element_forces(mech.elements, mech.spread, k.s, k.fy)
+    for p in range(port.joint.shape[0]):
+        f[n + p] = load_at(mech, k, p) if port.joint[p] < 0 and mode[p] != OPEN else 0.0
+        if port.joint[p] < 0 and port.normal[p] == NORMAL_LAW:
+            scatter(k, port.normals, port.normals.x_start[p], f[n + p])
     for i in range(n):
         f[i] = k.fy[i]
     for c in range(place.address.shape[0]):
@@ -69,8 +74,6 @@ def forces_at(mech: Mech, k: Moving, n: int, f: Floats) -> None:
         for r in range(place.first[c + 1] - place.first[c]):
             for i in range(count):
                 f[place.dof[d0 + i]] += k.grad[place.grad_start[c] + r * count + i] * k.fy[n + place.first[c] + r]
-    for p in range(mech.port.joint.shape[0]):
-        f[n + p] = load_at(mech, k, p) if mech.port.joint[p] < 0 else 0.0
 
 
 @kernel
@@ -92,17 +95,17 @@ def missed_at(
         coefficient = abs(mech.port.mu_s[p]) if mech.port.law[p] != LAW_SMOOTH else 1.0
         free[n + p] = coefficient * free_by_force(mech, k, y, c, p) if mech.port.joint[p] < 0 else 0.0
     move(mech, k, y.t, y.q, y.v)
-    forces_at(mech, k, n, force[0])
+    forces_at(mech, k, n, y.mode, force[0])
     for j in range(count):
         move(mech, k, y.t + st.tab.c[j] * h, st.Q[j], st.V[j])
-        forces_at(mech, k, n, force[j + 1])
+        forces_at(mech, k, n, y.mode, force[j + 1])
     total = 0.0
     for side in range(2):
         way = low - x if side == 0 else high - x
         for _ in range(ASKED):
             way *= NEARER
             look(mech, k, y, st, x + way, h, line, state)
-            forces_at(mech, k, n, here)
+            forces_at(mech, k, n, y.mode, here)
             worst = 0.0
             for i in range(n + n_c):
                 expected, largest = 0.0, 0.0

@@ -13,7 +13,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch, element_forces, evaluate, normal_force, set_instant
 from fricmb.integrate.model.problem_structs import Packed, Table
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Ints
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Codes, Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.knots import AT_AN_END, IN_HISTORY, NEAR, NOWHERE, SLIGHT, narrowed
 from fricmb.integrate.step.law_defect import CREEP, ROUND_OFF, felt
@@ -64,13 +64,21 @@ def where_turned(
 
 
 @kernel
-def forces_at(packed: Packed, s: Scratch, n: int, f: Floats) -> None:
-    """Forces of all elements on the n dofs at X, behind them the loads of all contacts (before max with 0)."""
+def forces_at(packed: Packed, s: Scratch, n: int, mode: Codes, f: Floats) -> None:
+    """Forces of all elements and of normal-force laws on the n dofs at X, behind them the loads of all contacts.
+
+    Loads are those before max with 0; what is open has none.
+    """
+    ports = packed.ports
     f[:] = 0.0
     element_forces(packed.elements, packed.spread, s, f[:n])
-    for k in range(packed.ports.var.shape[0]):
-        if packed.ports.var[k] >= 0:
-            f[n + k] = normal_force(packed.ports, packed.normals, k, s)
+    for k in range(ports.var.shape[0]):
+        if ports.var[k] < 0 or mode[k] == OPEN:
+            continue
+        f[n + k] = normal_force(ports, packed.normals, k, s)
+        if ports.acts[k]:
+            for i in range(n):
+                f[i] += ports.Wn[i, k] * f[n + k]
 
 
 @kernel
@@ -96,17 +104,17 @@ def missed_at(
     n, count = y.q.shape[0], one.tab.c.shape[0]
     force, off = np.empty((count + 1, n + y.mode.shape[0])), np.empty(n + y.mode.shape[0])
     set_instant(packed.signals, s, y.t, y.q, y.v)
-    forces_at(packed, s, n, force[0])
+    forces_at(packed, s, n, y.mode, force[0])
     for j in range(count):
         set_instant(packed.signals, s, one.st.t[j], one.st.Q[j], one.st.V[j])
-        forces_at(packed, s, n, force[j + 1])
+        forces_at(packed, s, n, y.mode, force[j + 1])
     total = 0.0
     for side in range(2):
         way = low - x if side == 0 else high - x
         for _ in range(ASKED):
             way *= NEARER
             look(packed, s, y, one, x + way, h, line, state)
-            forces_at(packed, s, n, off)
+            forces_at(packed, s, n, y.mode, off)
             for i in range(off.shape[0]):
                 expected, largest = 0.0, 0.0
                 for j in range(count + 1):
@@ -148,10 +156,10 @@ def bends_in_step(packed: Packed, s: Scratch, y: State, end: State, acc: Accurac
     f, off = np.empty((3, n + y.mode.shape[0])), np.empty(n + y.mode.shape[0])
     set_instant(packed.signals, s, y.t, y.q, y.v)
     put_signs(packed.bends, packed.bend_start, s, signs[0])
-    forces_at(packed, s, n, f[0])
+    forces_at(packed, s, n, y.mode, f[0])
     set_instant(packed.signals, s, end.t, end.q, end.v)
     put_signs(packed.bends, packed.bend_start, s, signs[1])
-    forces_at(packed, s, n, f[1])
+    forces_at(packed, s, n, y.mode, f[1])
     h, allowed = end.t - y.t, IN_HISTORY * acc.rtol
     for b in range(count):
         if (signs[0, b] < 0.0) == (signs[1, b] < 0.0):
@@ -161,7 +169,7 @@ def bends_in_step(packed: Packed, s: Scratch, y: State, end: State, acc: Accurac
             state[0, i] = y.q[i] + x * (end.q[i] - y.q[i])
             state[1, i] = y.v[i] + x * (end.v[i] - y.v[i])
         set_instant(packed.signals, s, y.t + x * h, state[0], state[1])
-        forces_at(packed, s, n, f[2])
+        forces_at(packed, s, n, y.mode, f[2])
         for i in range(off.shape[0]):
             largest = max(abs(f[0, i]), abs(f[1, i]))
             off[i] = max(abs(f[2, i] - f[0, i] - x * (f[1, i] - f[0, i])) - ROUND_OFF * largest, 0.0)

@@ -132,6 +132,8 @@ def correct_dense(packed: Packed, tab: Tableau, fac: Factor, st: Stages) -> None
                 dV[i, a] -= (T[i, x] * value).real
 
 
+#: What two iterations in turn may change, in units of ``scale``, where nothing is left to be gained.
+SETTLED = 0.1
 #: Forces of the structure beside inertia over a step from which on one solution with the inverses is not enough, how
 #: often it is refined then, and what the last time may change, in units of ``scale``: inverses that have lost all
 #: digits of what is soft refine nothing, and a shorter step is to be taken.
@@ -229,6 +231,8 @@ def solve_stages(
             break
         rate = change / last
         if change < done or (not linear and iteration > 0 and rate < 0.9 and change * rate / (1.0 - rate) < 0.1):
+            break
+        if not linear and max(change, last) < SETTLED:  # a start that was right but for round-off has no rate
             break
         if iteration > 1 and rate > 2.0:
             return -1
