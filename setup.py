@@ -9,9 +9,10 @@ from pathlib import Path
 from setuptools import Distribution, setup
 from setuptools.command.build_py import build_py
 
-#: What is needed to compile: what is needed to run, but for pictures.
+#: What kernels need to be compiled: what runs need, but for pictures, and for what is done in Python before a run.
+#: Models' equations are derived at their first run, in less time than it takes to install SymPy for the build alone.
 PROJECT = tomllib.loads(Path(__file__).with_name("pyproject.toml").read_text())["project"]
-NEEDED = [need for need in PROJECT["dependencies"] if not need.startswith("matplotlib")]
+NEEDED = [need for need in PROJECT["dependencies"] if not need.startswith(("matplotlib", "scipy", "sympy"))]
 #: Seconds after which compiling is given up.
 LIMIT = 1800
 #: Otherwise each kernel is compiled at its first use.

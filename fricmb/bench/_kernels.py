@@ -74,7 +74,8 @@ def friction(c: int, y: Floats, g: Floats, F: Floats, dF: Floats, zp: Floats, dz
         z0 = k[k[Z_START] + c]
         nz = k[k[Z_START] + c + 1] - z0
         x, out = np.empty(d + 1 + nz), np.empty((d + nz) * (d + 2 + nz))
-        x[:d] = g[a0:a1]
+        for i in range(d):
+            x[i] = g[a0 + i]
         x[d] = N
         for i in range(nz):
             x[d + 1 + i] = y[2 * k[0] + z0 + i]

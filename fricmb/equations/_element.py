@@ -9,7 +9,9 @@ from typing import Any
 import sympy
 
 from fricmb.equations import _code
+from fricmb.equations._graph import Graph
 from fricmb.equations._split import affine, split
+from fricmb.equations._statements import kernel
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,13 +102,18 @@ def derive(math: ElementMath, title: str, *, driven: bool) -> tuple[dict[str, An
 
 
 def _remainder(math: ElementMath, V: Any, R: Any, F: Sequence[Any], title: str, driven: bool) -> tuple[Any, str]:
-    force = [f - sympy.diff(V, x) - sympy.diff(R, v) for x, v, f in zip(math.x, math.v, F, strict=True)]
-    loss = sum((v * sympy.diff(R, v) for v in math.v), sympy.S.Zero)
-    power = sum((f * v for f, v in zip(F, math.v, strict=True)), sympy.S.Zero)
+    for expression in (V, R, *F):
+        _code.check(sympy.sympify(expression), title)
+    graph = Graph(title)
+    energy, lost, push = graph.of(V), graph.of(R), [graph.of(f) for f in F]
+    by_x, by_v = graph.gradients([energy], math.x)[0], graph.gradients([lost], math.v)[0]
+    force = [graph.sum([(f, 1.0), (a, -1.0), (b, -1.0)]) for f, a, b in zip(push, by_x, by_v, strict=True)]
+    rates = [graph.of(v) for v in math.v]
+    power = graph.dot(push, rates)
     if driven:
-        power -= sum(f * d for f, d in zip(force, math.d, strict=True))
-    scalars = [sympy.sympify(e) for e in (V, loss, power)]
-    used: set[Any] = set().union(*(sympy.sympify(e).free_symbols for e in [*force, *scalars]))
+        power = graph.sum([(power, 1.0), (graph.dot(force, [graph.of(d) for d in math.d]), -1.0)])
+    scalars = [energy, graph.dot(rates, by_v), power]
+    used = graph.symbols([*force, *scalars])
     candidates = [
         *((symbol, ["x", i]) for i, symbol in enumerate(math.x)),
         *((symbol, ["v", i]) for i, symbol in enumerate(math.v)),
@@ -115,11 +122,9 @@ def _remainder(math: ElementMath, V: Any, R: Any, F: Sequence[Any], title: str, 
     ]
     chosen = [(symbol, place) for symbol, place in candidates if symbol in used]
     arguments = [symbol for symbol, _ in chosen]
-    jacobian = [sympy.diff(f, a) for f in force for a in arguments]
-    outputs = [*force, *jacobian, *scalars]
-    for expression in outputs:
-        _code.check(expression, title)
-    return [place for _, place in chosen], _code.kernel(arguments, math.parameters, outputs, title)
+    jacobian = [slope for row in graph.gradients(force, arguments) for slope in row]
+    source = kernel(graph, arguments, math.parameters, [*force, *jacobian, *scalars], title)
+    return [place for _, place in chosen], source
 
 
 def derive_bends(math: ElementMath, title: str) -> tuple[dict[str, Any], str | None]:

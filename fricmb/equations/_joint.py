@@ -9,6 +9,8 @@ from typing import Any
 import sympy
 
 from fricmb.equations import _code
+from fricmb.equations._graph import Graph
+from fricmb.equations._statements import kernel
 from fricmb.errors import SceneError, shown
 from fricmb.values import symbolic
 
@@ -64,28 +66,37 @@ def _vector(value: Any, label: str, method: str) -> tuple[Any, ...]:
 
 def derive_joint(math: JointMath, title: str) -> tuple[dict[str, Any], str]:
     """Facts and kernel of a joint type; the layout of the output is that of ``integrate.mechanism.Joints``."""
-    x, v, lam = math.x, math.v, math.lam
-    G = [[sympy.diff(phi, a) for a in x] for phi in math.phi]
-    second = [[[sympy.diff(g, b) for b in x] for g in row] for row in G]
-    n, m = len(x), len(math.phi)
-    outputs = [*math.phi, *(g for row in G for g in row)]
-    outputs += [sum(lam[r] * second[r][a][b] for r in range(m)) for a in range(n) for b in range(n)]
-    outputs += [sum(v[b] * second[r][b][a] for b in range(n)) for r in range(m) for a in range(n)]
+    _check([*math.phi, *(s for row in math.slip or () for s in row), math.load], title)
+    graph = Graph(title)
+    x, v, lam = ([graph.of(symbol) for symbol in symbols] for symbols in (math.x, math.v, math.lam))
+    phi = [graph.of(expression) for expression in math.phi]
+    G = graph.gradients(phi, math.x)
+    outputs = [*phi, *(g for row in G for g in row)]
+    reactions = [graph.dot(lam, column) for column in zip(*G, strict=True)] if phi else [graph.number(0.0)] * len(x)
+    outputs += [h for row in graph.gradients(reactions, math.x) for h in row]
+    outputs += [g for row in graph.gradients([graph.dot(row, v) for row in G], math.x) for g in row]
     if math.slip is not None:
-        factors = [s for row in math.slip for s in row]
-        outputs += [*factors, *(sympy.diff(s, b) for s in factors for b in x)]
-        outputs += [math.load, *(sympy.diff(math.load, a) for a in (*lam, *x, *v))]
-    outputs = [sympy.sympify(e) for e in outputs]
-    for expression in outputs:
-        _code.check(expression, title)
-    return {"n_x": n, "rows": m}, _code.kernel([*x, *v, *lam], math.parameters, outputs, title)
+        factors, load = [graph.of(s) for row in math.slip for s in row], graph.of(math.load)
+        outputs += [*factors, *(slope for row in graph.gradients(factors, math.x) for slope in row)]
+        outputs += [load, *graph.gradients([load], [*math.lam, *math.x, *math.v])[0]]
+    facts = {"n_x": len(x), "rows": len(phi)}
+    return facts, kernel(graph, [*math.x, *math.v, *math.lam], math.parameters, outputs, title)
+
+
+def _check(expressions: Sequence[Any], title: str) -> None:
+    for expression in expressions:
+        if expression is not None:
+            _code.check(sympy.sympify(expression), title)
 
 
 def derive_place(body: Any, n: int, title: str) -> tuple[dict[str, Any], str]:
     """Kernel of a point of a body type with n coordinates: position, gradient, second derivatives."""
     q = tuple(sympy.Symbol(f"q_{i}", real=True) for i in range(n))
     offset = sympy.symbols("u v", real=True)
-    position: Sequence[Any] = [sympy.sympify(e) for e in body.define_point(q, offset)]
-    outputs = [*position, *(sympy.diff(e, a) for e in position for a in q)]
-    outputs += [sympy.diff(e, a, b) for e in position for a in q for b in q]
-    return {"count": len(position)}, _code.kernel(q, offset, outputs, title)
+    stated = [sympy.sympify(e) for e in body.define_point(q, offset)]
+    _check(stated, title)
+    graph = Graph(title)
+    position = [graph.of(e) for e in stated]
+    slopes = [slope for row in graph.gradients(position, q) for slope in row]
+    second = [slope for row in graph.gradients(slopes, q) for slope in row]
+    return {"count": len(position)}, kernel(graph, q, offset, [*position, *slopes, *second], title)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,7 +43,7 @@ def _terms(expression: Any, variables: Sequence[Any], blocked: Sequence[Any]) ->
         if _degree(term, variables, blocked) < _NEVER:
             terms.append(term)
             continue
-        parts = sympy.Add.make_args(sympy.expand(term))
+        parts = sympy.Add.make_args(_around_branches(term, sympy.expand))
         useful = any(_degree(part, variables, blocked) < _NEVER for part in parts)
         terms.extend(parts if useful else (term,))
     return terms
@@ -66,10 +66,16 @@ def _degree(term: Any, variables: Sequence[Any], blocked: Sequence[Any]) -> int:
 def _factors(terms: Sequence[Any], variables: Sequence[Any]) -> list[Any]:
     found: list[Any] = []
     for term in terms:
-        factor, _ = sympy.factor_terms(term).as_independent(*variables, as_Add=False)
+        factor, _ = _around_branches(term, sympy.factor_terms).as_independent(*variables, as_Add=False)
         if factor not in found:
             found.append(factor)
     return found
+
+
+def _around_branches(term: Any, change: Callable[[Any], Any]) -> Any:
+    """Change a term, but for what stands inside its branches: that sets nothing free, and takes long."""
+    names = {branches: sympy.Dummy(real=True) for branches in term.atoms(sympy.Piecewise)}
+    return change(term.xreplace(names)).xreplace({name: branches for branches, name in names.items()})
 
 
 def affine(expression: Any, variables: Sequence[Any]) -> tuple[list[Any], Any]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import pkgutil
 from importlib import import_module
+from importlib.util import find_spec
 
 from fricmb.integrate.compile.block import block_names, load_block
 from fricmb.integrate.compile.kernel import compile_entry, entry_names
@@ -28,14 +29,18 @@ def kernels() -> list[str]:
 
 
 def runs() -> list[str]:
-    """Tasks that run each built-in model, and the solver of given equations, for a moment; kernels are there.
+    """Tasks that run the solver of given equations, and each built-in model, for a moment; kernels are there.
 
-    The last of the catalogue are the largest: they come first, so that nobody waits for one of them alone.
+    Only where SciPy, and SymPy for the equations of models, are there.  Where the package is built by itself they are
+    not: kernels need neither, and to install them for that alone takes longer than these tasks do at a first run.  The
+    last of the catalogue are the largest: they come first, so that nobody waits for one of them alone.
     """
     import fricmb as fm
 
-    largest, *others = (f"model {name}" for name in reversed(fm.models.catalogue))
-    return [largest, "dae linear", *others]
+    if not find_spec("scipy"):
+        return []
+    models = reversed(fm.models.catalogue) if find_spec("sympy") else ()
+    return ["dae linear", *(f"model {name}" for name in models)]
 
 
 def do(task: str) -> None:

@@ -58,11 +58,11 @@ def step_maps(formula: Formula, h: Floats, slopes: Floats, rates: Floats, n: int
     count, s = h.size, formula.c.size
     G = np.concatenate([slopes, rates], axis=2) if rates.size else slopes
     m, width = G.shape[2], G.shape[3]
+    A2 = formula.A @ formula.A
     if s * m <= SMALL:
         found = np.zeros((count, n_y, width))
-        small_maps(formula.A, formula.c, h, G.reshape(count, s * m, width), n, found)
+        small_maps(formula.A, A2, formula.c, h, G.reshape(count, s * m, width), n, found)
         return found
-    A2 = formula.A @ formula.A
     Gq, Gv, Gz = G[..., :n], G[..., n : 2 * n], G[..., 2 * n : n_y]
     left = np.zeros((count, s, m, s, m))
     square, once = h[:, None, None, None, None] ** 2, h[:, None, None, None, None]

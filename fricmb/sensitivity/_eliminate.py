@@ -12,13 +12,12 @@ SMALL = 64
 
 
 @entry
-def small_maps(A: Floats2, c: Floats, h: Floats, G: Floats3, n: int, found: Floats3) -> None:
+def small_maps(A: Floats2, A2: Floats2, c: Floats, h: Floats, G: Floats3, n: int, found: Floats3) -> None:
     """Maps ``found`` (n_t, n_y, n_y + n_p) of steps, 0 before.
 
-    ``G`` (n_t, s m, n_y + n_p): slopes of accelerations and rates, those of each stage together.
+    ``A2`` is A A; ``G`` (n_t, s m, n_y + n_p): slopes of accelerations and rates, those of each stage together.
     """
     s = A.shape[0]
-    A2 = A @ A
     rows, width = G.shape[1], G.shape[2]
     m = rows // s
     work = np.empty((rows, rows + width))

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numba import njit
 from numba.core.errors import TypingError
 
+import fricmb
 from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.kernel_library import long_loops
@@ -95,3 +99,30 @@ def test_an_error_of_typing_names_the_kernel_and_the_line():
     line = wrong.__code__.co_firstlineno + 1
     with pytest.raises(TypingError, match=rf'(?s)test_quick_compiling.py", line {line}:.*def wrong\(x\)'):
         compiled(wrong)(1.0)
+
+
+KERNELS = {"kernel", "block", "entry", "run_entry"}
+
+
+def assignments_to_parts(path):
+    """Where kernels assign an array to a slice of another one that is not all of a row."""
+    for function in ast.walk(ast.parse(path.read_text())):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        if not KERNELS & {made.id for made in function.decorator_list if isinstance(made, ast.Name)}:
+            continue
+        for made in ast.walk(function):
+            target = made.targets[0] if isinstance(made, ast.Assign) else None
+            if not isinstance(target, ast.Subscript) or isinstance(made.value, ast.Constant):
+                continue
+            places = target.slice.elts if isinstance(target.slice, ast.Tuple) else [target.slice]
+            slices = [place for place in places if isinstance(place, ast.Slice)]
+            whole = len(places) == 1 and not any(place.lower or place.upper or place.step for place in slices)
+            if slices and not whole:
+                yield f"{path.name}:{made.lineno}"
+
+
+def test_kernels_copy_whole_rows():
+    """``a[i, :] = b`` and ``a[1:] = b`` take in numba's strings, for a message: 5 s in each block."""
+    found = [place for path in Path(fricmb.__file__).parent.rglob("*.py") for place in assignments_to_parts(path)]
+    assert not found

@@ -1,10 +1,13 @@
 """Kernels compiled ahead of use: all of them, in several processes, found again where they were put."""
 
 import os
+import re
+import runpy
 import signal
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -172,3 +175,33 @@ def test_annotations_of_entries_are_the_types_of_their_calls():
     assert len(called) >= len(own) - 2, sorted(set(own) - set(called))
     for name, made in called.items():
         assert set(made.overloads) == {argument_types(made.py_func)[0]}, name
+
+
+KERNELS_ALONE = """
+import sys
+for name in ("scipy", "sympy", "mpmath", "matplotlib"):
+    sys.modules[name] = None  # importing them fails
+from importlib import util
+found = util.find_spec
+util.find_spec = lambda name, *rest: None if name in sys.modules and sys.modules[name] is None else found(name, *rest)
+from fricmb.precompile import _tasks
+print(len(_tasks.kernels()), _tasks.runs())
+for task in ("block find_open", "entry fricmb.sensitivity._eliminate:small_maps"):
+    _tasks.do(task)
+"""
+
+
+@pytest.mark.slow
+def test_kernels_are_compiled_by_numba_alone():
+    """The package is built where neither SciPy nor SymPy is installed."""
+    command = [sys.executable, "-c", KERNELS_ALONE]
+    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert told == f"{len(_tasks.kernels())} []\n"
+
+
+def test_the_build_asks_for_what_kernels_need(monkeypatch):
+    asked = {}
+    monkeypatch.setattr("setuptools.setup", asked.update)
+    runpy.run_path(str(Path(__file__).parents[2] / "setup.py"))
+    names = {re.split("[<>=]", need)[0] for need in asked["setup_requires"]}
+    assert names == {"numpy", "numba", "lazy_loader", "tqdm", "platformdirs", "threadpoolctl"}

@@ -44,7 +44,8 @@ def states_inside(ex: Exact, left: Floats, right: Floats, before: int, at: int, 
     """States from those in row ``left`` at ``before`` and those of the nodes, in row ``right`` from ``at`` on."""
     n_s, nz = ex.tab.c.shape[0], z.shape[0]
     points, share = np.zeros(n_s + 1), np.empty(n_s + 1)
-    points[1:] = ex.tab.c
+    for x in range(n_s):
+        points[x + 1] = ex.tab.c[x]
     shares(points, theta, share)
     for a in range(nz):
         z[a] = share[0] * left[before + a]

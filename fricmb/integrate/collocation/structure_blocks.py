@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from fricmb.integrate.array_cache import cached_by_content
@@ -71,7 +70,9 @@ def _inverse_factor(M: Floats) -> Floats:
     """Inverse of the lower factor of the mass matrix."""
     if is_diagonal(M):
         return np.diag(1.0 / np.sqrt(np.diagonal(M)))
-    return np.asarray(scipy.linalg.solve_triangular(np.linalg.cholesky(M), np.eye(len(M)), lower=True))
+    from scipy.linalg import solve_triangular
+
+    return np.asarray(solve_triangular(np.linalg.cholesky(M), np.eye(len(M)), lower=True))
 
 
 @cached_by_content
@@ -161,17 +162,19 @@ def _pair_basis(A: Floats, first: Pole, second: Pole) -> tuple[float, float, Flo
 
 def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     """w2, d (b,) and the transformation T (2b, 2b) of (eta, eta') by (u, v), from poles of the state matrix."""
+    from scipy.linalg import block_diag, eig, null_space
+
     n = len(K)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]])
     # motions without stiffness and damping are defective double zeros: taken out exactly
-    null = scipy.linalg.null_space(np.vstack([K, C]), rcond=1e-13) if n else np.zeros((0, 0))
+    null = null_space(np.vstack([K, C]), rcond=1e-13) if n else np.zeros((0, 0))
     size = np.abs(K).max(initial=0.0) + np.abs(C).max(initial=0.0)
     if np.abs(null.T @ K).max(initial=0.0) + np.abs(null.T @ C).max(initial=0.0) > 1e-12 * size:
         raise NoBlocks("a free motion is driven by non-symmetric forces")
-    rest = scipy.linalg.null_space(null.T) if null.shape[1] else np.eye(n)
+    rest = null_space(null.T) if null.shape[1] else np.eye(n)
     k = rest.shape[1]
     small = np.block([[np.zeros((k, k)), np.eye(k)], [-rest.T @ K @ rest, -rest.T @ C @ rest]])
-    poles, vectors = scipy.linalg.eig(small)
+    poles, vectors = eig(small)
     complex_ones = [i for i in range(2 * k) if poles[i].imag > 1e-12 * abs(poles[i])]
     real_ones = [i for i in range(2 * k) if abs(poles[i].imag) <= 1e-12 * abs(poles[i])]
     real_ones.sort(key=lambda i: poles[i].real)
@@ -180,7 +183,7 @@ def _general(K: Floats, C: Floats) -> tuple[Floats, Floats, Floats]:
     )
     w2, d = np.zeros(n), np.zeros(n)
     T = np.zeros((2 * n, 2 * n))
-    lift = scipy.linalg.block_diag(rest, rest)
+    lift = block_diag(rest, rest)
     for j, (a, b) in enumerate(pairs):
         one = poles[a] if a == b else complex(poles[a].real)
         other = (poles[a].conjugate(), vectors[:, a].conj()) if a == b else (complex(poles[b].real), vectors[:, b])

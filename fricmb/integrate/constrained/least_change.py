@@ -8,9 +8,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.linalg.lapack import dgetrf, dgetrs
-from scipy.sparse import bmat, csr_matrix, eye
-from scipy.sparse.linalg import splu
 
 from fricmb.integrate.constrained.instants import constraints
 from fricmb.integrate.constrained.pattern import of_pattern
@@ -51,6 +48,8 @@ def constraints_at(problem: Problem, t: float, q: Floats, v: Floats) -> Constrai
         G = np.zeros((m, problem.n))
         np.add.at(G, (row[:used], column[:used]), value[:used])
         return Constrained(phi=phi, rate=rate, G=G)
+    from scipy.sparse import csr_matrix
+
     entries = (value[:used], (row[:used], column[:used]))
     return Constrained(phi=phi, rate=rate, G=csr_matrix(entries, shape=(m, problem.n)))
 
@@ -88,6 +87,8 @@ def unit_rows(G: Any, weight: Floats) -> tuple[Any, Floats]:
         length = np.sqrt((scaled**2).sum(axis=1))
         length = np.where(length > 0.0, length, 1.0)
         return scaled / length[:, None], length
+    from scipy.sparse import csr_matrix
+
     row = np.repeat(np.arange(G.shape[0]), np.diff(G.indptr))
     values = G.data * weight[G.indices]
     length = np.sqrt(np.bincount(row, values**2, minlength=G.shape[0]))
@@ -99,6 +100,10 @@ class Least:
     """Changes x of least norm with ``J x = r``, in the sense of least squares where J (m, n) lacks rank; rows of 1."""
 
     def __init__(self, J: Any) -> None:
+        from scipy.linalg.lapack import dgetrf
+        from scipy.sparse import bmat, eye
+        from scipy.sparse.linalg import splu
+
         m, n = J.shape
         self.J = J
         self._solve: Callable[[Floats], Floats]
@@ -131,5 +136,7 @@ class Least:
 
 def _solved(factors: Floats, pivots: Ints, r: Floats) -> Floats:
     """The solution for one right-hand side."""
+    from scipy.linalg.lapack import dgetrs
+
     found: Floats = dgetrs(factors, pivots, r)[0]
     return found

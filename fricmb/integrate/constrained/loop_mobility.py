@@ -94,8 +94,8 @@ def with_joints(mech: Mech, k: Moving, w: Instant, y: State, held: Codes, answer
             w.r[:] = 0.0
             w.r[n + m + a] = 1.0
             solve_instant(mech, w)
-            V[a, :] = w.r[:n]
-            answers[a, :] = w.r[n : n + m]
+            V[a] = w.r[:n]
+            answers[a] = w.r[n : n + m]
     for e in range(linear.M.shape[0]):
         for a in range(rows):
             for b in range(rows):

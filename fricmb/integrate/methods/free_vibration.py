@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-import scipy.linalg
 
 from fricmb.integrate.csr import is_diagonal
 from fricmb.integrate.integrator import Integrator, Tolerance
@@ -55,7 +54,9 @@ def modes_of(problem: Problem) -> Modes | None:
     if np.abs(K - K.T).max() > 1e-14 * size_k or np.abs(C - C.T).max() > 1e-14 * size_c:
         return None
     mixed = K if size_c == 0.0 else K + C * (0.6180339887 * size_k / size_c if size_k else 1.0)
-    shapes = np.asarray(scipy.linalg.eigh(0.5 * (mixed + mixed.T), M)[1])
+    from scipy.linalg import eigh
+
+    shapes = np.asarray(eigh(0.5 * (mixed + mixed.T), M)[1])
     inertia = 1.0 / np.sum(shapes * shapes, axis=0).max()
     for A, size in ((K, size_k), (C, size_c)):
         reduced = shapes.T @ A @ shapes
@@ -89,7 +90,9 @@ def unit_responses(w2: Floats, d: Floats, t: Floats) -> tuple[Floats, Floats, Fl
     area[plain] = ((_decayed(r1, t) - _decayed(r2, t)) / split).real
     for j in np.flatnonzero(critical):
         A = np.array([[0.0, 1.0, 0.0], [-w2[j], -d[j], 1.0], [0.0, 0.0, 0.0]])
-        found = scipy.linalg.expm(A * t[:, None, None])
+        from scipy.linalg import expm
+
+        found = expm(A * t[:, None, None])
         S[j], rate[j], area[j] = found[:, 0, 1], found[:, 1, 1], found[:, 0, 2]
     return S, rate, area
 

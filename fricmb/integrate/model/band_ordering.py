@@ -7,8 +7,6 @@ n half.  Modes without coupled damping are a band of one diagonal, a chain has t
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.problem import Ints
@@ -28,6 +26,9 @@ def narrow_order(rows: Ints, columns: Ints, n: int) -> tuple[Ints, int]:
 
     By reverse Cuthill-McKee; ``rows``, ``columns``: places of the entries.  Kept by these: not to be written to.
     """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
     pattern = csr_array((np.ones(len(rows)), (rows, columns)), shape=(n, n))
     found = reverse_cuthill_mckee(pattern, symmetric_mode=False)
     place = np.empty(n, np.int64)

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import connected_components
 
 from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.exchange import with_arrays
@@ -50,6 +48,9 @@ def _labels(problem: Problem) -> tuple[int, Ints]:
 def _labels_of(rows: Ints, columns: Ints, n: int, m: int) -> tuple[int, Ints]:
     if not (np.bincount(rows, minlength=1) > 1).any():
         return m, np.arange(m)
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
     graph = csr_array((np.ones(len(rows)), (rows, n + columns)), shape=(n + m, n + m))
     _, label = connected_components(graph, directed=False)
     found, group = np.unique(label[n:], return_inverse=True)
@@ -155,6 +156,8 @@ def _places(mass: Floats, dof: Ints, row: Ints, W: Floats, group: Ints, count: i
 
     Of W the entries ``W`` (.) with dof and row; ``group`` (m,) of every row among ``count``.
     """
+    from scipy.sparse import coo_array, csr_array
+
     n, m, inverse = len(mass), len(group), 1.0 / mass
     dof_group = np.full(n, -1, dtype=np.int64)
     dof_group[dof] = group[row]

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.friction_cone import friction_size
@@ -20,6 +18,9 @@ SPARE = 0.05
 
 def loops_of(problem: Problem) -> tuple[Ints, Ints]:
     """The loop (n_c,) that each contact is in, or -1, and how many rows of each are independent (n_loops,)."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
     loop, none = np.full(problem.n_c, -1, dtype=np.int64), np.zeros(0, dtype=np.int64)
     if not 2 <= problem.m <= MANY:
         return loop, none
