@@ -67,11 +67,15 @@ def integral_of_nodes(ex: Exact, row: Floats, at: int, width: int, theta: float)
 
 
 @kernel
-def strongest(nodes: Floats) -> float:
-    """The value of largest size: the polynomial through them may pass 0 where they do not."""
-    best = nodes[0]
-    for x in range(1, nodes.shape[0]):
-        if abs(nodes[x]) > abs(best):
+def strongest(nodes: Floats, c: Floats, taken: float, first: float, last: float) -> float:
+    """The force of largest size: at the nodes ``c`` of a step of which the part ``taken`` was, and at its two ends.
+
+    The polynomial through the nodes may pass 0 where they do not.  Behind a transition that cut the step short they say
+    what no contact does: under a load that has passed 0 friction drives there.
+    """
+    best = first if abs(first) > abs(last) else last
+    for x in range(nodes.shape[0]):
+        if c[x] <= taken and abs(nodes[x]) > abs(best):
             best = nodes[x]
     return float(best)
 
@@ -104,7 +108,8 @@ def inside_step(
         y.F[a] = between_nodes(ex.monomial, P[a], theta)
     for c in range(y.mode.shape[0]):
         if row[c + 1] - row[c] == 1 and y.mode[c] == SLIP:
-            y.F[row[c]] = strongest(P[row[c]])
+            ends = 1 + 3 * n + 2 * nz + row[c]
+            y.F[row[c]] = strongest(P[row[c]], ex.tab.c, span / h, left[ends], right[ends])
 
 
 @entry
