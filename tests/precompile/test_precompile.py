@@ -185,7 +185,9 @@ from importlib import util
 found = util.find_spec
 util.find_spec = lambda name, *rest: None if name in sys.modules and sys.modules[name] is None else found(name, *rest)
 from fricmb.precompile import _tasks
-print(len(_tasks.kernels()), _tasks.runs())
+for name in _tasks.kernels():
+    print(name)
+print(_tasks.runs())
 for task in ("block find_open", "entry fricmb.sensitivity._eliminate:small_maps"):
     _tasks.do(task)
 """
@@ -195,8 +197,10 @@ for task in ("block find_open", "entry fricmb.sensitivity._eliminate:small_maps"
 def test_kernels_are_compiled_by_numba_alone():
     """The package is built where neither SciPy nor SymPy is installed."""
     command = [sys.executable, "-c", KERNELS_ALONE]
-    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert told == f"{len(_tasks.kernels())} []\n"
+    *kernels, runs = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert runs == "[]"
+    assert len(kernels) > 100
+    assert set(kernels) <= set(_tasks.kernels())  # there may be more here: tests bring kernels of their own
 
 
 def test_the_build_asks_for_what_kernels_need(monkeypatch):

@@ -216,7 +216,7 @@ class NotEqual(Own):
         (TwoForces, "define_force must return 1 expression(s), one a coordinate, got 2"),
         (TwoPotentials, "define_potential must return one expression"),
         (Stray, "undefined symbols in a derived expression: c"),
-        (Unknown, "f(x_0), x_0) has no closed form"),
+        (Unknown, "the function f(x_0) cannot be compiled"),
         (WrongSignature, "define_dissipation takes (self, x_dot); expected is define_dissipation(self, x, x_dot)"),
         (Lax, "strength = nan is accepted"),
         (LaxSign, "strength = -1.0 is accepted"),
