@@ -162,14 +162,17 @@ class Graph:
         return tuple(content[1:] if kind == "compare" else content)
 
     def below(self, outputs: Iterable[int]) -> list[int]:
-        """All nodes that these are made of, and they themselves, parts first."""
-        seen, left = set[int](), list(outputs)
+        """All nodes that these are made of, and they themselves: parts first, and not long before they are needed."""
+        found, seen = list[int](), set[int]()
+        left = [(node, False) for node in reversed(list(outputs))]
         while left:
-            node = left.pop()
-            if node not in seen:
+            node, ready = left.pop()
+            if ready:
+                found.append(node)
+            elif node not in seen:
                 seen.add(node)
-                left += self.parts(node)
-        return sorted(seen)
+                left += [(node, True), *((part, False) for part in reversed(self.parts(node)))]
+        return found
 
     def symbols(self, outputs: Iterable[int]) -> set[Any]:
         """The symbols that these depend on."""

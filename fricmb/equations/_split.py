@@ -74,7 +74,8 @@ def _factors(terms: Sequence[Any], variables: Sequence[Any]) -> list[Any]:
 
 def _around_branches(term: Any, change: Callable[[Any], Any]) -> Any:
     """Change a term, but for what stands inside its branches: that sets nothing free, and takes long."""
-    names = {branches: sympy.Dummy(real=True) for branches in term.atoms(sympy.Piecewise)}
+    found = sorted(term.atoms(sympy.Piecewise), key=sympy.default_sort_key)
+    names = {branches: sympy.Dummy(real=True) for branches in found}
     return change(term.xreplace(names)).xreplace({name: branches for branches, name in names.items()})
 
 
