@@ -19,7 +19,7 @@ from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Joint, RigidBody, SpaceBody
 from fricmb.scene._space_body import with_inner
 from fricmb.sensitivity._dual import Dual
-from fricmb.sensitivity._equations import Equations, Field
+from fricmb.sensitivity._equations import Equations, Field, Slip
 from fricmb.sensitivity._found import Found, total, whole
 from fricmb.sensitivity._joints import Joins
 from fricmb.sensitivity._motions import Moment, Row
@@ -70,9 +70,9 @@ class Constrained(Equations):
         if friction is not None and k is not None:
             self.contacts[k] = friction
 
-    def field(self, samples: Samples, mode: Codes, sign: Floats) -> Field:
-        """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases."""
-        moment, count, unknowns = self.moment(samples), samples.t.size, self._of_run(samples)
+    def field(self, samples: Samples, mode: Codes, sign: Floats, slip: Slip | None = None) -> Field:
+        """Right-hand side and its slopes; as :meth:`Equations.field`."""
+        moment, count, unknowns = self.moment(samples, slip), samples.t.size, self._of_run(samples)
         last = np.inf
         for _ in range(_MOST):
             found = self._found(moment, unknowns, mode, sign)
@@ -86,9 +86,9 @@ class Constrained(Equations):
             f"sensitivities: reactions are not found at t = {t:.10g}", t=t, reason="Newton's method does not converge"
         )
 
-    def said(self, samples: Samples, mode: Codes, sign: Floats) -> Found:
+    def said(self, samples: Samples, mode: Codes, sign: Floats, slip: Slip | None = None) -> Found:
         """What parts say under the reactions of the run."""
-        return self._found(self.moment(samples), self._of_run(samples), mode, sign)
+        return self._found(self.moment(samples, slip), self._of_run(samples), mode, sign)
 
     def _of_run(self, samples: Samples) -> Unknowns:
         """Reactions and friction of the run."""

@@ -54,7 +54,7 @@ class Rubs(Friction):
         if self.scales:  # in scaled velocities and forces the law is isotropic, the power the same
             g, drift = ([x.times(s) for x, s in zip(own, self.scales, strict=True)] for own in (g, drift))
             rows = [[(i, _product(s, c)) for i, c in row] for row, s in zip(rows, self.scales, strict=True)]
-        found.g[k], found.drift[k], found.rows[k] = g, drift, rows
+        found.g[k], found.drift[k], found.rows[k] = moment.slipping(k, g), drift, rows
         N = found.N[k] = self._pressed(moment, found, mode)
         if self.varies:
             # not where it is positive: at the very end of a contact it is 0 but for round-off, and its slopes count

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +21,9 @@ from fricmb.sensitivity._linear import Linear
 from fricmb.sensitivity._motions import Frame, Moment, Row
 from fricmb.sensitivity._parts import Acting, acting, masses, refuse
 from fricmb.sensitivity._seeds import Seeds
+
+#: Slip (d, n_t) by number of contact.
+Slip = Mapping[int, Floats]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,22 +141,25 @@ class Equations:
         """Rows of a contact."""
         return slice(int(self.names.row[k]), int(self.names.row[k + 1]))
 
-    def moment(self, samples: Samples) -> Moment:
-        """Samples of the run as a moment."""
-        return Moment(frame=self.frame, t=samples.t, q=samples.q, v=samples.v, z=samples.z)
+    def moment(self, samples: Samples, slip: Slip | None = None) -> Moment:
+        """Samples of the run as a moment; ``slip``: where it is known better than from velocities."""
+        return Moment(frame=self.frame, t=samples.t, q=samples.q, v=samples.v, z=samples.z, slip=slip or {})
 
-    def said(self, samples: Samples, mode: Codes, sign: Floats) -> Found:
+    def said(self, samples: Samples, mode: Codes, sign: Floats, slip: Slip | None = None) -> Found:
         """What parts say."""
-        moment, found = self.moment(samples), Found(self.n, self.n_z, self.columns, samples.t.size)
+        moment, found = self.moment(samples, slip), Found(self.n, self.n_z, self.columns, samples.t.size)
         for part in (self.linear, *self.linear.rest):
             part.add(moment, found)
         for k, contact in self.touching.items():
             contact.add(moment, found, mode[k], sign[self.rows(k)])
         return found
 
-    def field(self, samples: Samples, mode: Codes, sign: Floats) -> Field:
-        """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases."""
-        found, count = self.said(samples, mode, sign), samples.t.size
+    def field(self, samples: Samples, mode: Codes, sign: Floats, slip: Slip | None = None) -> Field:
+        """Right-hand side and its slopes; ``mode`` (n_c, n_t), ``sign`` (m, n_t) are those of the phases.
+
+        ``slip``: of contacts by number (d, n_t), where it is known better than as a difference of velocities.
+        """
+        found, count = self.said(samples, mode, sign, slip), samples.t.size
         a, slopes, F = self._accelerations(found, mode, count)
         rate_slopes = found.dense(found.rate_slopes, self.n_z).transpose(2, 0, 1)
         return Field(

@@ -71,7 +71,7 @@ class Joins:
         slips = [values[i * n : (i + 1) * n] for i in range(self.slips)]
         made = [_combined(motions, slip, values[self.slips * n + i]) for i, slip in enumerate(slips)]
         found.rows[k] = [row for row, _, _ in made]
-        found.g[k], found.drift[k] = [g for _, g, _ in made], [drift for _, _, drift in made]
+        found.g[k], found.drift[k] = moment.slipping(k, [g for _, g, _ in made]), [drift for _, _, drift in made]
         found.N[k] = values[-1]
         codes: Codes = mode[k]
         self.friction.rub(moment, found, masked(values[-1], np.asarray(values[-1].value) > 0.0), codes, sign)

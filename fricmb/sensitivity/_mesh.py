@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ from fricmb.sensitivity._found import whole
 from fricmb.sensitivity._landings import at_rest, left_out
 from fricmb.sensitivity._phases import BEFORE, Phases
 from fricmb.sensitivity._poles import Poles
+from fricmb.sensitivity._solved_steps import Step
 
 #: Stages of the steps, and of the two formulas whose difference tells how fine they have to be.
 STAGES, COARSE = 7, (2, 3)
@@ -30,6 +31,8 @@ _AFTER = np.array([0.25, 0.5, 0.75, 1.0])
 _TO_BEGIN = np.array([4.0, -6.0, 4.0, -1.0])
 #: Ellipses of poles that may lie before the first node of the coarse formulas and be seen by none.
 _UNSEEN = 2.0
+#: Steps shorter than this, relative to 1 or the time, are none beside those that are solved.
+_ROUND = 1e-15
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,12 +40,14 @@ class Mesh:
     """Steps in time order: begins, lengths, and stretches they lie in.
 
     ``left_out`` (n_k,): time before the end of a stretch in which slip in two directions ends that is not used, else 0.
+    ``solved``: by number those steps that bring their own slopes.
     """
 
     t: Floats
     h: Floats
     phase: Ints
     left_out: Floats
+    solved: dict[int, Step]
 
 
 class Stepper:
@@ -80,7 +85,9 @@ class Stepper:
         """Maps (n_y, n_y + n_p) of the steps of a mesh in turn, of which few are held at once."""
         formula = radau(STAGES)
         for own in self._parts(STAGES, mesh.t.size):
-            yield from self.maps(formula, mesh.t[own], mesh.h[own], mesh.phase[own])
+            maps = self.maps(formula, mesh.t[own], mesh.h[own], mesh.phase[own])
+            for k in range(own.start, own.start + len(maps)):
+                yield mesh.solved[k].map() if k in mesh.solved else maps[k - own.start]
 
     def misses(self, t: Floats, h: Floats, phase: Ints, scale: Floats, near: Any) -> tuple[Floats, Any]:
         """How far the maps of two coarse formulas are apart (n_t,), and where steps are so long that this says nothing.
@@ -166,8 +173,8 @@ class Stepper:
         return slopes, field.rate_slopes[..., :-1].reshape(t.size, s, e.n_z, e.columns - 1)
 
 
-def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
-    """Steps over all stretches, so fine that the error of each is within the tolerance.
+def mesh_of(stepper: Stepper, scale: Floats, rtol: float, solved: Sequence[Step] = ()) -> Mesh:
+    """Steps over all stretches, so fine that the error of each is within the tolerance; ``solved``: some of them.
 
     How far the coarse formulas are apart tells the size of h over the time scale, from which the error of the fine one
     follows: as h to their orders where slopes are like exponentials, and near a pole, at a distance rho of the step (of
@@ -178,7 +185,7 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
     entire = coarse.error * (small / fine.error) ** ((coarse.order + 1) / (fine.order + 1))
     near_pole = min(entire, small ** (coarse.order / fine.order))
     rest = left_out(stepper.equations, stepper.phases, stepper.rests)
-    t, h, phase = graded(stepper.phases.t, rest)
+    t, h, phase = beside(solved, *graded(stepper.phases.t, rest))
     kept: list[tuple[Floats, Floats, Ints]] = []
     before = np.full(t.size, np.inf)
     for number in range(_ROUNDS):
@@ -201,10 +208,24 @@ def mesh_of(stepper: Stepper, scale: Floats, rtol: float) -> Mesh:
         t, h, phase = _divided(t[bad], h[bad], phase[bad], parts)
         kept.append((t[sure], h[sure], phase[sure]))
         t, h, phase, before = t[~sure], h[~sure], phase[~sure], before[~sure]
+    begins = np.array([step.t for step in solved])
+    kept.append((begins, np.array([step.h for step in solved]), stepper.phases.of(begins)))
     t, h, phase = (np.concatenate([part[i] for part in kept]) for i in range(3))
     order = np.lexsort((t, phase))
+    places = np.argsort(order)[t.size - len(solved) :].tolist()
     t, h, phase = t[order], h[order], phase[order]
-    return Mesh(t=t, h=h, phase=phase, left_out=rest)
+    return Mesh(t=t, h=h, phase=phase, left_out=rest, solved=dict(zip(places, solved, strict=True)))
+
+
+def beside(solved: Sequence[Step], t: Floats, h: Floats, phase: Ints) -> tuple[Floats, Floats, Ints]:
+    """What is left of steps beside some that are solved."""
+    for step in solved:
+        end = step.t + step.h
+        begins = np.where((t >= step.t) & (t < end), end, t)
+        h = t + h - begins
+        left = h > _ROUND * np.maximum(1.0, np.abs(end))
+        t, h, phase = begins[left], h[left], phase[left]
+    return t, h, phase
 
 
 def _divided(t: Floats, h: Floats, phase: Ints, parts: Ints) -> tuple[Floats, Floats, Ints]:

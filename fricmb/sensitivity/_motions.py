@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -142,7 +143,14 @@ class Moment:
     q: Floats
     v: Floats
     z: Floats
+    #: Slip (d, n_t) of contacts by number that is known better than as a difference of velocities.
+    slip: Mapping[int, Floats] = field(default_factory=dict)
     _made: dict[str, Motion] = field(default_factory=dict)
+
+    def slipping(self, k: int, g: list[Dual]) -> list[Dual]:
+        """Slip of a contact, as it follows from velocities, or as it is known."""
+        known = self.slip.get(k)
+        return g if known is None else [replace(x, value=own) for x, own in zip(g, known, strict=True)]
 
     @property
     def time(self) -> Dual:

@@ -20,6 +20,7 @@ from fricmb.sensitivity._landings import extrapolated, near_misses, passes, plac
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
 from fricmb.sensitivity._seeds import STATE
+from fricmb.sensitivity._setting_out import SettingOut, set_outs
 from fricmb.sensitivity._sizes import sizes
 from fricmb.sensitivity._starts import held, one_sided
 from fricmb.sensitivity._steep import steep
@@ -67,7 +68,12 @@ class Tangent:
         self.rtol = sol.stats.rtol or 1e-6
         self.stepper = Stepper(e, self.phases, sample)
         scale = sizes(sample(self.phases.t), np.diagonal(e.weights), [len(own) for own in e.names.states])
-        self.mesh = mesh_of(self.stepper, scale, self.rtol)
+        stops = np.union1d(np.union1d(transitions_at, breakpoints.t), bends.t)
+        setting_out = SettingOut(e, self.phases, sample, scale, self.rtol)
+        solved = [
+            step for one in set_outs(e, self.phases, self.stepper.rests, stops) for step in setting_out.steps(*one)
+        ]
+        self.mesh = mesh_of(self.stepper, scale, self.rtol, solved)
         passed = passes(e, self.stepper.rests)
         happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
@@ -81,7 +87,7 @@ class Tangent:
             f" {', '.join(repr(self.columns[j]) for j in by)}, which give it a speed, are one-sided"
             for name, by in one_sided_by.items()
         ]
-        self.notes = (*starts, *transitions.notes, *self._unsure(sample, happened, passed))
+        self.notes = (*starts, *setting_out.notes, *transitions.notes, *self._unsure(sample, happened, passed))
 
     def _unsure(
         self, sample: Any, happened: list[Happening], passed: list[tuple[int, int]]
@@ -180,11 +186,17 @@ class Tangent:
         found = self.S[k].copy()
         ends = t >= self.phases.t[-1]
         found[ends] = self.S[-1]
-        far = np.flatnonzero((h > 0.0) & ~ends)
+        own = np.array([int(i) in self.mesh.solved for i in k], dtype=bool)
+        far = np.flatnonzero((h > 0.0) & ~ends & ~own)
         n_y, n_s = self.equations.n_y, len(self.states)
         maps = self.stepper.maps(radau(STAGES), self.mesh.t[k[far]], h[far], self.mesh.phase[k[far]])
         found[far] = maps[..., :n_y] @ found[far]
         found[far, :, n_s:] += maps[..., n_y:]
+        for j in np.flatnonzero((h > 0.0) & ~ends & own).tolist():
+            step = self.mesh.solved[int(k[j])]
+            map_ = step.map(float(h[j]) / step.h)
+            found[j] = map_[:, :n_y] @ found[j]
+            found[j, :, n_s:] += map_[:, n_y:]
         for i in np.flatnonzero(left) if left is not None else ():
             found[i] = self.before.get(float(t[i]), found[i])
         return found
