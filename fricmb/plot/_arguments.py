@@ -7,14 +7,17 @@ import inspect
 from collections.abc import Callable, Iterator
 from math import isfinite
 from os import PathLike, fspath
-from typing import Any, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from fricmb.errors import FricmbError, shown
+from fricmb.errors import FricmbError, SceneError, shown
 from fricmb.laws import FrictionLaw
 from fricmb.values import Units, as_float, has_entries, is_flag
+
+if TYPE_CHECKING:
+    from fricmb.solution import Solution
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -103,3 +106,16 @@ def looked_at(method: Callable[_P, _R]) -> Callable[_P, _R]:
             raise FricmbError(f"path: {fspath(error.filename)!r} cannot be written: {error.strerror}") from error
 
     return draws
+
+
+def first_contact(sol: Solution, what: str) -> str:
+    """Name of the first contact of a run; a picture of contacts needs one.
+
+    Raises
+    ------
+    SceneError
+        Where there are none.
+    """
+    if not sol.contact_names:
+        raise SceneError(f"{what}: expected a run with contacts; this one has none")
+    return sol.contact_names[0]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fricmb.plot._arguments import looked_at
+from fricmb.plot._arguments import first_contact, looked_at
 from fricmb.plot._fine import span_of
 from fricmb.plot._style import drawn, figure_of, panels
 from fricmb.plot._units import Units
@@ -121,7 +121,7 @@ class SignalPlots:
         edges = np.append(running.t - np.diff(running.t, prepend=0)[-1] / 2, signal.t[-1])
         fine = np.linspace(0, 1, 33)[:-1]
         times = np.clip(edges[:-1, None] + fine * np.diff(edges)[:, None], self.sol.t_start, self.sol.t_end)
-        speed = sliding_speed(self.sol, contact or self.sol.contact_names[0], times.ravel())
+        speed = sliding_speed(self.sol, contact or first_contact(self.sol, "orders"), times.ravel())
         mean = speed.reshape(times.shape).mean(axis=1)
         turn = 2.0 * np.pi if hz else 1.0
         top = running.omega[-1] / max(float(mean.mean()), 1e-300) if highest is None else highest * turn

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb.plot._arguments import first_contact
 from fricmb.plot._contact import draw_cone, draw_force_history, draw_modes, draw_phases, zoom
 from fricmb.plot._fine import refined, span_of
 from fricmb.plot._planes import draw_path, draw_phase
@@ -144,6 +145,7 @@ class SolutionPlots(SignalPlots):
 
         With ``ax`` the first alone.
         """
+        first_contact(self.sol, "transitions")
         span = span_of(self.sol, t_start, t_end)
         height = 3.2 + min(0.35 * len(self.sol.contact_names), 6.0)
         axes = panels(2, ax, title=self._name, height=height, sharex=True)

@@ -96,3 +96,11 @@ def test_names_may_come_one_by_one(given):
     function, right = given["velocities"]
     figure = function(**{**right, "names": (name for name in ("mass.x", "belt.x"))})
     assert len(figure.axes[0].lines) == 2
+
+
+@pytest.mark.parametrize("picture", [lambda plot: plot.transitions(), lambda plot: plot.orders("m.x")])
+def test_pictures_of_contacts_need_one(picture):
+    body = fm.Body("m", mass=1.0, velocity={"x": 1.0})
+    sol = fm.simulate(fm.Scene("free", [body, fm.Spring("k", body, axis="x", stiffness=1.0)]), t_end=20.0)
+    with pytest.raises(fm.SceneError, match="expected a run with contacts; this one has none"):
+        picture(sol.plot)
