@@ -20,11 +20,18 @@ def alone(monkeypatch):
     monkeypatch.setattr(run, "COST", 1e9)
 
 
-@pytest.mark.parametrize(("rtol", "tolerance"), [(1e-4, 3e-2), (1e-6, 1e-4), (1e-8, 1e-6)])
+@pytest.mark.parametrize(("rtol", "tolerance"), [(1e-4, 1.5e-2), (1e-6, 1e-4), (1e-8, 1e-6)])
 def test_andrews(alone, rtol, tolerance):
-    """At 1e-4 the error of the slowest body is 0.005 to 0.026 of its rate: that hangs on the tolerance's last digit."""
-    sol = fm.simulate(fm.models.andrews(), t_end=0.03, rtol=rtol, method="bdf")
-    np.testing.assert_allclose(angles(sol), END, rtol=tolerance)
+    """The median of several tolerances: what a single one errs by is chance.
+
+    At 81 tolerances around 1e-4 errors were 0.0001 to 0.029, their median 0.01, and the same for equations whose
+    round-off differs; a bound of 0.01 for one of them held or not by the last digit of the tolerance.
+    """
+    runs = [
+        fm.simulate(fm.models.andrews(), t_end=0.03, rtol=near * rtol, method="bdf")
+        for near in np.linspace(0.8, 1.2, 21)
+    ]
+    assert np.median([np.abs(angles(sol) / END - 1.0).max() for sol in runs]) < tolerance
     shares = []
     # whether BDF is handed back to the other method at some tight turn hangs on the last digit of the tolerance
     for near in (rtol, 1.1 * rtol, 1.3 * rtol):
