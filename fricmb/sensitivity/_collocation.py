@@ -33,11 +33,21 @@ def radau(s: int) -> Formula:
     difference[s], difference[s - 1] = 1.0, -1.0
     x = np.sort(legendre.legroots(difference).real)
     x[-1] = 1.0
-    values = legendre.legvander(x, s - 1)
-    integrals = np.array([legendre.legval(x, legendre.legint(row, lbnd=-1.0)) for row in np.eye(s)]).T
-    A = 0.5 * np.linalg.solve(values.T, integrals.T).T
     error = factorial(s) * factorial(s - 1) / (2.0 * factorial(2 * s - 1) * factorial(2 * s))
-    return Formula(c=0.5 * (1.0 + x), A=A, order=2 * s - 1, error=error)
+    return Formula(c=0.5 * (1.0 + x), A=_integrals(x, x), order=2 * s - 1, error=error)
+
+
+def _integrals(x: Floats, ends: Floats) -> Floats:
+    """Half the integrals (n, s) from -1 to ends (n,) of polynomials that are 1 at one of x (s,), 0 at the others."""
+    s = x.size
+    integrals = [legendre.legval(ends, legendre.legint(row, lbnd=-1.0)) for row in np.eye(s)]
+    found: Floats = 0.5 * np.linalg.solve(legendre.legvander(x, s - 1).T, np.array(integrals)).T
+    return found
+
+
+def weights(formula: Formula, shares: Floats) -> Floats:
+    """Integrals (n, s) up to shares (n,) of a step of the polynomials that are 1 at one node and 0 at the others."""
+    return _integrals(2.0 * formula.c - 1.0, 2.0 * shares - 1.0)
 
 
 def step_maps(formula: Formula, h: Floats, slopes: Floats, rates: Floats, n: int, n_y: int) -> Floats:
@@ -63,21 +73,47 @@ def step_maps(formula: Formula, h: Floats, slopes: Floats, rates: Floats, n: int
         found = np.zeros((count, n_y, width))
         small_maps(formula.A, A2, formula.c, h, G.reshape(count, s * m, width), n, found)
         return found
-    Gq, Gv, Gz = G[..., :n], G[..., n : 2 * n], G[..., 2 * n : n_y]
-    left = np.zeros((count, s, m, s, m))
+    K = stage_rates(formula, h, G, n, n_y)
+    return end_maps(h, K, formula.A[-1], A2[-1], n, n_y)
+
+
+def stage_system(formula: Formula, h: Floats, G: Floats, n: int, n_y: int) -> Floats:
+    """Matrices of the stages (n_t, s m, s m): of accelerations and rates less what they make of themselves.
+
+    ``G`` (n_t, s, m, n_y + ...): slopes of accelerations and rates at the stages of steps of length h (n_t,).
+    """
+    count, s, m = G.shape[:3]
+    A, A2 = formula.A[None, :, None, :, None], (formula.A @ formula.A)[None, :, None, :, None]
     square, once = h[:, None, None, None, None] ** 2, h[:, None, None, None, None]
-    left[..., :n] = -square * A2[None, :, None, :, None] * Gq[:, :, :, None, :]
-    left[..., :n] -= once * formula.A[None, :, None, :, None] * Gv[:, :, :, None, :]
-    left[..., n:] = -once * formula.A[None, :, None, :, None] * Gz[:, :, :, None, :]
+    left = np.zeros((count, s, m, s, m))
+    left[..., :n] = -square * A2 * G[:, :, :, None, :n]
+    left[..., :n] -= once * A * G[:, :, :, None, n : 2 * n]
+    left[..., n:] = -once * A * G[:, :, :, None, 2 * n : n_y]
     system: Floats = left.reshape(count, s * m, s * m)
     system[:, np.arange(s * m), np.arange(s * m)] += 1.0
+    return system
+
+
+def stage_rates(formula: Formula, h: Floats, G: Floats, n: int, n_y: int) -> Floats:
+    """Derivatives (n_t, s, m, n_y + n_p) of accelerations and rates at the stages by first state and parameters.
+
+    ``G`` (n_t, s, m, n_y + n_p): their slopes there.
+    """
+    count, s, m, width = G.shape
     right = G.copy()
-    right[..., n : 2 * n] += h[:, None, None, None] * formula.c[None, :, None, None] * Gq
-    K = np.linalg.solve(system, right.reshape(count, s * m, width)).reshape(count, s, m, width)
-    found = np.zeros((count, n_y, width))
+    right[..., n : 2 * n] += h[:, None, None, None] * formula.c[None, :, None, None] * G[..., :n]
+    K = np.linalg.solve(stage_system(formula, h, G, n, n_y), right.reshape(count, s * m, width))
+    return np.asarray(K.reshape(count, s, m, width), dtype=float)
+
+
+def end_maps(h: Floats, K: Floats, once: Floats, twice: Floats, n: int, n_y: int, share: float = 1.0) -> Floats:
+    """Maps (n_t, n_y, n_y + n_p) from the begin of steps to a share of them.
+
+    ``K``: see :func:`stage_rates`; ``once``, ``twice`` (s,): what they are weighted with to be integrated up to there.
+    """
+    found = np.zeros((h.size, n_y, K.shape[-1]))
     found[:, np.arange(n_y), np.arange(n_y)] = 1.0
-    found[:, np.arange(n), n + np.arange(n)] += h[:, None]
-    found[:, :n] += h[:, None, None] ** 2 * np.einsum("j,tjab->tab", A2[-1], K[:, :, :n])
-    found[:, n : 2 * n] += h[:, None, None] * np.einsum("j,tjab->tab", formula.A[-1], K[:, :, :n])
-    found[:, 2 * n :] += h[:, None, None] * np.einsum("j,tjab->tab", formula.A[-1], K[:, :, n:])
+    found[:, np.arange(n), n + np.arange(n)] += share * h[:, None]
+    found[:, :n] += h[:, None, None] ** 2 * np.einsum("j,tjab->tab", twice, K[:, :, :n])
+    found[:, n:] += h[:, None, None] * np.einsum("j,tjab->tab", once, K)
     return found

@@ -20,12 +20,12 @@ import numpy as np
 
 from fricmb.errors import IntegrationError
 from fricmb.integrate.problem import STICK, Codes, Floats
-from fricmb.sensitivity._collocation import Formula, radau
+from fricmb.sensitivity._collocation import Formula, radau, stage_system
 from fricmb.sensitivity._equations import Equations, Field
 from fricmb.sensitivity._found import whole
 from fricmb.sensitivity._landings import Rests
 from fricmb.sensitivity._phases import Phases
-from fricmb.sensitivity._solved_steps import Solved, State, Step, at_nodes, system
+from fricmb.sensitivity._solved_steps import Solved, State, Step, at_nodes
 
 #: Stages, and those of the formula that tells how exact they are.
 _STAGES, _FEWER = 7, 5
@@ -179,7 +179,7 @@ class SettingOut:
             q, v, z = at_nodes(formula, state.y, h, K, e.n)
             field = e.field(replace(base, q=q, v=v, z=z), mode, sign, slip)
             slopes = np.concatenate([field.a_slopes, field.rate_slopes], axis=1)[..., :-1]
-            matrix = system(formula, h, slopes, e.n, e.n_y)
+            matrix = stage_system(formula, np.array([h]), slopes[None], e.n, e.n_y)[0]
             if not np.isfinite(matrix).all():
                 return None
             residual = np.concatenate([field.a, field.rate], axis=1) - K

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fricmb.integrate.problem import Codes, Floats
-from fricmb.sensitivity._collocation import Formula, radau
+from fricmb.sensitivity._collocation import Formula, end_maps, radau, stage_rates, weights
 from fricmb.sensitivity._equations import Field
 
 
@@ -23,44 +23,11 @@ class Step:
 
     def map(self, share: float = 1.0) -> Floats:
         """The map (n_y, n_y + n_p) from its begin to a share of it."""
-        n, n_y = self.n, self.n_y
-        s, m, width = self.slopes.shape
-        formula = radau(s)
-        K = _stage_rates(formula, self.h, self.slopes, n, n_y).reshape(s, m, width)
-        once = weights(formula, share)
-        found = np.zeros((n_y, width))
-        found[:, :n_y] = np.eye(n_y)
-        found[:n, n : 2 * n] += self.h * share * np.eye(n)
-        found[:n] += self.h**2 * np.einsum("j,jab->ab", once @ formula.A, K[:, :n])
-        found[n:] += self.h * np.einsum("j,jab->ab", once, K)
+        formula, h = radau(len(self.slopes)), np.array([self.h])
+        K = stage_rates(formula, h, self.slopes[None], self.n, self.n_y)
+        once = weights(formula, np.array([share]))[0]
+        found: Floats = end_maps(h, K, once, once @ formula.A, self.n, self.n_y, share)[0]
         return found
-
-
-def weights(formula: Formula, share: float) -> Floats:
-    """Integrals (s,) up to a share of a step of the polynomials that are 1 at one node and 0 at the others."""
-    powers = np.arange(formula.c.size)
-    values = formula.c[:, None] ** powers
-    return np.asarray(np.linalg.solve(values.T, share ** (powers + 1.0) / (powers + 1.0)))
-
-
-def system(formula: Formula, h: float, slopes: Floats, n: int, n_y: int) -> Floats:
-    """The matrix of the stages (s m, s m): of accelerations and rates less what they make of themselves."""
-    s, m = slopes.shape[:2]
-    A, A2 = formula.A, formula.A @ formula.A
-    left = np.zeros((s, m, s, m))
-    left[..., :n] = -(h**2) * A2[:, None, :, None] * slopes[:, :, None, :n]
-    left[..., :n] -= h * A[:, None, :, None] * slopes[:, :, None, n : 2 * n]
-    left[..., n:] = -h * A[:, None, :, None] * slopes[:, :, None, 2 * n : n_y]
-    found: Floats = left.reshape(s * m, s * m)
-    return found + np.eye(s * m)
-
-
-def _stage_rates(formula: Formula, h: float, slopes: Floats, n: int, n_y: int) -> Floats:
-    """Derivatives (s m, n_y + n_p) of accelerations and rates at the nodes by the state at the begin and parameters."""
-    right = slopes.copy()
-    right[..., n : 2 * n] += h * formula.c[:, None, None] * slopes[..., :n]
-    s, m, width = slopes.shape
-    return np.asarray(np.linalg.solve(system(formula, h, slopes, n, n_y), right.reshape(s * m, width)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,8 +58,7 @@ class Solved:
     def slip_at(self, shares: Floats, begin: dict[int, Floats], h: float) -> dict[int, Floats]:
         """Slip (d, n) by contact at shares of the step, from what it is at its begin."""
         formula = radau(len(self.K))
-        integrals = np.array([weights(formula, share) for share in shares])
-        return {k: begin[k][:, None] + h * (integrals @ own).T for k, own in self.rates.items()}
+        return {k: begin[k][:, None] + h * (weights(formula, shares) @ own).T for k, own in self.rates.items()}
 
     def rates_at(self, shares: Floats) -> Floats:
         """Accelerations and rates (n, n + n_z) at shares of the step."""

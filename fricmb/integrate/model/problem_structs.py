@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.csr import Csr, is_diagonal
+from fricmb.integrate.csr import is_diagonal
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
 from fricmb.integrate.once_per import once_per
@@ -107,14 +107,10 @@ def mobility_at_contacts(problem: Problem) -> Floats:
     def make() -> Floats:
         W = np.ascontiguousarray(problem.contacts.W)
         if isinstance(problem.linear, SparseLinear):
-            return _mobility(inverse_mass(problem), W)
-        return _mobility_by_mass(problem.linear.M, W)
+            return np.ascontiguousarray(W.T @ (inverse_mass(problem) @ W))
+        return moved_by(np.asarray(problem.linear.M, dtype=float), W)[1]
 
     return once_per(problem, "mobility at contacts", make)
-
-
-def _mobility_by_mass(M: Floats, W: Floats) -> Floats:
-    return moved_by(np.asarray(M, dtype=float), W)[1]
 
 
 @cached_by_content
@@ -122,10 +118,6 @@ def moved_by(M: Floats, W: Floats) -> tuple[Floats, Floats]:
     """Accelerations (n, m) of the dofs by contact forces, M^-1 W, and those of the contacts (m, m), D = W^T M^-1 W."""
     MW = (1.0 / np.diagonal(M))[:, None] * W if is_diagonal(M) else dense_inverse(M) @ W
     return MW, np.ascontiguousarray(W.T @ MW)
-
-
-def _mobility(inverse: Csr, W: Floats) -> Floats:
-    return np.ascontiguousarray(W.T @ (inverse @ W))
 
 
 def softness(problem: Problem) -> float:
