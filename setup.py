@@ -30,7 +30,7 @@ class BuildWithKernels(build_py):
         super().run()
         if WANTED and not self.editable_mode:
             built = Path(self.build_lib).resolve()
-            command = [sys.executable, "-m", "fricmb", "compile", "--into", str(built / "fricmb" / "_made")]
+            command = [sys.executable, "-P", "-m", "fricmb", "compile", "--into", str(built / "fricmb" / "_made")]
             paths = [str(built), *filter(None, [os.environ.get("PYTHONPATH")])]
             try:
                 env = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}

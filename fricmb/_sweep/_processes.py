@@ -19,7 +19,7 @@ from multiprocessing import connection
 from typing import Any
 
 from fricmb.errors import FricmbError, IntegrationError
-from fricmb.integrate.compile.cache_files import say
+from fricmb.integrate.compile.cache_files import say, share_temporary
 
 #: A run: from its parameters to its result.
 Run = Callable[[Mapping[str, Any]], Any]
@@ -74,6 +74,7 @@ def run_in_processes(
     On Ctrl-C no further run is begun, and those under way are waited for; on a second one all processes end at once.
     """
     waiting = list(runs)[::-1]
+    share_temporary()
     workers = [_Worker(run) for _ in range(count)]
     stopped = False
     try:

@@ -35,7 +35,7 @@ def _unseal(data: bytes) -> bytes | None:
     return text if hashlib.sha256(text).hexdigest().encode() == digest else None
 
 
-_files = CacheFiles("templates", _seal, _unseal, "derived again")
+_files = CacheFiles("templates", r"\w+_[0-9a-f]{24}\.json", _seal, _unseal, "derived again")
 
 
 def folder() -> Path:

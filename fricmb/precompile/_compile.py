@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from fricmb.errors import FricmbError
-from fricmb.integrate.compile.cache_files import cache_folder, can_be_written, find_file
+from fricmb.integrate.compile.cache_files import cache_folder, can_be_kept, find_file
 from fricmb.precompile._crew import Crew
 from fricmb.precompile._tasks import kernels, runs
 
@@ -45,9 +45,10 @@ def compile_all(
     """
     with _folder_to_copy_from() if into is not None else nullcontext():
         found = _work_off(processes or min(os.cpu_count() or 1, _MOST), report)
-        if into is not None:
-            for kind, names in found.items():
-                _copy(kind, names, Path(into) / kind)
+        for kind, names in found.items():
+            kept = {name: _kept(kind, name) for name in names}
+            if into is not None:
+                _copy(kept, Path(into) / kind)
     return sorted(f"{kind}/{name}" for kind, names in found.items() for name in names)
 
 
@@ -74,7 +75,7 @@ def _work_off(workers: int, report: Callable[[str, int, int], None] | None) -> d
 @contextmanager
 def _folder_to_copy_from() -> Iterator[None]:
     """A temporary folder in the place of a cache that cannot be written: a copy is made of what outlives a process."""
-    if all(can_be_written(cache_folder(kind)) for kind in ("kernels", "templates")):
+    if all(can_be_kept(cache_folder(kind)) for kind in ("kernels", "templates")):
         yield
         return
     names = ("FRICMB_CACHE_DIR", "NUMBA_CACHE_DIR")
@@ -88,10 +89,15 @@ def _folder_to_copy_from() -> Iterator[None]:
         os.environ.update(before)
 
 
-def _copy(kind: str, names: set[str], target: Path) -> None:
+def _kept(kind: str, name: str) -> Path:
+    """Where a file outlives the process that made it."""
+    source = find_file(kind, name)
+    if source is None:
+        raise FricmbError(f"compile: {kind}/{name} could not be kept; expected a cache folder that can be written")
+    return source
+
+
+def _copy(files: dict[str, Path], target: Path) -> None:
     target.mkdir(parents=True, exist_ok=True)
-    for name in names:
-        source = find_file(kind, name)
-        if source is None:
-            raise FricmbError(f"compile: {kind}/{name} could not be kept; expected a cache folder that can be written")
+    for name, source in files.items():
         shutil.copyfile(source, target / name)

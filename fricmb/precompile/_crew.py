@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any
 
 from fricmb.errors import FricmbError
+from fricmb.integrate.compile.cache_files import share_temporary
 from fricmb.integrate.compile.parallel_compile import ALONE
 
 #: What is called after each task: the task, and its answer.
@@ -53,6 +54,7 @@ class Crew:
     """Processes that load while their tasks are listed."""
 
     def __init__(self, workers: int) -> None:
+        share_temporary()
         with ExitStack() as begun:
             self._processes = [begun.enter_context(_worker()) for _ in range(workers)]
             self._stack = begun.pop_all()  # had one of them not begun, those before it would be ended here
@@ -115,7 +117,8 @@ def _answer(process: subprocess.Popen[str], task: str) -> str:
 
 
 def _worker() -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "fricmb.precompile._worker"]
+    # -P: a file of the working folder that is called as a module is, is none
+    command = [sys.executable, "-P", "-m", "fricmb.precompile._worker"]
     env = {**os.environ, **ALONE, "FRICMB_QUIET": "1"}
     # in a group of its own: Ctrl-C on the terminal is for this process alone, which then ends the others
     pipe = subprocess.PIPE

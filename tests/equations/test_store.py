@@ -101,18 +101,6 @@ def test_damaged_files_are_derived_again_with_one_line(cache, capsys):
     assert _store.read(key) == {"n": 2, "compiled": False}
 
 
-def test_old_files_go(tmp_path, monkeypatch):
-    monkeypatch.setenv("FRICMB_CACHE_DIR", str(tmp_path))
-    (tmp_path / "templates").mkdir()
-    for name in ("old.json", "old.py", "killed.part"):
-        (tmp_path / "templates" / name).touch()
-        os.utime(tmp_path / "templates" / name, (1e9, 1e9))
-    (tmp_path / "templates" / "new.json").touch()
-    key = _store.key("test", "cleaning")
-    _store.write(key, {"n": 1}, None)
-    assert sorted(path.name for path in (tmp_path / "templates").iterdir()) == sorted(["new.json", f"{key}.json"])
-
-
 def test_keys_tell_content_apart():
     keys = {_store.key("a", 1), _store.key("a", 2), _store.key("b", 1), _store.key("a", 1, 2)}
     assert len(keys) == 4
@@ -166,7 +154,7 @@ def test_a_read_only_warm_cache_is_used(tmp_path):
 
 def test_without_a_home_files_are_kept_for_the_process(monkeypatch, capsys):
     monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: f"~/.cache/{name}")
-    for name in ("FRICMB_CACHE_DIR", "NUMBA_CACHE_DIR"):
+    for name in ("FRICMB_CACHE_DIR", "NUMBA_CACHE_DIR", "FRICMB_TEMPORARY_CACHE"):
         monkeypatch.delenv(name, raising=False)
     for one in (cache_files._folder, cache_files._temporary):
         one.cache_clear()

@@ -110,10 +110,10 @@ def test_what_the_package_carries_is_copied_too(monkeypatch, tmp_path):
     monkeypatch.setattr(cache_files, "_SHIPPED", tmp_path / "made")
     (tmp_path / "made" / "kernels").mkdir(parents=True)
     (tmp_path / "made" / "kernels" / "one.nbc").write_bytes(b"code")
-    _compile._copy("kernels", {"one.nbc"}, tmp_path / "copy")
+    _compile._copy({"one.nbc": _compile._kept("kernels", "one.nbc")}, tmp_path / "copy")
     assert (tmp_path / "copy" / "one.nbc").read_bytes() == b"code"
     with pytest.raises(fm.FricmbError, match=r"kernels/two\.nbc could not be kept"):
-        _compile._copy("kernels", {"two.nbc"}, tmp_path / "copy")
+        _compile._kept("kernels", "two.nbc")
 
 
 @pytest.mark.slow

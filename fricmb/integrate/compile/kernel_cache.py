@@ -29,7 +29,7 @@ def _unseal(data: bytes) -> bytes | None:
     return payload if hashlib.sha256(payload).digest() == data[:_DIGEST] else None
 
 
-_files = CacheFiles("kernels", _seal, _unseal, "compiled again")
+_files = CacheFiles("kernels", r".+-[0-9a-f]{32}\.nbc", _seal, _unseal, "compiled again")
 
 
 class KernelCache(Cache):  # type: ignore[misc]

@@ -60,7 +60,7 @@ def _start_helper(blocks: tuple[str, ...]) -> subprocess.Popen[bytes] | None:
     arguments = [f"{block_module(name)}:{name}" for name in blocks]
     try:
         return subprocess.Popen(
-            [sys.executable, "-c", _COMMAND, *arguments],
+            [sys.executable, "-P", "-c", _COMMAND, *arguments],  # -P: nothing from the working folder
             stdin=quiet,
             stdout=quiet,
             stderr=quiet,
