@@ -316,6 +316,7 @@ print(result.y[0, -1])  # sin(1)
     "plot.SolutionPlots": _BRAKE + 'figure = sol.plot.transitions()\n',
     "plot.law_figure": 'figure = fm.plot.law_figure(fm.laws.Stribeck.example())\n',
     "plot.law": 'figure = fm.plot.law(fm.laws.Dahl.example())\n',
+    "plot.show": _BRAKE + "figure = sol.plot.velocities()\nfm.plot.show(figure)\n",
     "plot.use": 'fm.plot.use("light")\nwith fm.plot.theme("dark"):\n'
                 "    figure = fm.plot.law_figure(fm.laws.Stribeck.example())\n",
     "plot.eigenvalues": _MODES + "figure = fm.plot.eigenvalues(modes)\n",

@@ -12,9 +12,10 @@ author = "The fricmb developers"
 copyright = "2026, The fricmb developers"
 release = version = installed_version("fricmb")
 
-sys.path.insert(0, os.path.dirname(__file__))  # _api, _examples, _layers, _pages, _pictures
+sys.path.insert(0, os.path.dirname(__file__))  # _api, _described, _examples, _layers, _pages, _pictures
 
 import _api  # noqa: E402
+import _described  # noqa: E402
 
 extensions = [
     "myst_nb",
@@ -138,6 +139,7 @@ def reference_pages(app):
 def setup(app):
     app.connect("builder-inited", reference_pages)
     app.connect("builder-inited", benchmark_pages)
+    app.connect("doctree-read", _described.check)
     app.connect("autodoc-process-docstring", keep_bars, priority=400)
     # after numpydoc, so that an example stands below the sections that it makes
     app.connect("autodoc-process-docstring", _api.add_example(_api.Shown(Path(app.srcdir) / MADE)), priority=900)

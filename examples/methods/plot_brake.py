@@ -19,20 +19,17 @@ print(sol.summary())
 # %%
 # Velocities along x and across, y.
 
-sol.plot.velocities()
-plt.show()
+fm.plot.show(sol.plot.velocities())
 
 # %%
 # When the lining sticks, and for how long: it ends sticking for good when the rotor has stopped.
 
-sol.plot.transitions()
-plt.show()
+fm.plot.show(sol.plot.transitions())
 
 # %%
 # The friction force has the length of the cone while slipping; while sticking it is inside.
 
-sol.plot.force("lining")
-plt.show()
+fm.plot.show(sol.plot.force("lining"))
 
 # %%
 # The spectrum of the pad's motion across: peaks one apart (the pad's frequency along x is 1), none at its own frequency

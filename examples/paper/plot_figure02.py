@@ -10,15 +10,14 @@ pad's largest swing. With the printed friction (15) and speed (10) taken literal
 is caught in its very first swing.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run
 
 figure = FIGURES[2]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

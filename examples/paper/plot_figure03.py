@@ -6,15 +6,14 @@ Velocities along y at the beginning: pad and rotor together, stick-slip barely t
 has been caught, within its first swing.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run
 
 figure = FIGURES[3]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

@@ -10,15 +10,14 @@ Ours agrees. A shift by :math:`\Omega_2 = 0.016`, which the source supposes and 
 this order: the peaks scatter by as much.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, slope, spikes
 
 figure = FIGURES[4]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

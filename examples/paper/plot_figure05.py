@@ -7,15 +7,14 @@ agrees: it rings at :math:`\Omega_1`, and dies although nothing damps it: in qui
 :math:`-\mu N \dot y/|\dot x|`, that of a dashpot.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, valleys
 
 figure = FIGURES[5]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

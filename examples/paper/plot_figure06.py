@@ -5,15 +5,14 @@ Figure 6: case 3
 Both frequencies across above 1. Braking along x is unaffected; across, the pad is kicked again, with more structure.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run
 
 figure = FIGURES[6]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

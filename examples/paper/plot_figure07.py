@@ -7,15 +7,14 @@ to :math:`\Omega_2` and fall after, and there is none at :math:`\Omega_1`. Ours 
 the common vibration after the rotor has stopped.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, shift_of, slope, spikes
 
 figure = FIGURES[7]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

@@ -6,14 +6,13 @@ Both frequencies higher: the shift follows :math:`\Omega_2 = 15.81`. Ours agrees
 the estimate and stand in no order, and the one near 13.8 is split, as high orders do.
 """
 
-import matplotlib.pyplot as plt
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, shift_of, spikes
 
 figure = FIGURES[8]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

@@ -6,15 +6,14 @@ Rotor below pad across. Peaks grow up to :math:`\Omega_2`, fall after, and fall 
 agrees.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, slope, spikes
 
 figure = FIGURES[9]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

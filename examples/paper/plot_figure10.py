@@ -5,14 +5,13 @@ Figure 10: the shift close up, case 4
 A part of the previous figure: the peaks stand at k + 0.07, :math:`\Omega_2 = 7.07`. Ours agrees.
 """
 
-import matplotlib.pyplot as plt
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, shift_of, spikes
 
 figure = FIGURES[10]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

@@ -7,14 +7,13 @@ damping takes the pad's swing along x. Ours agrees: after the catch at the very 
 642 only, where it did at 8 without damping; the peaks are still one apart.
 """
 
-import matplotlib.pyplot as plt
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run
 
 figure = FIGURES[11]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

@@ -11,15 +11,14 @@ part: the angle lags where the slip falls below 0.6, and where it stays larger i
 before it.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
+import fricmb as fm
 from fricmb.models.brake_paper import FIGURES, run, valleys
 
 figure = FIGURES[12]
 sol = run(figure.case)
-figure.draw(sol)
-plt.show()
+fm.plot.show(figure.draw(sol))
 
 # %%
 # Statement by statement, and the numbers that this page stands for.

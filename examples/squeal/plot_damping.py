@@ -7,7 +7,6 @@ Yes, if only one of the two modes that meet is damped. Damped alike (c each) the
 stiffness has eigenvalues :math:`2 \pm i\delta`, and :math:`\delta = c\sqrt2`).
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import fricmb as fm
@@ -24,8 +23,7 @@ found = fm.analysis.stability_map(
     scene.with_parameters({"cx.damping": 0.02}), over=("sole.law.mu_k", "cy.damping"),
     values=(np.linspace(0.4, 1.0, 16), np.linspace(0.0, 0.4, 11)),
 )  # fmt: skip
-fm.plot.stability(found)
-plt.show()
+fm.plot.show(fm.plot.stability(found))
 
 (critical,) = fm.analysis.complex_eigenvalues(scene, over="sole.law.mu_k", values=[0.0, 1.2]).critical
 closed = 0.75 * (1 + 2 * 0.1**2)

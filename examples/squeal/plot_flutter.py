@@ -7,7 +7,6 @@ on speed: N. Hoffmann, M. Fischer, R. Allgaier, L. Gaul, Mech. Res. Commun. 29 (
 :math:`(2 - \omega^2)^2 = 1 - 4\mu/3`: the modes meet at :math:`\mu = 3/4` and :math:`\omega = \sqrt2`.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import fricmb as fm
@@ -19,8 +18,7 @@ scene = fm.Scene("two modes", [
     fm.Contact("sole", mass, belt, law=fm.laws.Coulomb(mu_s=2.0, mu_k=0.3), normal_force=lining),
 ])  # fmt: skip
 modes = fm.analysis.complex_eigenvalues(scene, over="sole.law.mu_k", values=np.linspace(0.0, 1.2, 61))
-fm.plot.eigenvalues(modes)
-plt.show()
+fm.plot.show(fm.plot.eigenvalues(modes))
 
 (critical,) = modes.critical
 print(f"critical friction {critical.value:.15f}, angular frequency {critical.frequency:.12f}")

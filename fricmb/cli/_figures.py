@@ -45,20 +45,13 @@ def figures(options: argparse.Namespace) -> int:
 
 def _paper(folder: Path, cases: list[str], options: argparse.Namespace) -> Iterator[Path]:
     """The figures of the source, and a text of statements and findings."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
     lines: list[str] = []
     for number, figure in FIGURES.items():
         if figure.case not in cases:
             continue
         sol = run(figure.case, t_end=options.t_end, rtol=options.rtol)
         path = folder / f"figure{number:02d}.{options.format}"
-        drawn = figure.draw(sol)
-        drawn.savefig(path, dpi=150)
-        plt.close(drawn)
+        figure.draw(sol).savefig(path, dpi=150)
         findings = [f"  {finding}" for finding in figure.check(sol)]
         lines += [figure.title, f"  {figure.shows}", *findings, ""]
         yield path

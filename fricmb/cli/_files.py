@@ -99,11 +99,6 @@ def write_events(sol: fm.Solution, path: Path) -> None:
 
 def write_pictures(sol: fm.Solution, folder: Path, kind: str, told: Told) -> list[str]:
     """Velocities, phase planes, forces with their cones, transitions, energy."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot  # noqa: F401  for both processes, where there are two
-
     plots = sol.plot
     pictures: Pictures = {
         folder / f"velocities.{kind}": plots.velocities,
@@ -194,11 +189,7 @@ def _take(taken: Any) -> int:
 
 def _draw(path: Path, picture: Callable[[], Figure]) -> None:
     """Draw and write one picture."""
-    import matplotlib.pyplot as plt
-
-    figure = picture()
-    _save(figure, path)
-    plt.close(figure)
+    _save(picture(), path)
 
 
 def _save(figure: Figure, path: Path) -> None:

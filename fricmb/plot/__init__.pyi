@@ -1,5 +1,6 @@
 from ._branches import BranchPlots as BranchPlots
 from ._branches import DiagramPlots as DiagramPlots
+from ._figure import show as show
 from ._fits import FitPlots as FitPlots
 from ._law import law as law
 from ._law import law_figure as law_figure
@@ -33,6 +34,7 @@ __all__ = [
     "finish",
     "law",
     "law_figure",
+    "show",
     "stability",
     "theme",
     "use",

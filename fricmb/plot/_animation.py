@@ -16,6 +16,7 @@ from matplotlib.patches import Circle, Polygon
 
 from fricmb.analysis import AnalysisError
 from fricmb.plot._contact import OPEN, SLIP, STICK
+from fricmb.plot._figure import new_picture
 from fricmb.plot._make_sketch import in_space, shown_span, sketch_of_run, sketch_of_scene
 from fricmb.plot._sketch import Floats, Link, Mark, Shape, Sketch, Touch, coil, pot
 from fricmb.plot._style import Paint, drawn, figure_of, name_figure, paint
@@ -247,7 +248,7 @@ def canvas(sketch: Sketch, ax: Axes | None = None) -> tuple[Figure, Axes]:
     left, right, bottom, top = sketch.view
     width = min(9.0, max(5.0, 0.9 * (right - left) / sketch.unit))
     height = min(8.0, max(2.2, width * (top - bottom) / (right - left) + 0.9))
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = new_picture(width, height)
     name_figure(figure, sketch.title)
     return figure, figure.subplots()
 

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb.plot._figure import new_picture
 from fricmb.plot._style import drawn, figure_of, finish, paint, panels
 from fricmb.plot._units import unit_of
 
@@ -74,9 +75,8 @@ class BranchPlots:
         """
         branch = self.branch
         if ax is None:
-            import matplotlib.pyplot as plt
-
-            figure, (plane, along) = plt.subplots(1, 2, figsize=(8.0, 3.8), layout="constrained")
+            figure = new_picture(8.0, 3.8)
+            plane, along = figure.subplots(1, 2)
         else:
             plane, along = ax, None
         angle = np.linspace(0.0, 2.0 * np.pi, 361)

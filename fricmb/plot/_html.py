@@ -82,7 +82,6 @@ def plan_html(plan: Any) -> str:
 def law_html(law: Any) -> str:
     """A law: its coefficient over the slip speed, and its parameters."""
     from fricmb.plot._law import law as draw_law
-    from fricmb.plot._style import unseen
 
     values = [(name, _short(value)) for name, value in law.numeric_slots().items()]
-    return block(f"<b>{escape(type(law).__name__)}</b><br>", _image(lambda: unseen(draw_law(law))), _table(values))
+    return block(f"<b>{escape(type(law).__name__)}</b><br>", _image(lambda: draw_law(law)), _table(values))

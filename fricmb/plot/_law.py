@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from fricmb.analysis import cycle, path, pull, settling_distance
 from fricmb.laws import FrictionLaw
+from fricmb.plot._figure import new_picture
 from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
 
 Floats = NDArray[np.float64]
@@ -38,9 +39,8 @@ def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
     -------
     matplotlib Figure
     """
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(2, 2, figsize=(9.0, 6.4), layout="constrained")
+    figure = new_picture(9.0, 6.4)
+    axes = figure.subplots(2, 2)
     figure.suptitle("\n".join((type(law).__name__, *parameter_lines(law))), x=0.01, ha="left", fontsize="medium")
     speeds = speed_range(law, normal_force)
     speed = float(np.sqrt(speeds[0] * speeds[-1]))

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from fricmb.plot._arguments import first_contact
 from fricmb.plot._contact import draw_cone, draw_force_history, draw_modes, draw_phases, zoom
+from fricmb.plot._figure import new_picture
 from fricmb.plot._fine import refined, span_of
 from fricmb.plot._planes import draw_path, draw_phase
 from fricmb.plot._signals import SignalPlots
@@ -126,11 +127,8 @@ class SolutionPlots(SignalPlots):
             axes = panels(1, None, title=self._name, height=3.2)
             draw_force_history(sol, contact, axes[0], self.units)
             return figure_of(axes)
-        import matplotlib.pyplot as plt
-
-        figure, named = plt.subplot_mosaic(
-            [["time", "time"], ["plane", "close"]], figsize=(7.0, 6.0), layout="constrained", height_ratios=[1, 1.3]
-        )
+        figure = new_picture(7.0, 6.0)
+        named = figure.subplot_mosaic([["time", "time"], ["plane", "close"]], height_ratios=[1, 1.3])
         name_figure(figure, self._name)
         draw_force_history(sol, contact, named["time"], self.units)
         draw_cone(sol, contact, named["plane"], self.units)

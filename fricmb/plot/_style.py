@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 
 from fricmb.errors import unknown_name
 from fricmb.plot._arguments import looked_at
+from fricmb.plot._figure import Picture, new_picture, offer
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -125,8 +126,27 @@ def theme_in_use(ax: Axes | None = None) -> str:
     return "dark" if _is_dark(face) else "light"
 
 
+@contextmanager
+def _sheet(name: str) -> Iterator[None]:
+    """The settings of a style sheet, for what is drawn inside.
+
+    Only they are put back.  ``rc_context`` puts back all, also what others change meanwhile: pyplot, imported inside,
+    would lose its interactive mode, and with it the display of all figures in a notebook.
+    """
+    sheet = _SHEETS[name]
+    before = {key: mpl.rcParams[key] for key in sheet}
+    mpl.rcParams.update(sheet)
+    try:
+        yield
+    finally:
+        mpl.rcParams.update(before)
+
+
 def drawn(method: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Let a function draw with the style sheet of the theme in use; its options are looked at before."""
+    """Let a function draw with the style sheet of the theme in use; its options are looked at before.
+
+    A notebook is offered the picture.
+    """
 
     @looked_at
     @functools.wraps(method)
@@ -135,10 +155,13 @@ def drawn(method: Callable[_P, _R]) -> Callable[_P, _R]:
         name = theme_in_use(ax)
         _drawing.append(name)
         try:
-            with mpl.rc_context(_SHEETS[name]):
-                return method(*args, **kwargs)
+            with _sheet(name):
+                picture = method(*args, **kwargs)
         finally:
             _drawing.pop()
+        if isinstance(picture, Picture):
+            offer(picture)
+        return picture
 
     return draws
 
@@ -161,11 +184,8 @@ def panels(count: int, ax: Axes | None, *, title: str = "", **options: Any) -> l
     """``count`` panels of a new figure one above the other under a title, or the given axes as the only one."""
     if ax is not None:
         return [ax]
-    import matplotlib.pyplot as plt  # a figure of its own is one that plt.show() shows
-
-    height = options.pop("height", 2.4 * count + 0.8)
-    figure, axes = plt.subplots(count, 1, figsize=(7.0, height), layout="constrained", squeeze=False, **options)
-    assert isinstance(figure, Figure)
+    figure = new_picture(7.0, options.pop("height", 2.4 * count + 0.8))
+    axes = figure.subplots(count, 1, squeeze=False, **options)
     name_figure(figure, title)
     return list(axes[:, 0])
 
@@ -198,14 +218,6 @@ def finish(ax: Axes, *, x: str, y: str, legend: bool = False, columns: int = 4) 
             borderaxespad=0.1,
             columnspacing=1.2,
         )
-
-
-def unseen(figure: Figure) -> Figure:
-    """Take a figure off the list of those that plt.show() shows."""
-    import matplotlib.pyplot as plt
-
-    plt.close(figure)
-    return figure
 
 
 def figure_of(axes: list[Axes]) -> Figure:

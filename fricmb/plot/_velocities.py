@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb.plot._figure import new_picture
 from fricmb.plot._fine import Floats, looks, period_of, refined, window_of
 from fricmb.plot._style import NAMED_CURVES, figure_of, finish, line, name_figure, paint, panels, remark
 from fricmb.plot._units import Units, is_angle, is_direction, unit_of_rate
@@ -141,17 +142,8 @@ def _window(
 
 def _two_columns(count: int, title: str) -> list[list[Axes]]:
     """Whole and enlarged panels side by side."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(
-        count,
-        2,
-        figsize=(7.4, 2.4 * count + 0.8),
-        layout="constrained",
-        squeeze=False,
-        sharex="col",
-        width_ratios=[2, 1],
-    )
+    figure = new_picture(7.4, 2.4 * count + 0.8)
+    axes = figure.subplots(count, 2, squeeze=False, sharex="col", width_ratios=[2, 1])
     name_figure(figure, title)
     axes[0, 1].set_title("enlarged", loc="left", fontsize="small")
     return [list(axes[:, 0]), list(axes[:, 1])]

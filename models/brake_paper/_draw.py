@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 import fricmb as fm
 from fricmb.models.brake_paper._measures import Spikes
 from fricmb.plot import BLUE, DARK, ORANGE, THIN, finish
+from fricmb.plot._figure import new_picture, offer
 
 #: Long signals are drawn from this many points.
 POINTS = 20_000
@@ -18,13 +19,9 @@ POINTS = 20_000
 
 def page(rows: int, columns: int = 1, *, height: float = 2.6) -> tuple[Figure, list[Axes]]:
     """A figure with panels, row by row."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(
-        rows, columns, figsize=(4.6 * columns + 2.6, height * rows + 0.4), layout="constrained", squeeze=False
-    )
-    assert isinstance(figure, Figure)
-    return figure, list(axes.ravel())
+    figure = new_picture(4.6 * columns + 2.6, height * rows + 0.4)
+    offer(figure)
+    return figure, list(figure.subplots(rows, columns, squeeze=False).ravel())
 
 
 @lru_cache(maxsize=32)

@@ -13,6 +13,7 @@ from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection
 
 from fricmb.plot._animation import legend
 from fricmb.plot._contact import OPEN, SLIP, STICK
+from fricmb.plot._figure import new_picture
 from fricmb.plot._sketch import Floats
 from fricmb.plot._style import name_figure, paint
 from fricmb.plot.space._make import space_sketch_of_run, space_sketch_of_scene
@@ -182,7 +183,7 @@ def space_canvas(sketch: SpaceSketch, ax: Any = None) -> tuple[Figure, Axes3D]:
         figure = ax.figure
         assert isinstance(figure, Figure)
         return figure, ax
-    figure = Figure(figsize=(6.4, 5.2), layout="constrained")
+    figure = new_picture(6.4, 5.2)
     name_figure(figure, sketch.title)
     made = figure.add_subplot(projection="3d")
     assert isinstance(made, Axes3D)
