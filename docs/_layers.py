@@ -10,11 +10,11 @@ import fricmb
 
 # Floors from below, as the page names them; a package that is new stands out until it is given a place.
 PACKAGE = (
-    ("errors", "values", "integrate", "reduction", "solution", "dae"),
+    ("errors", "values", "integrate", "reduction", "solution", "dae", "facade", "version"),
     ("laws", "normal"),
     ("scene", "space"),
-    ("plan",),
     ("equations",),
+    ("plan",),
     ("system", "stated"),
     ("simulate", "sweep"),
     ("analysis", "audit", "sensitivity", "fit"),
@@ -35,7 +35,7 @@ ENGINE = (
     ("select",),
 )
 #: What everybody imports: no lines.
-EVERYWHERE = ("errors", "values", "problem")
+EVERYWHERE = ("errors", "facade", "values", "version", "problem")
 ROOT = Path(fricmb.__file__).parent
 
 

@@ -20,12 +20,9 @@ __all__ = [*_names, "__version__"]
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        from importlib.metadata import PackageNotFoundError, version
+        from fricmb._version import installed_version
 
-        try:
-            return version("fricmb")
-        except PackageNotFoundError:
-            return "0+unknown"
+        return installed_version()
     try:
         return _load(name)
     except AttributeError:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fricmb._facade import facade
 from fricmb._fit._data import Measured
 from fricmb.integrate.problem import Floats
 
@@ -65,12 +66,9 @@ class Fit:
         return found
 
     @property
+    @facade
     def plot(self) -> FitPlots:
         """Pictures: ``found.plot.residuals()``."""
-        from fricmb.plot._fits import FitPlots
-
-        return FitPlots(self)
-
     def __str__(self) -> str:
         width = max(map(len, self.values))
         lines = [f"{name:{width}s}  {value:.8g} +- {self.std[name]:.2g}" for name, value in self.values.items()]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._simulate._asked import check_names
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import Tolerance
 from fricmb.integrate.problem import Floats
@@ -146,6 +147,4 @@ def check_sensitivities(scene: Any, given: Any, on_chunk: Any) -> tuple[str, ...
         return ()
     if on_chunk is not None:
         raise SceneError("sensitivities: not together with on_chunk, which keeps nothing of the run")
-    from fricmb.sensitivity import check_names
-
     return check_names(scene, given)

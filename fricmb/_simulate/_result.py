@@ -116,9 +116,7 @@ def not_there(trajectory: Trajectory, span: Span, fixed: bool) -> str | None:
 def differentiated(sol: Solution, asked: tuple[str, ...]) -> Solution:
     """The solution with the derivatives that were asked for."""
     if asked:
-        from fricmb.sensitivity import derive
-
-        derive(sol, asked)
+        sol._differentiate(asked)
     return sol
 
 

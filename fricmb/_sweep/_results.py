@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb._facade import facade
 from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 
 if TYPE_CHECKING:
@@ -168,6 +169,7 @@ class SweepResults(list[Any]):
         held[places] = self.measure(what)
         return tuple(axis for axis, _ in found), held
 
+    @facade
     def plot(
         self, what: Measure | None = None, *, over: str | tuple[str, ...] | None = None, label: str | None = None,
         ax: Axes | None = None,
@@ -189,13 +191,6 @@ class SweepResults(list[Any]):
         SceneError
             For more than two parameters, or runs that stand at the same place.
         """
-        from fricmb.plot._sweep import draw_sweep
-
-        names = self.parameters if over is None else (over,) if isinstance(over, str) else tuple(over)
-        chosen = self._only() if what is None else what
-        named = label or (chosen if isinstance(chosen, str) else "measure")
-        return draw_sweep(*self.grid(chosen, over=names), names=names, label=named, ax=ax)
-
     def _asked(self, measures: Mapping[str, Measure]) -> dict[str, Measure]:
         return dict(measures) if measures else {name: name for name in self.measures()}
 

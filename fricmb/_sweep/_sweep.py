@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Mapping
 from os import PathLike
 from typing import Any
 
-import fricmb
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options, check_scene
 from fricmb._simulate._progress import bar
 from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
+from fricmb._version import installed_version
 from fricmb.errors import IntegrationError, SceneError
 from fricmb.integrate.compile.cache_files import say
 from fricmb.scene._other_values import check_values
@@ -90,7 +90,7 @@ def sweep(
     if run_limit is not None and not (isinstance(run_limit, int | float) and run_limit > 0):
         raise SceneError(f"run_limit: got {run_limit!r}; expected a number of seconds > 0, or None")
     job = Job(scene=scene, reduce=reduce, options={"t_end": t_end, **options})
-    kept = None if store is None else Store(store, (fricmb.__version__, scene, reduce, job.options))
+    kept = None if store is None else Store(store, (installed_version(), scene, reduce, job.options))
     results = SweepResults([None] * len(values), values=own)
     missing = dict(enumerate(values))
     if kept is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._facade import facade
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options
 from fricmb._sweep import sweep
@@ -167,12 +168,9 @@ class BifurcationDiagram:
         return np.array([0 if not p.size else 1 + int((np.diff(np.sort(p)) > near).sum()) for p in self.points])
 
     @property
+    @facade
     def plot(self) -> DiagramPlots:
         """Pictures: ``found.plot.diagram()``."""
-        from fricmb.plot._branches import DiagramPlots
-
-        return DiagramPlots(self)
-
 
 @dataclass(frozen=True, kw_only=True)
 class _Reduce:

@@ -15,8 +15,7 @@ from sympy.simplify.fu import TR8
 
 from fricmb.equations._collector import Collector, exact
 from fricmb.equations._names import coordinate_symbols
-from fricmb.plan import topology
-from fricmb.scene import Fixed, Prismatic, Revolute, RigidBody
+from fricmb.scene import Fixed, Prismatic, Revolute, RigidBody, topology
 from fricmb.scene._rigid import start_angle
 
 #: Joints with coordinates of their own, from which the pose of the body that hangs on follows.

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Literal, Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fricmb._facade import facade
 from fricmb.errors import FricmbError, LawError
 from fricmb.laws._check import (
     check_cone,
@@ -252,10 +253,9 @@ class FrictionLaw(Regimes, Declaration):
 
         return rate(self, v_rel, normal_force, state)
 
+    @facade
     def _repr_html_(self) -> str:
-        from fricmb.plot._html import law_html
-
-        return law_html(self)
+        """Show it in a notebook."""
 
     # -- checks -------------------------------------------------------------------------------------------------
     def __post_init__(self) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fricmb._facade import facade
+
 if TYPE_CHECKING:
     from fricmb.laws._base import FrictionLaw
     from fricmb.laws._creep import Creep
@@ -27,8 +29,6 @@ class Regimes:
 
         return Bristle(law=self, stiffness=stiffness, **options)
 
+    @facade
     def creep(self, load: float = 0.5) -> Creep:
         """How far and how fast the law gives way under a share ``load`` of its break-away; see :class:`Creep`."""
-        from fricmb.laws._creep import creep
-
-        return creep(self, load)

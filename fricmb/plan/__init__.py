@@ -3,19 +3,14 @@
 from fricmb.plan._make import make_plan
 from fricmb.plan._plan import Island, Omission, Plan, Selection
 from fricmb.plan._same import common
-from fricmb.plan._tree import Branch, Loop, Topology, topology
 from fricmb.plan._truncate import truncated
 
 __all__ = [
-    "Branch",
     "Island",
-    "Loop",
     "Omission",
     "Plan",
     "Selection",
-    "Topology",
     "common",
     "make_plan",
-    "topology",
     "truncated",
 ]

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.equations import element_facts, element_groups
 from fricmb.plan._links import Flags, Ints, Link, Links
 from fricmb.plan._rest import can_start
 from fricmb.scene import (
@@ -101,8 +102,6 @@ def _ends(rows: Rows) -> tuple[Ints, Ints, Ints]:
 
 
 def _element_table(scene: Scene, rows: Rows) -> _Table:
-    from fricmb.equations import element_groups
-
     at, owner, dofs = _ends(rows)
     facts: list[Any] = []
     which = np.zeros(at.size, dtype=np.int64)
@@ -165,9 +164,6 @@ def couples_modes(part: Part) -> bool:
 
 
 def _link(scene: Scene, part: Part, place: dict[str, int]) -> Link:
-    # what is left of an element for its numbers is known to the equations, one floor up
-    from fricmb.equations import element_facts
-
     own, read = _motions(scene, part)
     acts = tuple(sorted({place[dof] for name in own for dof in scene.dofs_behind(name) if dof in place}))
     read_dofs = {place[dof] for name in read for dof in scene.dofs_behind(name) if dof in place}

@@ -18,9 +18,8 @@ from fricmb.plan._redundant import redundant
 from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
 from fricmb.plan._same import common
-from fricmb.plan._tree import topology
 from fricmb.plan._truncate import truncated
-from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene
+from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene, topology
 from fricmb.scene._scene import BODIES
 from fricmb.values._pause import no_collection
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from fricmb.plan._tree import Branch, Loop
+from fricmb._facade import facade
+from fricmb.scene import Branch, Loop
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,10 +139,9 @@ class Plan:
         """What distinguishes the arrays of two plans of one scene."""
         return self.dofs, self.parts
 
+    @facade
     def _repr_html_(self) -> str:
-        from fricmb.plot._html import plan_html
-
-        return plan_html(self)
+        """Show it in a notebook."""
 
     def __str__(self) -> str:
         lines = [f"plan of {self.scene!r}"]

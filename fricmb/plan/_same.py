@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from itertools import count
 from typing import Any
 
+from fricmb.equations import element_facts
 from fricmb.plan._acting import is_idle
 from fricmb.plan._report import zeros
 from fricmb.scene import (
@@ -130,9 +131,6 @@ def _of_joint(scene: Scene, joint: Joint) -> tuple[Any, ...]:
 
 
 def _of_element(scene: Scene, element: Element) -> tuple[Any, ...]:
-    # what is left of an element for its numbers is known to the equations, one floor up
-    from fricmb.equations import element_facts
-
     facts = element_facts(element)
     expanded = _expanded(scene, element, element.local_coordinates())
     forms = tuple([(form.motions, form.constant != 0.0) for form in expanded])

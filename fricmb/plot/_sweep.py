@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fricmb._sweep import SweepResults
+from fricmb._sweep._results import Measure
 from fricmb.errors import SceneError
 from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
 
@@ -15,8 +17,19 @@ from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
 _MARKED = 60
 
 
+def draw_results(
+    results: SweepResults, what: Measure | None = None, *, over: str | tuple[str, ...] | None = None,
+    label: str | None = None, ax: Axes | None = None,
+) -> Figure:  # fmt: skip
+    """See :meth:`fricmb.SweepResults.plot`."""
+    names = results.parameters if over is None else (over,) if isinstance(over, str) else tuple(over)
+    chosen = results._only() if what is None else what
+    named = label or (chosen if isinstance(chosen, str) else "measure")
+    return _draw(*results.grid(chosen, over=names), names=names, label=named, ax=ax)
+
+
 @drawn
-def draw_sweep(
+def _draw(
     axes: tuple[np.ndarray[Any, Any], ...], held: np.ndarray[Any, Any], *, names: tuple[str, ...], label: str,
     ax: Axes | None,
 ) -> Figure:  # fmt: skip

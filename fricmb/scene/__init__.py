@@ -25,6 +25,7 @@ from fricmb.scene._scene import Scene
 from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.scene._spring import Spring
 from fricmb.scene._symbols import coordinate, speed
+from fricmb.scene._tree import Branch, Loop, Topology, topology
 from fricmb.scene._turning import Gravity, Torque, TorsionDamper, TorsionSpring
 from fricmb.values import Parameter, parameter
 
@@ -32,6 +33,7 @@ __all__ = [
     "GROUND",
     "AxialElement",
     "Body",
+    "Branch",
     "Contact",
     "Damper",
     "Direction",
@@ -48,6 +50,7 @@ __all__ = [
     "GroundPoint",
     "Joint",
     "LinearForm",
+    "Loop",
     "MatrixElement",
     "ModalBody",
     "Parameter",
@@ -66,6 +69,7 @@ __all__ = [
     "SpaceBody",
     "SpacePoint",
     "Spring",
+    "Topology",
     "Torque",
     "TorsionDamper",
     "TorsionSpring",
@@ -80,6 +84,7 @@ __all__ = [
     "parameter",
     "speed",
     "t",
+    "topology",
 ]
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb._facade import facade
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene import _parameters
 from fricmb.scene._bodies import Body, Driven
@@ -26,6 +27,13 @@ from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.values import DIMENSIONS, Units, has_entries, value_of
 from fricmb.values._pause import no_collection
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from fricmb.equations._scene import SceneEquations
+    from fricmb.plan import Plan
 
 #: Parts with degrees of freedom.
 BODIES = (Body, ModalBody, RigidBody, SpaceBody)
@@ -377,37 +385,28 @@ class Scene:
         return scene
 
     # -- facades ------------------------------------------------------------------------------------------------
-    def equations(self, *, joint_coordinates: bool = False) -> Any:
+    @facade
+    def equations(self, *, joint_coordinates: bool = False) -> SceneEquations:
         """The equations of motion in SymPy: ``.M``, ``.rhs``, ``.latex()``.
 
         ``joint_coordinates``: bodies that hang on pins, guides and welds in the coordinates of these joints
         (``"pin.angle"``, ``"guide.slide"``), whose reactions drop out; other joints, and those that close loops, stay
         constraints.
         """
-        from fricmb.equations import scene_equations
-
-        return scene_equations(self, joint_coordinates=joint_coordinates)
-
-    def draw(self, *, ax: Any = None) -> Any:
+    @facade
+    def draw(self, *, ax: Axes | None = None) -> Figure:
         """The scene as a matplotlib figure: bodies, springs and dampers along their directions, joints, contacts.
 
         Rigid bodies stand as they do at the start, to scale; of other scenes the drawing shows what hangs on what, from
         above where a contact has two tangential directions.  ``ax``: axes to draw into.
         """
-        from fricmb.plot._animation import draw_scene
-
-        return draw_scene(self, ax=ax)
-
-    def plan(self) -> Any:
+    @facade
+    def plan(self) -> Plan:
         """What will be built and what is left out, with counts; printable."""
-        from fricmb.plan import make_plan
 
-        return make_plan(self)
-
+    @facade
     def _repr_html_(self) -> str:
-        from fricmb.plot._html import scene_html
-
-        return scene_html(self)
+        """Show it in a notebook."""
 
     # -- value --------------------------------------------------------------------------------------------------
     def __eq__(self, other: object) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._simulate._asked import STATE
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import RigidBody
@@ -19,7 +20,6 @@ from fricmb.sensitivity._happenings import PASS, Happening, happenings
 from fricmb.sensitivity._landings import extrapolated, near_misses, passes, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
-from fricmb.sensitivity._seeds import STATE
 from fricmb.sensitivity._setting_out import SettingOut, set_outs
 from fricmb.sensitivity._sizes import sizes
 from fricmb.sensitivity._starts import held, one_sided

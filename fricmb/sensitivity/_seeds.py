@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from fricmb.equations._values import _symbolic_slots
-from fricmb.errors import SceneError, shown, unknown_name
+from fricmb.errors import SceneError
 from fricmb.scene import Scene
 from fricmb.sensitivity._dual import Dual
-from fricmb.values import Declaration, Parameter, has_entries, is_expression, parameters_in, value_of
+from fricmb.values import Declaration, Parameter, is_expression, parameters_in, value_of
 
 #: Part by which a number is changed to find a slope, a power of 2; shares of it, with weights: Richardson's difference
 #: about the value, and, where it may be no smaller or no larger (no damping, say), differences of the same order to one
@@ -19,35 +17,6 @@ _LITTLE = 2.0**-10
 _WEIGHTS = ((1.0, -1.0 / 6.0), (0.5, 4.0 / 3.0), (-0.5, -4.0 / 3.0), (-1.0, 1.0 / 6.0))
 _AHEAD = ((0.0, -25.0 / 3.0), (0.25, 16.0), (0.5, -12.0), (0.75, 16.0 / 3.0), (1.0, -1.0))
 _BEHIND = tuple((-share, -weight) for share, weight in _AHEAD)
-#: Stands for all initial values.
-STATE = "state"
-
-
-def check_names(scene: Scene, given: Any) -> tuple[str, ...]:
-    """Names of parameters, "state" first if it is asked for; errors name those near."""
-    names = (given,) if isinstance(given, str) else given
-    if not has_entries(names) or not all(isinstance(name, str) for name in names):
-        raise SceneError(
-            f'sensitivities: got {shown(given)}; expected names in scene.parameters, or "state" for all initial values'
-        )
-    known = scene.parameters
-    for name in (names := tuple(dict.fromkeys(names))):
-        if name == STATE:
-            continue
-        if name not in known and not _slot(scene, name):
-            raise unknown_name(f"parameter of scene {scene.name!r}", name, [*known, STATE])
-        value = known.get(name, 0.0)
-        if np.ndim(value_of(value)):
-            raise SceneError(
-                f"sensitivities: {name!r} is an array of shape {np.shape(value_of(value))}, not one number"
-            )
-    return tuple(sorted(names, key=lambda name: name != STATE))
-
-
-def _slot(scene: Scene, name: str) -> bool:
-    """Whether a name is a slot that a part accepts (an initial value that was not given, say)."""
-    head, _, path = name.partition(".")
-    return head in scene and bool(path) and path in scene[head].settable()
 
 
 class Seeds:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._facade import WORDS, find
 from fricmb.integrate import Trajectory
 from fricmb.solution._formulas import NotStored, read_formula, write_formula
 from fricmb.solution._kinds import Kinds, is_data, is_own, path_of, source_of
@@ -148,9 +149,7 @@ class Reader:
         if word == "formula":
             return read_formula(rest[0])
         if word == "ground":
-            from fricmb.scene import GROUND
-
-            return GROUND
+            return find(WORDS[word])
         if word == "objects":
             return self._array_of_objects(*rest)
         if word == "sparse":

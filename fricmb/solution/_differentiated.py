@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from fricmb._facade import facade
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.solution._derivatives import Derivatives
@@ -69,11 +70,13 @@ class Differentiated(Recorded):
                     "this solution has no derivatives: simulate with sensitivities=(names), or sensitivities="
                     '"state"; joined runs have none, each of their parts has its own'
                 )
-            from fricmb.sensitivity import derive
-
-            derive(self, self._asked)
+            self._differentiate(self._asked)
         assert self._derivatives is not None
         return self._derivatives
+
+    @facade
+    def _differentiate(self, asked: tuple[str, ...]) -> None:
+        """Find derivatives by what ``simulate(sensitivities=...)`` was given, and take them."""
 
     def take_derivatives(self, derivatives: Derivatives) -> None:
         """Keep derivatives, those of its events with the events."""

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-import fricmb
+from fricmb._version import installed_version
 from fricmb.errors import FricmbError, shown
 from fricmb.integrate import Samples
 from fricmb.solution._check_file import check_arrays, check_stats
@@ -162,7 +162,7 @@ def _words(sol: Solution) -> dict[str, Any]:
     names = sol.names
     return {
         "format": FORMAT,
-        "fricmb": fricmb.__version__,
+        "fricmb": installed_version(),
         "directions": names.directions,
         "states": names.states,
         "scale": names.scale,

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from fricmb._facade import facade
 from fricmb.integrate import Samples
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._contact_signals import ContactSignals
@@ -57,11 +58,9 @@ class Solution(ContactSignals, Differentiated):
         return other
 
     @property
+    @facade
     def plot(self) -> SolutionPlots:
         """Pictures: ``sol.plot.velocities()``, ..."""
-        from fricmb.plot import SolutionPlots
-
-        return SolutionPlots(self)
 
     def animate(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
         """The run as moving pictures, or in a browser with a time slider; options of ``sol.plot.animation``.
@@ -70,6 +69,7 @@ class Solution(ContactSignals, Differentiated):
         """
         return self.plot.animation(path, **options)
 
+    @facade
     def audit(self, *, rtol: float | None = None, atol: Any = None, seed: int = 0) -> Audit:
         """Check the run against the equations of its scene, on a path that shares nothing with the compiled kernels.
 
@@ -91,10 +91,6 @@ class Solution(ContactSignals, Differentiated):
         fricmb.audit.Audit
             ``.ok``, ``.checks``, ``.table()``; printed, three lines.
         """
-        from fricmb.audit import audit
-
-        return audit(self, rtol=rtol, atol=atol, seed=seed)
-
     def columns(self) -> dict[str, Floats | Codes]:
         """Every signal (n_t,) by name, as in :meth:`to_pandas`."""
         from fricmb.solution._table import columns
@@ -148,10 +144,9 @@ class Solution(ContactSignals, Differentiated):
         """What happened, on a few lines."""
         return summarise(self)
 
+    @facade
     def _repr_html_(self) -> str:
-        from fricmb.plot._view import solution_notebook
-
-        return solution_notebook(self)
+        """Show it in a notebook."""
 
     def __repr__(self) -> str:
         return describe(self)

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from fricmb._facade import WORDS, find
 from fricmb.errors import FricmbError
 from fricmb.integrate import Trajectory
 from fricmb.solution._data import Reader, Writer
@@ -112,7 +113,7 @@ def store(run: Run) -> tuple[str, dict[str, Any]]:
 
 def _builder(word: Any) -> tuple[Callable[..., Mechanics], type]:
     if word == "scene" and word not in _builders:
-        import fricmb._simulate._mechanics  # noqa: F401  # makes itself known
+        find(WORDS[word])  # makes itself known where it is imported
     if word not in _builders:
         raise ValueError(f"the mechanics {word!r} are not known here")
     return _builders[word]

@@ -12,8 +12,19 @@ from fricmb.equations import place_template
 from fricmb.errors import SceneError
 from fricmb.integrate.mechanism import Entries, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
-from fricmb.plan import common, topology
-from fricmb.scene import Body, Contact, Element, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody
+from fricmb.plan import common
+from fricmb.scene import (
+    Body,
+    Contact,
+    Element,
+    Gravity,
+    Joint,
+    MatrixElement,
+    ModalBody,
+    RigidBody,
+    SpaceBody,
+    topology,
+)
 from fricmb.system import _motions
 from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb._facade import facade
 from fricmb.analysis._errors import Floats
 from fricmb.analysis.cycles._cycle import Cycle
 from fricmb.analysis.cycles._specials import Special
@@ -82,12 +83,9 @@ class Branch:
         return switched(self, special, self.to if to is None else to, points, progress)
 
     @property
+    @facade
     def plot(self) -> BranchPlots:
         """Pictures: ``branch.plot.diagram()``, ``branch.plot.multipliers()``."""
-        from fricmb.plot._branches import BranchPlots
-
-        return BranchPlots(self)
-
     def __str__(self) -> str:
         values = self.values
         lines = [f"{len(self.cycles)} cycles over {self.over} = {values[0]:g} to {values[-1]:g}, {self.ended}"]

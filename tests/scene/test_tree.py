@@ -2,7 +2,7 @@
 
 import fricmb as fm
 from fricmb.bench._size import links
-from fricmb.plan import topology
+from fricmb.scene import topology
 
 
 def test_an_open_chain_is_a_tree():

@@ -11,7 +11,8 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from fricmb.scene import Joint, Scene
+from fricmb.scene._joint import Joint
+from fricmb.scene._scene import Scene
 
 GROUND = "ground"
 
