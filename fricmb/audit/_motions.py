@@ -107,9 +107,10 @@ class Moment:
         point = frame.scene.rigid_points.get(owner) if frame.scene.is_mechanism else None
         if point is not None:
             return self._point(point, letter)
-        terms = frame.scene.motion(name).terms if frame.scene.has_motion(name) else ()
-        if terms and terms != ((name, 1.0),):
-            return self.form(LinearForm(terms))
+        if frame.scene.has_motion(name):
+            terms = frame.scene.motion(name).terms  # none: a point where all modes rest along an axis
+            if terms != ((name, 1.0),):
+                return self.form(LinearForm(terms))
         if name in frame.scene.dof_names:  # what the plan left out rests
             return frame.start(name), 0.0, []
         return (*self._prescribed(name), [])

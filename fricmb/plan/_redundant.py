@@ -36,6 +36,7 @@ def _dependent(scene: Scene, contacts: Sequence[Contact]) -> tuple[str, ...]:
         for contact in contacts
         for direction in contact.directions()
     ]
+    rows = [row for row in rows if row[1]]  # across a guide nothing answers: that force is borne, not shared
     column: dict[str, int] = {}
     for _, terms in rows:
         for name, _ in terms:

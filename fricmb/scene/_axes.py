@@ -125,11 +125,13 @@ def direction(owner: Part, argument: str, axis: Any, a: End, b: End, label: str 
 
 
 def from_vector(vector: tuple[tuple[str, float], ...], a: End, b: End, label: str) -> Direction:
-    """A direction from its components."""
+    """A direction from its components; an end rests along an axis that it does not have."""
     terms: dict[str, float] = {}
     constant = 0.0
     for letter, c in vector:
         for end, factor in ((a, c), (b, -c)):
+            if not end.has_axis(letter):
+                continue
             form = end.motion(letter)
             constant += factor * form.constant
             for name, coefficient in form.terms:

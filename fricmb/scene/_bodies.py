@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import LETTERS, Part, PartEnd
+from fricmb.values import value_of
 from fricmb.values._same import is_same
 
 
@@ -184,6 +185,13 @@ class Driven(PartEnd):
     def moving(self) -> tuple[str, ...]:
         """Letters along which a motion is prescribed; at rest along all others."""
         return tuple(c for c in LETTERS if c in self.velocity or c in self.position)
+
+    def rests_along(self, letter: str) -> bool:
+        """Whether it never moves along an axis: where none is prescribed, or a number, for a velocity that is 0."""
+        if letter in self.velocity:
+            speed = self.velocity[letter]
+            return expression_uses(speed).constant and float(value_of(speed)) == 0.0
+        return expression_uses(self.position.get(letter, 0.0)).constant
 
     @property
     def movable(self) -> bool:

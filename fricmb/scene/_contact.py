@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.laws import FrictionLaw
 from fricmb.normal import Constant, NormalLaw, Prescribed
 from fricmb.scene._axes import Direction, check_axis, check_ends, direction, from_vector, is_direction_tuple
+from fricmb.scene._bodies import Driven
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._part import GROUND, LETTERS, End, Part
 from fricmb.values import is_list
@@ -32,8 +33,9 @@ class Contact(Part):
         A number or an expression (as in :class:`Force`; acts on nobody, below 0 counts as 0), or a law.
     axes : str or sequence, optional
         Tangential directions: one or two letters or direction tuples, at right angles (a law of sliding and spinning
-        takes three, the third the speed of the rim).  Default: the axes that the ends with degrees of freedom share,
-        less the axis of a normal-force law.
+        takes three, the third the speed of the rim).  Default: the axes along which the ends move, less the axis of a
+        normal-force law.  An end that lacks one of them is guided there: slip across the guide is part of the cone, and
+        the guide bears the force.  Two ends that can both be moved must share an axis.
     slide : float, expression in ``fm.t``, or a sequence of one or two, optional
         Added to a's velocity relative to b, one for each direction.
 
@@ -115,12 +117,22 @@ class Contact(Part):
         return tuple(check_axis(self, "axes", entry) for entry in entries)
 
     def shared_letters(self) -> tuple[str, ...]:
-        """Axes that the ends with degrees of freedom share (and to which a driven end is not closed)."""
+        """Axes along which the ends slip: those that both have, and those along which one moves and the other cannot.
+
+        What cannot move along an axis is guided: it rests along it, and the guide bears the force.  A driven end that
+        is restricted to axes does not rub along others.
+        """
         first, second = (self.a, self.b) if self.a.movable else (self.b, self.a)
-        if first.letters is None:
-            first, second = second, first
         letters = first.letters or ()
-        return letters if second.letters is None else tuple([c for c in letters if second.has_axis(c)])
+        if second.movable:
+            if not any(second.has_axis(c) for c in letters):
+                return ()
+            return (*letters, *(c for c in second.letters or () if c not in letters))
+        if second.letters is not None:
+            letters = tuple([c for c in letters if second.has_axis(c)])
+        if not isinstance(second, Driven):
+            return letters
+        return (*letters, *(c for c in second.moving if not first.has_axis(c) and not second.rests_along(c)))
 
     def letters_along(self) -> tuple[str, ...] | None:
         """The letters of the tangential directions; None where these are no letters, or a normal-force law's matter."""
@@ -128,10 +140,26 @@ class Contact(Part):
             return None
         if self.axes is None:
             return self.shared_letters()
-        for axis in self.axes:
-            if not isinstance(axis, str) or not (self.a.has_axis(axis) and self.b.has_axis(axis)):
-                return None
+        if not all(isinstance(axis, str) and self._slips_along(axis) for axis in self.axes):
+            return None
         return self.axes if len(set(self.axes)) == len(self.axes) else None
+
+    def _slips_along(self, letter: str) -> bool:
+        """Whether a letter may be a direction: both ends have it, or one is guided across what moves along it."""
+        if self.a.has_axis(letter) and self.b.has_axis(letter):
+            return True
+        return self.slide is not None or any(
+            letter in end.moving and not end.rests_along(letter)
+            if isinstance(end, Driven)
+            else end.letters is not None and letter in end.letters
+            for end in (self.a, self.b)
+        )
+
+    def _direction(self, axis: Any, label: str) -> Direction:
+        """A tangential direction; along a letter an end may be guided."""
+        if isinstance(axis, str) and self._slips_along(axis):
+            return from_vector(((axis, 1.0),), self.a, self.b, label)
+        return direction(self, "axes", axis, self.a, self.b, label)
 
     def labels(self) -> tuple[str, ...]:
         """Labels of the tangential directions."""
@@ -151,7 +179,7 @@ class Contact(Part):
         if self.axes is not None:
             labels = ("t",) if len(self.axes) == 1 else ("t1", "t2", "t3")
             return tuple(
-                direction(self, "axes", axis, self.a, self.b, axis if isinstance(axis, str) else label)
+                self._direction(axis, axis if isinstance(axis, str) else label)
                 for axis, label in zip(self.axes, labels, strict=False)
             )
         letters = self.shared_letters()
@@ -162,9 +190,9 @@ class Contact(Part):
             )
         normal = self.normal_direction()
         if normal is None:
-            return tuple(direction(self, "axes", c, self.a, self.b) for c in letters)
+            return tuple(self._direction(c, c) for c in letters)
         if len(normal.vector) == 1:
-            return tuple(direction(self, "axes", c, self.a, self.b) for c in letters if c != normal.vector[0][0])
+            return tuple(self._direction(c, c) for c in letters if c != normal.vector[0][0])
         if len(letters) > 2:
             raise SceneError(f"{self._label()}: axes must be given beside an oblique normal force in three dimensions")
         # across an oblique normal in the plane
@@ -208,7 +236,10 @@ class Contact(Part):
     def _checked_slide(self, d: int) -> tuple[Any, ...]:
         given = tuple(self.slide) if is_list(self.slide) else (self.slide,)
         if len(given) != d:
-            self._refuse("slide", self.slide, f"{d} value(s), one for each tangential direction")
+            held = "".join(self.labels())
+            self._refuse(
+                "slide", self.slide, f"{d} value(s), one for each tangential direction ({held}; axes= states others)"
+            )
         return tuple(check_expression(self, "slide", value, motions=False) for value in given)
 
     def slides(self) -> tuple[Any, ...]:

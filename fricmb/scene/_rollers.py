@@ -12,6 +12,7 @@ from fricmb.scene._joint import kept_distance
 from fricmb.scene._one_sided import OneSided
 from fricmb.scene._plane_joint import BetweenPoints, PlaneJoint
 from fricmb.scene._rigid import angle_of
+from fricmb.values import is_list
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +38,9 @@ class RollerOnLine(Surface):
         "end": the run ends there with an error that says so.  "open": it goes on without this joint, and ends with an
         error where the point meets the line again (impacts are not computed).  A scene that starts with the point
         away from the line, on the side of the normal, or leaving it, starts open.
-    slide : number or SymPy expression in ``fm.t``
-        Velocity of the line's surface along the line.
+    slide : number or SymPy expression in ``fm.t``, or two of them
+        Velocity of the surface along the line; of two the second across the plane.  The point is guided there, and
+        slip across is part of the cone.
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction.
     """
@@ -52,15 +54,25 @@ class RollerOnLine(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._settle("angle")
-        self._set("slide", check_expression(self, "slide", self.slide, motions=False))
+        given = tuple(self.slide) if is_list(self.slide) else (self.slide,)
+        if len(given) > 2:
+            self._refuse("slide", self.slide, "one value, or two: along the line and across the plane")
+        checked = tuple(check_expression(self, "slide", value, motions=False) for value in given)
+        self._set("slide", checked if is_list(self.slide) else checked[0])
         self.local_coordinates()
+
+    @property
+    def slip_rows(self) -> int:  # type: ignore[override]
+        """Along the line, and with a second slide across."""
+        return len(self.slide) if is_list(self.slide) else 1
 
     def _takes_expression(self, field: str) -> bool:
         return field == "slide"
 
     def drives(self) -> tuple[Any, ...]:
         """The surface's own motion."""
-        return (("rate", self.slide, 0.0),) if self.friction is not None else ()
+        given = self.slide if is_list(self.slide) else (self.slide,)
+        return tuple(("rate", value, 0.0) for value in given) if self.friction is not None else ()
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Distance of the points and angle of b."""
@@ -82,12 +94,13 @@ class RollerOnLine(Surface):
         return (x[1] * sympy.cos(turn) - x[0] * sympy.sin(turn),)
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Along the line, seen from b, less the motion of its surface."""
+        """Along the line, seen from b, less the motion of its surface; and that across."""
         import sympy
 
         turn = x[2] + self.angle
         across = x[1] * sympy.cos(turn) - x[0] * sympy.sin(turn)
-        return sympy.cos(turn), sympy.sin(turn), across, -1
+        along = sympy.cos(turn), sympy.sin(turn), across, -1
+        return along if len(x) == 4 else ((*along, 0), (0, 0, 0, 0, -1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -94,6 +94,16 @@ def line(rng: Generator) -> Spec:
     return spec
 
 
+def guided(rng: Generator) -> Spec:
+    """Blocks in guides along x, some of them on a belt that moves across the guides as well."""
+    spec = line(rng)
+    spec.kind = "guided"
+    size = some(rng, 0.05, 1.0)
+    spec.across = [size, round_to(size * rng.uniform(0.0, 0.9)), some(rng, 0.3, 6.0)]
+    spec.touches[0].b = -2
+    return spec
+
+
 def plane(rng: Generator) -> Spec:
     """One or two blocks on a plane."""
     n = int(rng.integers(1, 3))
@@ -273,7 +283,7 @@ def roller(rng: Generator) -> Bodies:
 
 
 KINDS: dict[str, Callable[[Generator], Any]] = {
-    "line": line, "plane": plane, "stack": stack, "loop": loop, "modes": modes, "chain": chain,
+    "line": line, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes, "chain": chain,
     "tree": tree, "roller": roller,
 }  # fmt: skip
 

@@ -64,6 +64,8 @@ class Spec:
     belt_later: float = 0.0
     belt_change: float = 0.0
     """The belt's speed, another one, and when it jumps (0: never)."""
+    across: list[float] = field(default_factory=list)
+    """The belt's speed across the blocks' guides: constant, amplitude, omega; none: it has none."""
     q: list[list[float]] = field(default_factory=list)
     v: list[list[float]] = field(default_factory=list)
     frequencies: list[float] = field(default_factory=list)
@@ -103,7 +105,10 @@ def scene(spec: Spec) -> Any:
     speed: Any = spec.belt
     if spec.belt_change:
         speed = sympy.Piecewise((spec.belt, fm.t < spec.belt_change), (spec.belt_later, True))
-    ends = {-1: fm.GROUND, -2: fm.Driven("belt", velocity={"x": speed})}
+    velocity = {"x": speed}
+    if spec.across:
+        velocity["y"] = spec.across[0] + spec.across[1] * sympy.sin(spec.across[2] * fm.t)
+    ends = {-1: fm.GROUND, -2: fm.Driven("belt", velocity=velocity)}
     ends |= dict(enumerate(bodies))
     if any(touch.b == -2 for touch in spec.touches):
         parts.append(ends[-2])
@@ -122,7 +127,8 @@ def scene(spec: Spec) -> Any:
         if touch.swing or touch.slope:
             x = fm.coordinate(f"b{touch.a}.x") if touch.slope else 0
             N = touch.N * (1 + touch.swing * sympy.sin(touch.omega * fm.t) + touch.slope * x)
-        parts.append(fm.Contact(f"c{number}", ends[touch.a], ends[touch.b], law=law, normal_force=N, axes=axes))
+        along = axes + "y" if spec.across and touch.b == -2 else axes
+        parts.append(fm.Contact(f"c{number}", ends[touch.a], ends[touch.b], law=law, normal_force=N, axes=along))
     return fm.Scene(spec.kind, parts)
 
 
@@ -205,14 +211,22 @@ def contact(spec: Spec, number: int, ways: list[np.ndarray]) -> Contact:
     def normal(t: float, q: np.ndarray, v: np.ndarray) -> float:
         return float(touch.N * (1.0 + touch.swing * math.sin(touch.omega * t) + touch.slope * (first @ q)))
 
-    along = np.eye(spec.d)[0]
+    guided = bool(spec.across) and touch.b == -2
+    d = spec.d + guided
+    along = np.eye(d)[0]
     early, late = spec.belt * along, spec.belt_later * along
+    if guided:
+        W = np.column_stack([W, np.zeros(len(W))])
 
     def slide(t: float) -> np.ndarray:
-        return late if spec.belt_change and t >= spec.belt_change else early
+        now = late if spec.belt_change and t >= spec.belt_change else early
+        if guided:
+            steady, swing, omega = spec.across
+            return now + np.array([0.0, steady + swing * math.sin(omega * t)])
+        return now
 
     return Contact(
         name=f"c{number}", W=W, N=normal, slide=slide if touch.b == -2 else nothing,
         constant=not (touch.swing or touch.slope),
-        **parts_of(getattr(fm.laws, touch.law)(**touch.fields), spec.d),
+        **parts_of(getattr(fm.laws, touch.law)(**touch.fields), d),
     )  # fmt: skip

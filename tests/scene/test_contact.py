@@ -20,13 +20,30 @@ def labels(*arguments, **keywords):
     return [d.label for d in contact(*arguments, **keywords).directions()]
 
 
-def test_default_axes_are_those_that_ends_with_dofs_share():
+def test_default_axes_are_those_along_which_the_ends_move():
     assert labels(XY, XY2) == ["x", "y"]
     assert labels(XY2, XY) == ["y", "x"]
-    assert labels(XY, X) == labels(X, XY) == ["x"]
+    assert labels(XY, X) == labels(X, XY) == ["x", "y"]
     assert labels(XY, BELT) == labels(BELT, XY) == labels(XY) == ["x", "y"]
     assert labels(XY, fm.Driven("d", axes="y")) == ["y"]
-    assert labels(XYZ, X) == ["x"]
+    assert labels(XYZ, X, axes="xz") == ["x", "z"]
+    with pytest.raises(fm.SceneError, match="axes must be given"):
+        contact(XYZ, X)
+
+
+def test_what_moves_across_a_guide_slips_there():
+    across = fm.Driven("belt", velocity={"x": 0.2, "y": 1.0})
+    assert labels(X, across) == labels(across, X) == ["x", "y"]
+    assert contact(X, across).directions()[1].form == LinearForm((("belt.y", -1.0),))
+    assert labels(X, fm.Driven("belt", velocity={"x": 0.2, "y": 0.0})) == ["x"]
+    assert labels(X, fm.Driven("belt", velocity={"y": fm.t})) == ["x", "y"]
+    assert labels(X, across, axes="x") == ["x"]  # y is the direction of the load
+    assert labels(X, axes="xy", slide=(0.1, 1.0)) == ["x", "y"]
+    assert labels(XYZ, across, normal_force=fm.normal.Spring(axis="z", stiffness=1.0)) == ["x", "y"]
+    with pytest.raises(fm.SceneError, match=r"slide must be 1 value.*axes= states others"):
+        contact(X, slide=(0.1, 1.0))
+    with pytest.raises(fm.SceneError, match="needs the axis 'y', which 'x' does not"):
+        contact(X, axes="xy")
 
 
 def test_default_axes_leave_out_that_of_a_normal_law():

@@ -15,6 +15,7 @@ from fricmb.integrate.constrained.slip_rows import (
     add_stick,
     carried,
     friction_coefficient,
+    guided,
 )
 from fricmb.integrate.model.law_values import magnitude, smooth_force
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, STICK, Codes, Floats
@@ -44,7 +45,7 @@ def friction_residual(
                 zd[a0 + i] = k.s.out[d + i]
         elif mode[c] == STICK:
             for a in range(first, first + d):
-                r[r0 + a] = rate[a]
+                r[r0 + a] = F[a] if guided(mech, c, a - first) else rate[a]
         elif mode[c] == OPEN:
             for a in range(first, first + d):
                 r[r0 + a] = F[a]

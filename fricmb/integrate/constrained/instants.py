@@ -21,18 +21,18 @@ from fricmb.integrate.run.breakpoints import set_window_around
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
     force: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
-    stored: Floats, project: bool,
+    stored: Floats, project: bool, side: Floats,
 ) -> int:  # fmt: skip
     """Complete every state (row by row); ``force`` (n_t, m + 2 m_p) start values [lam, F, n].  Number of failures.
 
     ``project``: q and v, interpolated between steps, are first moved onto the constraints; ``stored`` (n_t,): energy in
-    contacts with damping.
+    contacts with damping; ``side`` (n_t,): a time on the side of a breakpoint on which each state is.
     """
     m, rows, n_c = y.lam.shape[0], y.F.shape[0], y.mode.shape[0]
     failed = 0
     for i in range(times.shape[0]):
         y.t = times[i]
-        set_window_around(mech.breakpoints, k.s.window, times[i])
+        set_window_around(mech.breakpoints, k.s.window, side[i])
         for j in range(y.q.shape[0]):
             y.q[j] = q[i, j]
             y.v[j] = v[i, j]

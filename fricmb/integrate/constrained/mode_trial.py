@@ -7,7 +7,17 @@ from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import SETTING_OUT, SLIGHT, aim, lack, lightness, plane, slip_speed, spare
+from fricmb.integrate.constrained.slip_rows import (
+    SETTING_OUT,
+    SLIGHT,
+    aim,
+    guided,
+    lack,
+    lightness,
+    plane,
+    slip_speed,
+    spare,
+)
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.law_values import magnitude, point_along
@@ -36,6 +46,10 @@ def at_rest(mech: Mech, y: State, c: int, part: Codes) -> bool:
 def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
     """By how much port c contradicts its mode (0: not at all); y is complete."""
     if y.mode[c] == STICK:
+        row = mech.port.row
+        for a in range(row[c], row[c + 1]):
+            if abs(y.ga[a]) > CREEP_IN_LOOPS * a_scale and guided(mech, c, a - row[c]):
+                return 1.0 + abs(y.ga[a]) / a_scale  # no force keeps it from slipping across its guide
         limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
         force = magnitude(mech.port.row, c, y.F)
         over = -spare(mech, k, c, y.F, y.N, k.borne)

@@ -146,10 +146,27 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
     return float(value)
 
 
+@kernel
+def guided(mech: Mech, c: int, direction: int) -> bool:
+    """Whether no force of contact c moves anything in a direction: a guide bears it."""
+    table = mech.port.slip
+    n_y = mech.place.y_start.shape[0] - 1
+    if mech.port.joint[c] >= 0:
+        return False
+    form = table.x_start[c] + 2 * direction
+    found = True
+    for i in range(table.form_start[form], table.form_start[form + 1]):
+        found = found and not 0 <= table.form_index[i] - 1 < n_y
+    return bool(found)
+
+
 @block
 def add_stick(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, full: bool) -> None:
-    """Rows of a port that sticks."""
+    """Rows of a port that sticks; what sticks across a guide bears nothing there."""
     for a in range(mech.port.row[c + 1] - mech.port.row[c]):
+        if guided(mech, c, a):
+            add(mech.order, L.A1, row + a, row + a, 1.0)
+            continue
         add_slip(mech, k, c, a, lam, L, row + a, 1.0, full)
         if mech.port.soft[c] > 0.0:
             soft = mech.port.soft[c] * lightness(mech, k, c, a, lam, mech.mass)

@@ -63,7 +63,9 @@ class StepTrajectory(Trajectory):
         if not len(self._span):
             return self._only_start()
         values = self._values[self._row_step, np.where(self._row_side == 0, 0, len(self._nodes) - 1)]
-        return self._since_start(self._complete(self.t, values, self._row_step))
+        # what a step ends with belongs to the side of a breakpoint that it comes from
+        side = np.where(self._row_side == 0, self.t, np.nextafter(self.t, -np.inf))
+        return self._since_start(self._complete(self.t, values, self._row_step, side=side))
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
@@ -99,12 +101,14 @@ class StepTrajectory(Trajectory):
             return 0.0
         return float(self._complete(self._span[:1, 0], self._values[:1, 0], np.zeros(1, int)).damping_loss[0])
 
-    def _complete(self, t: Floats, values: Floats, step: Ints, *, project: bool = False) -> Samples:
+    def _complete(
+        self, t: Floats, values: Floats, step: Ints, *, project: bool = False, side: Floats | None = None
+    ) -> Samples:
         problem = self.problem
         n, nz, nc = problem.n, problem.n_z, problem.n_c
         q, v, z, work = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
         found = complete_open(
-            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project
+            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project, side=side
         )
         return Samples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
@@ -123,19 +127,21 @@ def with_open(problem: Problem, opened: Codes) -> Problem:
 
 def complete_open(
     problem: Problem, opened: Codes, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats,
-    *, project: bool = False,
+    *, project: bool = False, side: Floats | None = None,
 ) -> tuple[Floats, ...]:  # fmt: skip
     """As :func:`complete_at`, ``opened`` (n_t, n_j) saying which joints are open."""
+    side = t if side is None else side
     if not opened.any():
-        return complete_at(problem, t, q, v, z, mode, force, project=project)
+        return complete_at(problem, t, q, v, z, mode, force, project=project, side=side)
     patterns, which = np.unique(opened, axis=0, return_inverse=True)
     found: list[Floats] = []
     for i, pattern in enumerate(patterns):
         mine = np.flatnonzero(which.ravel() == i)
         q_here, v_here = q[mine], v[mine]
         part = complete_at(
-            with_open(problem, pattern), t[mine], q_here, v_here, z[mine], mode[mine], force[mine], project=project
-        )
+            with_open(problem, pattern), t[mine], q_here, v_here, z[mine], mode[mine], force[mine], project=project,
+            side=side[mine],
+        )  # fmt: skip
         q[mine], v[mine] = q_here, v_here
         found = found or [np.zeros((len(x), len(t))) for x in part]
         for whole, x in zip(found, part, strict=True):
@@ -144,13 +150,15 @@ def complete_open(
 
 
 def complete_at(
-    problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False
-) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+    problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False,
+    side: Floats | None = None,
+) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:  # fmt: skip
     """F (m_p, n_t), N (n_c, n_t), g (m_p, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
 
     The last are energies (1, n_t) that contacts with damping store.
 
-    ``project``: q and v are first moved onto the constraints, in place.
+    ``project``: q and v are first moved onto the constraints, in place.  ``side`` (n_t,): a time on the side of a
+    breakpoint on which each state is, where that is not the right-hand one.
     """
     m, nc, rows, count = mechanism_of(problem).n_rows, problem.n_c, problem.m, len(t)
     F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
@@ -160,7 +168,7 @@ def complete_at(
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),
-            still, F, N, g, lam, a, stored, project,
+            still, F, N, g, lam, a, stored, project, solid(t if side is None else side, float),
         )  # fmt: skip
     return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy(), stored[None]
 

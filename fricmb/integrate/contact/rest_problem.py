@@ -106,13 +106,16 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
     for trial in range(6 * nc + 10):
         if stopped() or not try_modes(packed, y, r, s):
             break
-        worst, back = find_wrong(y, r, held, least * big)
+        worst, back = find_wrong(y, r, held, least * big, big)
         if worst >= 0:
-            point_along(ports.row, worst, w.F[0], -1.0, y.n)
+            if taken_along(y, r, worst, big):
+                point_along(ports.row, worst, y.a0, 1.0, y.n)
+            else:
+                point_along(ports.row, worst, w.F[0], -1.0, y.n)
             r.mode[worst] = SLIP
         elif back >= 0:
             r.mode[back] = STICK
-        elif not hold_again(packed, y, r, s, held, least * big):
+        elif not hold_again(packed, y, r, s, held, least * big, big):
             break
         else:
             take_modes(packed, y, r, w.n[0], w.F[0])
@@ -125,7 +128,16 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
 
 
 @kernel
-def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]:
+def taken_along(y: State, r: Rest, k: int, big: float) -> bool:
+    """Whether slip of contact k across a guide, which no force changes, begins: beyond any cone."""
+    found = False
+    for a in range(r.ports.row[k], r.ports.row[k + 1]):
+        found = found or (r.ports.D[a, a] == 0.0 and abs(y.a0[a]) > MARGIN * big)
+    return bool(found)
+
+
+@kernel
+def find_wrong(y: State, r: Rest, held: Floats, least: float, big: float) -> tuple[int, int]:
     """The contact that is to be released next, being beyond its cone, and one that would slip against its force.
 
     Either is -1 where there is none.  What comes to rest is released before what has rested.
@@ -139,6 +151,8 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
     for k in range(r.mode.shape[0]):
         if r.mode[k] == STICK:
             ratio = load_factor(ports, k, w.F[0], ports.mu_s[k] * y.N[k])
+            if taken_along(y, r, k, big):
+                ratio = np.inf
             first = worst < 0 or r.rested[k] < r.rested[worst]
             if ratio > 1.0 + MARGIN and (first or (r.rested[k] == r.rested[worst] and ratio > excess)):
                 excess, worst = ratio, k
@@ -148,7 +162,7 @@ def find_wrong(y: State, r: Rest, held: Floats, least: float) -> tuple[int, int]
 
 
 @kernel
-def hold_again(packed: Packed, y: State, r: Rest, s: Scratch, held: Floats, least: float) -> bool:
+def hold_again(packed: Packed, y: State, r: Rest, s: Scratch, held: Floats, least: float, big: float) -> bool:
     """Where several were released, hold those that come to rest and need not slip; False without convergence.
 
     A contact that was released first may be able to stick once another has let go.  What breaks away (part 2) takes
@@ -167,7 +181,7 @@ def hold_again(packed: Packed, y: State, r: Rest, s: Scratch, held: Floats, leas
         r.mode[k] = STICK
         changed = not try_modes(packed, y, r, s)
         if not changed:
-            worst, back = find_wrong(y, r, held, least)
+            worst, back = find_wrong(y, r, held, least, big)
             changed = worst >= 0 or back >= 0
         if changed:
             r.mode[k] = SLIP

@@ -106,7 +106,14 @@ def free_acceleration(packed: Packed, y: State) -> None:
 
 @kernel
 def fill_response(ports: Ports, y: State, codes: Codes, zero: bool, size: int, soft: float) -> None:
-    """D over the rows of the contacts whose code is 0 (``zero``) or is not, its diagonal softened, into ``y.J``."""
+    """D over the rows of the contacts whose code is 0 (``zero``) or is not, its diagonal softened, into ``y.J``.
+
+    A row across a guide answers to no force: its softening is that of the row that answers most, so that it bears
+    nothing where nothing moves across, and is beyond any cone where something does.
+    """
+    most = 0.0
+    for a in range(ports.D.shape[0]):
+        most = max(most, ports.D[a, a])
     i = 0
     for k in range(codes.shape[0]):
         if (codes[k] == 0) != zero:
@@ -117,7 +124,9 @@ def fill_response(ports: Ports, y: State, codes: Codes, zero: bool, size: int, s
                 if (codes[x] == 0) != zero:
                     continue
                 for b in range(ports.row[x], ports.row[x + 1]):
-                    y.J[i * size + j] = ports.D[a, b] * (1.0 + (soft if a == b else 0.0))
+                    y.J[i * size + j] = ports.D[a, b]
+                    if a == b:
+                        y.J[i * size + j] += soft * (ports.D[a, a] if ports.D[a, a] > 0.0 else most)
                     j += 1
             i += 1
 

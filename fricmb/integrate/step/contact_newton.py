@@ -50,6 +50,8 @@ def port_residual(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
                 gain = G[i * mi + out]
                 for c in range(dF.shape[0]):
                     value += gain[c] * dF[c]
+                if mode[k] == STICK and a < d and gain[i * mi + out] == 0.0:
+                    value = -w.F[i, out]  # across a guide: what sticks there bears nothing
                 rhs[at] = value
             for a in range(ports.z_start[k], ports.z_start[k + 1]):
                 value = w.psi_z[a] - w.z[i, a]
@@ -79,6 +81,9 @@ def port_jacobian(ports: Ports, w: PortState, hA: Floats2, mode: Codes) -> None:
                 out = row0 + a if a < d else m + ports.var[k]
                 at = i * u1 + (out if a < d else out + nz)
                 if mode[k] == OPEN and (a == d or not smooth):
+                    J[at, at] = 1.0
+                    continue
+                if mode[k] == STICK and a < d and G[i * mi + out, i * mi + out] == 0.0:
                     J[at, at] = 1.0
                     continue
                 fill_row(ports, L, G[i * mi + out], J[at], mode, s, m, nz, mi)

@@ -144,6 +144,9 @@ def assemble_plain(ports: Ports, w: PortState, mode: Codes, size: int) -> None:
                     put_line(ports, mode, gains, n_s, line)
                     line[at] += ports.soft * first[o]
                     w.rhs[at] = -w.g[i, row0 + y]
+                    if first[o] == 0.0:  # across a guide: what sticks there bears nothing
+                        line[at] = 1.0
+                        w.rhs[at] = -w.F[i, row0 + y]
                 at += 1
 
 

@@ -85,6 +85,8 @@ def against_groups(problem: Problem) -> str | None:
     for gi in np.flatnonzero(sizes > 1):
         size = int(sizes[gi])
         G = parts["G"][parts["at"][gi] : parts["at"][gi] + size * size].reshape(size, size)
+        if not np.diag(G).all():
+            return "a contact slips in a direction in which its forces move nothing"
         scale = 1.0 / np.sqrt(np.diag(G))
         if np.linalg.eigvalsh(G * scale * scale[:, None])[0] < INDEPENDENT:
             return "contacts between the same bodies share their forces in more than one way"
