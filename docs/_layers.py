@@ -31,7 +31,7 @@ ENGINE = (
     ("step",),
     ("contact",),
     ("methods",),
-    ("collocation", "taylor", "timestepping", "constrained"),
+    ("collocation", "taylor", "constrained"),
     ("select",),
 )
 #: What everybody imports: no lines.

@@ -217,8 +217,6 @@ def oracle(result) -> str:
         f"{about['date']}, `rtol` {about['rtol']:g}, {about['minutes']:g} minutes, first seed {about['seed']}; scenes: "
         + "; ".join(f"{kind}: {text}" for kind, text in counted.items()) + ".", "",
     ]  # fmt: skip
-    for name, rtol in about.get("least_rtol", {}).items():
-        lines += [f"`{name}`: `rtol` {rtol:g}.", ""]
     rows = [
         (f"`{name}`", *(str(row.get(kind, 0)) for kind in kinds), digits(row["worst"]), digits(row["percentile_99"]),
          str(row["wrong_transitions"]))

@@ -37,7 +37,7 @@ ENGINE = (
     {"step"},
     {"contact"},
     {"methods", "suits_taylor"},
-    {"collocation", "constrained", "taylor", "timestepping"},
+    {"collocation", "constrained", "taylor"},
     {"guard", "guarded_taylor", "named"},
     {"select"},
 )

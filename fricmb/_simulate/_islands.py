@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fricmb._simulate._alike import alike
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._joined import JoinedRun
 from fricmb._simulate._mechanics import SceneMechanics
@@ -17,20 +16,19 @@ from fricmb._simulate._method import find_integrator
 from fricmb.errors import SceneError
 from fricmb.integrate import Integrator, Problem, Start, Tolerance, Trajectory
 from fricmb.integrate.methods.free_vibration import Exact
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.chunked_run import run_kept
 
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """One member, its problem for the run's span, and who runs it; ``parts`` (n,): see :class:`Tolerance`."""
+    """One member, its problem for the run's span, and who runs it."""
 
     index: int
     member: Member
     problem: Problem
     integrator: Integrator
     why: str
-    parts: Ints | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,11 +91,10 @@ class Islands(Integrator):
 
 def _share(tolerance: Tolerance, task: Task) -> Tolerance:
     """The tolerance of a task."""
-    mine = tolerance if task.parts is None else replace(tolerance, parts=task.parts)
     if tolerance.atol_q is None or tolerance.atol_v is None:
-        return mine
+        return tolerance
     dofs = task.member.place.dofs
-    return replace(mine, atol_q=tolerance.atol_q[dofs], atol_v=tolerance.atol_v[dofs])
+    return replace(tolerance, atol_q=tolerance.atol_q[dofs], atol_v=tolerance.atol_v[dofs])
 
 
 def _part_of(progress: Callable[[float], None], t0: float, t1: float, k: int, n: int) -> Callable[[float], None]:
@@ -116,7 +113,6 @@ def find_runs(mechanics: SceneMechanics, method: Any, start: Start, span: Span, 
     if mechanics.whole is None:
         tasks = _tasks(mechanics, method, start, span, rtol)
         if tasks:
-            mechanics, tasks = _gathered(mechanics, tasks, span)
             names = tuple(dict.fromkeys(task.integrator.name for task in tasks))
             chief = max(tasks, key=lambda task: not isinstance(task.integrator, Exact)).integrator
             return Chosen(
@@ -148,32 +144,6 @@ def _tasks(mechanics: SceneMechanics, method: Any, start: Start, span: Span, rto
             integrator, why = exact, "free vibration, which the method asked for does not take: closed form"
         tasks.append(Task(index=index, member=member, problem=problem, integrator=integrator, why=why))
     return tuple(tasks)
-
-
-def _gathered(
-    mechanics: SceneMechanics, tasks: tuple[Task, ...], span: Span
-) -> tuple[SceneMechanics, tuple[Task, ...]]:
-    """Islands whose integrator steps over transitions as one task, where they are alike."""
-    over = [task for task in tasks if task.integrator.steps_over]
-    over = [task for task in over if task.integrator == over[0].integrator]
-    if len(over) < 2 or not alike([task.problem for task in over]):
-        return mechanics, tasks
-    taken = {task.index for task in over}
-    mechanics = mechanics.gather(tuple(sorted(taken)))
-    number, member = len(mechanics.members) - 1, mechanics.members[-1]
-    part = {name: k for k, task in enumerate(over) for name in task.member.selection.dofs}
-    one = Task(
-        index=number, member=member, problem=member.system.problem_for(span.t_start, span.t_end),
-        integrator=over[0].integrator, why=f"{over[0].why}; {len(over)} islands take the same steps",
-        parts=np.array([part[name] for name in member.selection.dofs], dtype=np.int64),
-    )  # fmt: skip
-    # members behind those that are gathered move up
-    gone = np.array(sorted(taken))
-    alone = [
-        replace(task, index=task.index - int(np.searchsorted(gone, task.index)))
-        for task in tasks if task.index not in taken
-    ]  # fmt: skip
-    return mechanics, (*alone, one)
 
 
 def _reasons(tasks: Sequence[Task]) -> str:

@@ -24,8 +24,6 @@ THINNED = "rows are thinned: accepted steps of many islands; the dense output ha
 class JoinedRun(Trajectory):
     """Trajectories of islands as one: rows at the steps of all of them, between them each one's dense output.
 
-    None lies within a step that went over a transition of another island: what a contact does there is not known.
-
     Parameters
     ----------
     runs : sequence of (int, Trajectory)
@@ -78,8 +76,7 @@ class JoinedRun(Trajectory):
         kept = [run for run in runs if isinstance(run, KeptTrajectory)]
         # a long run holds its values at the times asked for alone: these are the rows of all
         times = [run.t for run in kept[:1]] or [run.t for run in runs]
-        hidden = [] if kept else [run.unlocated for run in runs]
-        self._t, thinned = common_times(times, self.end.t, self._width, hidden)
+        self._t, thinned = common_times(times, self.end.t, self._width)
         return thinned
 
     def _take(self, members: Sequence[Member], idle: Idle | None) -> None:

@@ -48,8 +48,6 @@ class SceneMechanics:
         the start of a run that does not start at t = 0, or goes on from that of another run.
     together : bool
         Whether all islands are run as one.
-    gathered : tuple of int
-        Numbers of the islands, among those of the plan, that are run as one.
     """
 
     scene: Scene
@@ -58,12 +56,11 @@ class SceneMechanics:
     observe: tuple[str, ...] | None
     shift: Mapping[str, float]
     together: bool = False
-    gathered: tuple[int, ...] = ()
 
     @cached_property
     def members(self) -> tuple[Member, ...]:
         """What is run on its own."""
-        return members_of(self.placed, self.plan, self.names, self.together, self.gathered)
+        return members_of(self.placed, self.plan, self.names, self.together)
 
     @cached_property
     def rest(self) -> Rest:
@@ -171,9 +168,7 @@ class SceneMechanics:
     @cached_property
     def origin(self) -> Origin:
         """How to make this again in another process."""
-        options = {
-            "observe": self.observe, "shift": dict(self.shift), "together": self.together, "gathered": self.gathered,
-        }  # fmt: skip
+        options = {"observe": self.observe, "shift": dict(self.shift), "together": self.together}
         return Origin(scene=self.scene, build=mechanics_of, options=options)
 
     @cached_property
@@ -201,10 +196,6 @@ class SceneMechanics:
     def as_one(self) -> SceneMechanics:
         """The same with all islands run as one."""
         return mechanics_of(self.scene, observe=self.observe, shift=self.shift, together=True)
-
-    def gather(self, islands: tuple[int, ...]) -> SceneMechanics:
-        """The same with some islands, by their numbers in the plan, run as one."""
-        return mechanics_of(self.scene, observe=self.observe, shift=self.shift, gathered=islands)
 
 
 def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
@@ -234,19 +225,16 @@ def mechanics_of(
     observe: tuple[str, ...] | None = None,
     shift: Mapping[str, float] | None = None,
     together: bool = False,
-    gathered: Iterable[int] = (),
 ) -> SceneMechanics:
     """Plan a scene, or take what is kept on it."""
     by = dict(shift or {})
     together = together or scene.is_mechanism  # run as one
-    one = tuple(gathered)
-    key = ("mechanics", observe, tuple(sorted(by.items())), together, one)
+    key = ("mechanics", observe, tuple(sorted(by.items())), together)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):
         placed = truncated(shifted(scene, by)).scene
         found = scene._cache[key] = SceneMechanics(
             scene=scene, placed=placed, plan=make_plan(placed, observe), observe=observe, shift=by, together=together,
-            gathered=one,
         )  # fmt: skip
     return found
 

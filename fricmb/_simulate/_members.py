@@ -112,33 +112,12 @@ class Rest:
         return self.inert & still
 
 
-def members_of(
-    scene: Scene, plan: Plan, names: Names, together: bool, gathered: tuple[int, ...] = ()
-) -> tuple[Member, ...]:
-    """An island each; or, ``together`` or where there is nothing to tell apart, the whole as one.
-
-    Those of the numbers ``gathered`` are one member, behind the others.
-    """
+def members_of(scene: Scene, plan: Plan, names: Names, together: bool) -> tuple[Member, ...]:
+    """An island each; or, ``together`` or where there is nothing to tell apart, the whole as one."""
     if together or (len(plan.islands) == 1 and not plan.idle):
         whole = Selection(dofs=plan.dofs, parts=plan.parts)
         return (Member(scene=scene, selection=whole, names=names),)
-    within = set(gathered)
-    alone = [island for number, island in enumerate(plan.islands) if number not in within]
-    members = [Member(scene=scene, selection=i.selection, names=names, island=i) for i in alone]
-    if gathered:
-        members.append(_several(scene, plan, names, [plan.islands[number] for number in gathered]))
-    return tuple(members)
-
-
-def _several(scene: Scene, plan: Plan, names: Names, islands: Sequence[Island]) -> Member:
-    """Islands as one member, in the order of the scene: that of the arrays of the whole."""
-    one = Island.of(islands)
-    dofs, parts = set(one.dofs), set(one.selection.parts)
-    selection = Selection(
-        dofs=tuple(name for name in plan.dofs if name in dofs),
-        parts=tuple(part.name for part in scene.parts if part.name in parts),
-    )
-    return Member(scene=scene, selection=selection, names=names, island=one)
+    return tuple(Member(scene=scene, selection=i.selection, names=names, island=i) for i in plan.islands)
 
 
 def place_of(selection: Selection, names: Names) -> Place:

@@ -7,6 +7,12 @@ from typing import Any
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import Integrator, Problem
 
+#: Methods that there were, and what is taken in place of each.
+GONE = {
+    "timestepping": "implicit steps over transitions are gone, for they were wrong where others are right;"
+    " take 'auto', or 'radau', which locates every transition, or 'taylor' for long chains",
+}
+
 
 def find_integrator(method: Any, problem: Problem, rtol: float) -> tuple[Integrator, str]:
     """The integrator for ``method=`` (a name, "auto", or a configured instance), and why it is taken.
@@ -40,6 +46,8 @@ def _named(method: Any) -> Integrator | None:
     if not isinstance(method, str):
         names = ", ".join(repr(name) for name in ("auto", *integrators))
         raise SceneError(f"method: got {shown(method)}; expected one of {names}, or an instance of an integrator")
+    if method in GONE:
+        raise SceneError(f"method: {method!r}: {GONE[method]}")
     if method not in integrators:
         raise unknown_name("method", method, ["auto", *integrators])
     return integrators[method]()

@@ -12,7 +12,6 @@ Rows = Sequence[dict[str, Any]]
 
 _OWN = {
     "auto": "k", "bdf": "C0", "radau": "C2", "collocation": "C3", "bdf2-paper": "C5", "taylor": "C9",
-    "timestepping": "C1",
 }  # fmt: skip
 _MORE = ("C4", "C6", "C8")
 _PEERS = {

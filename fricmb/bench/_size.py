@@ -102,11 +102,11 @@ SIZES = (
 
 
 def size_methods(case: SizeCase) -> list[str]:
-    """Integrators of variable step, and CVODE for the chain; for grids those that are made for large scenes."""
+    """Integrators of variable step, and CVODE for the chain; for grids the one that is made for large scenes."""
     if case.name == "links":
         return ["auto", "bdf"]
     if case.name == "grid":
-        return ["taylor", "timestepping"]
+        return ["taylor"]
     own = ["auto", *(name for name, kind in fm.integrators.items() if kind.adaptive)]
     return [*own, "CVODE"] if case.name == "chain" else own
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from fricmb.integrate.collocation import Collocation
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.methods.bdf import Bdf
+from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.trajectory import Trajectory
@@ -18,7 +18,7 @@ class Guard(Integrator):
     """An integrator as ``auto`` takes it: a run that it cannot finish is done by another, and says so."""
 
     #: Who does such a run.
-    reserve: ClassVar[type[Integrator]]
+    reserve: ClassVar[type[Integrator]] = Radau
 
     def integrate(
         self,
@@ -48,5 +48,3 @@ class Guard(Integrator):
 @dataclass(frozen=True, kw_only=True)
 class Guarded(Guard, Collocation):
     """Collocation; in reserve the general method."""
-
-    reserve: ClassVar[type[Integrator]] = Bdf

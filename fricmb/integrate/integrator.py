@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fricmb.integrate.problem import Floats, Ints, Problem, Start
+from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.trajectory import Trajectory
 
 
@@ -16,15 +16,12 @@ class Tolerance:
     """How accurate a run has to be.
 
     ``rtol`` is relative to each signal's running maximum; ``atol_q``, ``atol_v`` (n,) are floors of these scales times
-    rtol, or None (chosen from rtol and the scales found in the run).  ``parts`` (n,): where a problem is several that
-    touch nowhere, the number of the one that each degree of freedom belongs to: errors are measured in each by its own
-    scales; None: it is one.
+    rtol, or None (chosen from rtol and the scales found in the run).
     """
 
     rtol: float
     atol_q: Floats | None = None
     atol_v: Floats | None = None
-    parts: Ints | None = None
 
 
 def odd_stages(name: str, problem: Problem, stages: int | None) -> str | None:
@@ -49,8 +46,6 @@ class Integrator(ABC):
         Parts of a problem it can run: of "linear", "ports", "nonlinear", "constraints".
     pauses : bool
         Whether a run returns early where ``memory`` is used up, so that long runs need no more.
-    steps_over : bool
-        Whether steps go over transitions: what it gives between rows cannot tell when in a step they are.
     """
 
     name: ClassVar[str]
@@ -58,7 +53,6 @@ class Integrator(ABC):
     order: ClassVar[str]
     takes: ClassVar[frozenset[str]]
     pauses: ClassVar[bool] = False
-    steps_over: ClassVar[bool] = False
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""

@@ -8,9 +8,6 @@ from fricmb.integrate.methods.bdf import Bdf
 from fricmb.integrate.methods.bdf2_paper import Bdf2Paper
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.taylor import Taylor
-from fricmb.integrate.timestepping import TimeStepping
 
 #: Built-in integrators by the name that ``simulate(method=...)`` takes.
-integrators: dict[str, type[Integrator]] = {
-    kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor, TimeStepping)
-}
+integrators: dict[str, type[Integrator]] = {kind.name: kind for kind in (Bdf, Bdf2Paper, Collocation, Radau, Taylor)}

@@ -20,28 +20,13 @@ from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, Floats, Problem
 from fricmb.integrate.suits_taylor import against_taylor, fastest
 
-
-def many_rows(rtol: float) -> int:
-    """Rows of contacts above which time stepping is faster than the general method, twice over (measured).
-
-    On chains under Stribeck laws bdf / timestepping took, in seconds, at rtol 1e-3 with 15, 30, 50, 100 rows
-    0.026/0.004, 0.086/0.008, 0.43/0.010, 10/0.15 and at 1e-6 with the first three 0.050/0.040, 0.235/0.052,
-    0.99/0.094: the ratio goes with the 1.8th power of the rows, and time steps with the root of rtol.
-    """
-    return int(max(24.0, 30.0 * (1e-6 / rtol) ** 0.28))
-
-
-#: Degrees of freedom up to which steps with dense matrices are bearable, and from which on banded steps are faster than
-#: exact structure (measured with uncoupled modes).
-BEARABLE, WIDE = 1024, 100
+#: Degrees of freedom from which on banded steps are faster than exact structure (measured with uncoupled modes).
+WIDE = 100
 #: Degrees of freedom up to which one contact under constant friction is best left to kernels of its own, which keep
 #: some twenty matrices of that size, unless the structure is a narrow band.  In all, with what is made ready before: a
 #: bar of 200, 400 and 1000 modes 0.1, 0.5 and 4 s, by Taylor steps 0.9, 3 s and more than a minute; a dense structure
 #: of 200 degrees of freedom 0.2 s and 8 s; 200 masses in a row 0.06 and 0.04 s.
 FULL_MATRICES = 1600
-#: Tolerance down to which time steps are right under normal forces that vary in time (judged by the oracle).
-LOOSE = 1e-4
-
 
 #: Degrees of freedom to a contact up to which Taylor steps are faster than exact structure where contacts are coupled
 #: or friction depends on slip speed: on two to fifty contacts under Stribeck laws, and on stacks, bdf took 1.3 to 2
@@ -58,7 +43,7 @@ CLEAR, UNDAMPED = 0.005, 32.0
 #: Part of the contact's mobility that a mode must have for the contact to feel it: a heavy rotor that hangs on a soft
 #: spring makes no spread of frequencies.
 FELT = 0.01
-#: Contacts up to which the general method is the better reserve: below it transitions seldom crowd.
+#: Contacts below which steps that end where a law bends are faster than Taylor steps.
 FEW = 4
 #: Damping ratio of a mode that is calm before a slower one has moved, and how many times as fast it is where explicit
 #: steps begin to lose: two blocks on a belt tied by k = 1e4 and 1e6 with a damping ratio of 0.35 took Taylor steps 2
@@ -92,7 +77,7 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     if (series := _taylor_where_fastest(problem)) is not None:
         return series
     contact_rows = problem.m + problem.n_v
-    if problem.n >= WIDE and 0 < contact_rows <= many_rows(rtol) and is_banded(problem):
+    if problem.n >= WIDE and contact_rows > 0 and is_banded(problem):
         why = f"{problem.n} degrees of freedom in a narrow band, {contact_rows} rows of contacts"
         return Bdf(), f"{why}: the general method, transitions located"
     if (single := _one_contact(problem, rtol)) is not None:
@@ -102,16 +87,6 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     if reason is None:
         rows = port_rows(problem)
         return Guarded(), f"linear structure with few port rows ({rows}): exact structure, unknowns at the ports"
-    from fricmb.integrate.timestepping import TimeStepping
-
-    stepping = TimeStepping()
-    # under normal forces that vary, time steps are right at loose tolerances alone
-    steps = (problem.n_v == 0 or rtol >= LOOSE) and stepping.refuses(problem) is None
-    if steps and problem.n_v == 0 and problem.m > many_rows(rtol):
-        crowd = f"{problem.m} rows of contacts, more than {many_rows(rtol)}: implicit steps over transitions"
-        return stepping, f"{crowd}; {_refusal_of_taylor(problem)}"
-    if steps and problem.n > BEARABLE and problem.n_c and not is_banded(problem):
-        return stepping, f"{problem.n} degrees of freedom in no narrow band: implicit steps over transitions"
     general = Radau() if np.any(problem.contacts.law == LAW_SMOOTH) else Bdf()
     return general, f"the general method: {reason}"
 
@@ -162,11 +137,11 @@ def _taylor_where_fastest(problem: Problem) -> tuple[Integrator, str] | None:
         return None
     if problem.n_c == 1 and not _are_close(problem):
         return None
-    from fricmb.integrate.guarded_taylor import GuardedFewTaylor, GuardedTaylor
+    from fricmb.integrate.guarded_taylor import GuardedTaylor
     from fricmb.integrate.taylor.prepare_groups import coupled_or_rate_dependent
 
     contacts = f"{problem.n_c} contacts" if problem.n_c > 1 else "one contact"
-    many = GuardedFewTaylor() if problem.n_c < FEW else GuardedTaylor()
+    many = GuardedTaylor()
     if many.refuses(problem) is not None or (problem.n_c < FEW and _held_by_calm_modes(problem)):
         return None
     if problem.n_c > 1 and not coupled_or_rate_dependent(problem):
@@ -242,9 +217,3 @@ def _calm_and_fast_modes(problem: Problem, rtol: float) -> str | None:
     if rtol >= BEARS_CALM_MODES and zeta[omega > limit].max(initial=0.0) < CREEPS:
         return None
     return f"modes that come to rest at once, more than {APART:.0f} times as fast as all that vibrate"
-
-
-def _refusal_of_taylor(problem: Problem) -> str | None:
-    from fricmb.integrate.taylor import Taylor
-
-    return Taylor().refuses(problem)

@@ -6,12 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-import numpy as np
-
 from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
-
-#: Begins and ends of stretches of time.
-Stretches = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,11 +129,6 @@ class Trajectory(ABC):
     @abstractmethod
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order; the right-hand value at a transition."""
-
-    @property
-    def unlocated(self) -> Stretches:
-        """Stretches of time, rising, in which contacts change their modes at times that the rows do not have."""
-        return np.zeros(0), np.zeros(0)
 
     def motion(self, t: Floats) -> MotionSamples:
         """As :meth:`sample`; a run whose energies cost something leaves them out."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,17 +58,6 @@ class Island:
     def selection(self) -> Selection:
         """What to build for it."""
         return Selection(dofs=self.dofs, parts=tuple(dict.fromkeys((*self.bodies, *self.parts))))
-
-    @classmethod
-    def of(cls, islands: Sequence[Island]) -> Island:
-        """Several as one."""
-        return cls(
-            dofs=tuple(name for island in islands for name in island.dofs),
-            parts=tuple(dict.fromkeys(name for island in islands for name in island.parts)),
-            bodies=tuple(dict.fromkeys(name for island in islands for name in island.bodies)),
-            inert=all(island.inert for island in islands),
-            held=any(island.held for island in islands),
-        )
 
     def rests(self, q: Any, v: Any) -> bool:
         """Whether it stays where it is, provably, from positions and velocities (n,) of its own."""

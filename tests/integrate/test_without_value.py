@@ -44,13 +44,3 @@ def test_a_stiffness_without_a_value_at_the_start_is_no_hindrance_for_bdf() -> N
     scene = fm.Scene("leaves", [block, fm.Force("f", block, axis="x", value=sympy.sqrt(X))])
     found, other = (fm.simulate(scene, t_end=1.0, method=method, rtol=1e-8) for method in ("bdf", "radau"))
     assert found.q[0, -1] == pytest.approx(other.q[0, -1], rel=1e-6)
-
-
-@pytest.mark.parametrize(("scene", "named"), [
-    (pulled(1 / T), r"f.value = 1/t is inf at t = 0"),
-    (rubbed(1 / T, 1.0), r"d.velocity.x = 1/t is inf at t = 0"),
-], ids=["1/t", "belt 1/t"])  # fmt: skip
-def test_time_stepping_does_not_step_over_a_pole_at_the_start(scene: fm.Scene, named: str) -> None:
-    with pytest.raises(fm.IntegrationError, match=named) as caught:
-        fm.simulate(scene, t_end=3.0, method="timestepping", time_limit=60.0)
-    assert caught.value.t == 0.0

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from .judge import LEAST, Truth, Verdict, Worker, end_with_parent, judge, truth
+from .judge import Truth, Verdict, Worker, end_with_parent, judge, truth
 from .mechanisms import Chain
 from .mechanisms import case_of as chain_case
 from .problem import OracleError
@@ -115,7 +115,7 @@ def runs(true: Truth, spec: Any, worker: Worker, options: argparse.Namespace) ->
     known: dict[str, Verdict] = {}
     for method in options.methods.split(","):
         verdict = known[method] if method in known else judge(true, method, options.rtol, worker)
-        if method == "auto" and verdict.method not in ("", *LEAST):
+        if method == "auto" and verdict.method:
             known[verdict.method] = verdict
         extra = {}
         if options.shrink and verdict.kind in BAD and isinstance(spec, Spec):

@@ -27,8 +27,6 @@ DELTA = 1e-6
 BAR = 100.0
 #: Tolerance of the oracle's own steps.
 RTOL = 1e-10
-#: The least tolerance at which a method is judged: one of second order takes steps beyond number at smaller ones.
-LEAST = {"timestepping": 1e-4}
 #: Growth beyond which a scene says nothing at these tolerances.
 UNRULY = 1e4
 
@@ -263,9 +261,8 @@ def attempt(scene: Any, method: str, rtol: float, t: np.ndarray, t_end: float, s
 
 
 def judge(true: Truth, method: str, rtol: float = 1e-6, worker: Worker | None = None) -> Verdict:
-    """What one method makes of it at ``rtol`` (or LEAST); with a worker, within its limit of time."""
+    """What one method makes of it at ``rtol``; with a worker, within its limit of time."""
     case = true.case
-    rtol = max(rtol, LEAST.get(method, 0.0))
     asked = (case.scene, method, rtol, true.t, case.problem.t_end, case.signals)
     outcome = attempt(*asked) if worker is None else worker.ask(*asked)
     if outcome.kind != "done":

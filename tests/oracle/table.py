@@ -16,7 +16,7 @@ from .judge import Case
 from .laws import parts_of
 from .problem import Contact, Problem
 
-METHODS = ("auto", "bdf", "radau", "collocation", "taylor", "timestepping")
+METHODS = ("auto", "bdf", "radau", "collocation", "taylor")
 
 #: Instances with scales of order 1, so that the oracle's explicit steps resolve everything; all others are examples.
 _STRIBECK = laws.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.1)

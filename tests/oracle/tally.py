@@ -12,7 +12,7 @@ import numpy as np
 
 import fricmb as fm
 
-from .judge import BAR, LEAST, Verdict
+from .judge import BAR, Verdict
 from .shrink import BAD
 
 VERDICTS = ("right", "noted", "wrong", "stopped", "late", "crashed", "refused", "marginal")
@@ -24,7 +24,7 @@ class Tally:
     def __init__(self, rtol: float, seed: int) -> None:
         self.about = {
             "date": datetime.date.today().isoformat(), "machine": platform.machine(), "fricmb": fm.__version__,
-            "rtol": rtol, "least_rtol": LEAST, "bar": BAR, "seed": seed,
+            "rtol": rtol, "bar": BAR, "seed": seed,
         }  # fmt: skip
         self.scenes: dict[str, dict[str, int]] = {}
         self.verdicts: dict[str, list[Verdict]] = {}

@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from fricmb import laws
-from tests.oracle.judge import Worker, judge, truth
+from tests.oracle.judge import judge, truth
 from tests.oracle.known import CELLS
 from tests.oracle.shrink import BAD
 from tests.oracle.table import LAWS, METHODS, SITUATIONS, case
@@ -43,16 +43,9 @@ def test_law_moves_as_the_oracle_says(name, situation):
 
 
 @pytest.mark.parametrize(("name", "situation", "method"), CELLS)
-def test_what_is_known_to_fail_still_fails(name, situation, method, worker):
-    """An entry of ``known.CELLS`` that passes has to go; what does not end is ended."""
-    assert judge(said(name, situation), method, worker=worker if method == "timestepping" else None).kind in BAD
-
-
-@pytest.fixture(scope="module")
-def worker():
-    worker = Worker(limit=12.0)
-    yield worker
-    worker.stop()
+def test_what_is_known_to_fail_still_fails(name, situation, method):
+    """An entry of ``known.CELLS`` that passes has to go."""
+    assert judge(said(name, situation), method).kind in BAD
 
 
 def test_known_cells_are_those_of_the_quick_table():

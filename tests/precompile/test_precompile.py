@@ -159,7 +159,7 @@ def test_all_kernels_are_listed():
 def test_annotations_of_entries_are_the_types_of_their_calls():
     """Else a kernel compiled ahead of use would not be the one that is called."""
     times = [0.1, 0.2]
-    for method in ("auto", "bdf", "radau", "collocation", "taylor", "timestepping"):
+    for method in ("auto", "bdf", "radau", "collocation", "taylor"):
         fm.simulate(fm.models.stick_slip_chain(3), t_end=0.3, t_eval=times, rtol=1e-4, method=method)
     fm.simulate(fm.models.brake4dof(), t_end=0.3, t_eval=times)
     fm.simulate(fm.models.belt_oscillator(), t_end=0.3, step=0.01, method="bdf2-paper")

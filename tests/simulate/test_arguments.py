@@ -73,3 +73,10 @@ def test_no_name_to_observe_is_refused():
 
     with pytest.raises(SceneError, match="observe: got no name; expected one or more"):
         fm.simulate(fm.models.belt_oscillator(), t_end=1.0, observe=[])
+
+
+def test_a_method_that_is_gone_is_refused_with_advice():
+    import fricmb as fm
+
+    with pytest.raises(SceneError, match=r"method: 'timestepping': .* take 'auto', or 'radau'"):
+        fm.simulate(fm.models.belt_oscillator(), t_end=1.0, method="timestepping")

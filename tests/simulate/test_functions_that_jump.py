@@ -28,7 +28,7 @@ def carried(velocity):
     ])  # fmt: skip
 
 
-@pytest.mark.parametrize("method", ["auto", "bdf", "collocation", "timestepping"])
+@pytest.mark.parametrize("method", ["auto", "bdf", "collocation"])
 def test_a_base_that_jumps_brings_what_its_spring_stores(method):
     """Nothing of it was in the ledger, and a note blamed rtol."""
     sol = fm.simulate(pulled(fm.Driven("base", position={"x": STEP})), t_end=3.0, rtol=1e-6, method=method)

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 import fricmb as fm
 
-METHODS = ["auto", "radau", "bdf", "timestepping"]
+METHODS = ["auto", "radau", "bdf"]
 
 
 def puck(aside, mu_s=0.6):

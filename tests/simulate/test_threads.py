@@ -18,11 +18,11 @@ from tests.simulate.test_ended import endless
 M, L = fm.models, fm.laws
 STRIBECK = L.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.1)
 SCENES = {
-    "brake": (M.brake4dof(case=2), "k1x.stiffness", 60.0, ("auto", "radau", "bdf", "timestepping")),
+    "brake": (M.brake4dof(case=2), "k1x.stiffness", 60.0, ("auto", "radau", "bdf")),
     "steep": (M.brake4dof(case=2, law=STRIBECK), "lining.law.mu_k", 20.0, ("auto", "collocation")),
-    "chain": (M.stick_slip_chain(6), "coupling1.stiffness", 10.0, ("taylor", "collocation", "timestepping")),
+    "chain": (M.stick_slip_chain(6), "coupling1.stiffness", 10.0, ("taylor", "collocation")),
     "plane": (M.puck_on_belt(), "puck.mass", 4.0, ("auto", "radau")),
-    "stack": (M.block_stack(), "block2.mass", 4.0, ("auto", "bdf", "timestepping")),
+    "stack": (M.block_stack(), "block2.mass", 4.0, ("auto", "bdf")),
     "crank": (M.slider_crank(friction=L.Coulomb(mu_s=0.2)), "rod.mass", 2.0, ("radau", "bdf")),
 }
 
@@ -57,7 +57,7 @@ def test_threads_find_what_one_alone_finds(scene, method):
             np.testing.assert_array_equal(a, b)
 
 
-@pytest.mark.parametrize("method", ["auto", "bdf", "collocation", "taylor", "timestepping"])
+@pytest.mark.parametrize("method", ["auto", "bdf", "collocation", "taylor"])
 def test_python_goes_on_while_a_run_works(method):
     scene = endless()
     fm.simulate(scene, t_end=1.0, method=method)  # compiled

@@ -24,7 +24,7 @@ class Even(OneStepMethod):
         return [(k + 1) / self.stages for k in range(self.stages)]
 
 
-@pytest.mark.parametrize("name", ["bdf", "collocation", "radau", "taylor", "timestepping"])
+@pytest.mark.parametrize("name", ["bdf", "collocation", "radau", "taylor"])
 def test_ours_keep_the_rules(name):
     check_integrator(integrators[name]())
 

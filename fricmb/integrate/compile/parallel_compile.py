@@ -18,7 +18,7 @@ from fricmb.integrate.compile.block import block_module, load_block, was_compile
 #: The environment of a process that compiles for another one; numba tries overloads by letting them fail, and would set
 #: each message in colours.
 ALONE = {"FRICMB_COMPILE_PROCESSES": "1", "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
-#: Blocks from which on two processes pay: with three (Taylor steps) and two (time stepping) both were ready no sooner
+#: Blocks from which on two processes pay: with three (Taylor steps) both were ready no sooner
 #: than one alone, and worked 1.4 times as long, since much of what they compile is the same.
 FEWEST = 4
 _COMMAND = f"import sys; from {__name__} import compile_blocks; compile_blocks(sys.argv[1:])"

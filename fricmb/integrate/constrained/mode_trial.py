@@ -49,7 +49,7 @@ def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
         row = mech.port.row
         for a in range(row[c], row[c + 1]):
             if abs(y.ga[a]) > CREEP_IN_LOOPS * a_scale and guided(mech, c, a - row[c]):
-                return 1.0 + abs(y.ga[a]) / a_scale  # no force keeps it from slipping across its guide
+                return float(1.0 + abs(y.ga[a]) / a_scale)  # no force keeps it from slipping across its guide
         limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
         force = magnitude(mech.port.row, c, y.F)
         over = -spare(mech, k, c, y.F, y.N, k.borne)

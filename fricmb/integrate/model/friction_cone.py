@@ -15,7 +15,7 @@ Methods for special structures know more, and write the same formula as it serve
   second derivative, so that no step passes the instant of release;
 - ``step/coulomb_newton`` (general ``collocation``): F = -mu N n with one number for mu N;
 - ``taylor`` (``event_search``, ``turning``, ``landing``, ``starting_modes``): one limit for the run;
-- ``model/friction_discs`` and ``timestepping/friction_discs``: projections on the set, whose radius they are given;
+- ``model/friction_discs``: projections on the set, whose radius they are given;
 - ``contact/mode_decision``, ``contact/disc_projection``, ``constrained/mode_decision``: sizes of forces compared
   with limits of one instant, which do not change while forces are tried;
 - ``contact/event_location.passes_by``: the limit at rest, beside the force that would hold the contact there.
@@ -45,15 +45,6 @@ def break_away(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
 def stick_limit(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
     """Force mu_s N up to which contact k sticks."""
     return float(break_away(ports, laws, k, s, N) * N)
-
-
-@kernel
-def stick_limit_slope(ports: Laws, laws: Table, k: int, s: Scratch, N: float) -> float:
-    """Rate of that force by the normal force."""
-    if ports.mu_s[k] >= 0.0:
-        return float(ports.mu_s[k])
-    mu, _, by_load = coefficient(ports, laws, k, s, 0.0, N)
-    return float(mu + N * by_load)
 
 
 def stick_limits(contacts: Contacts) -> Floats:

@@ -6,7 +6,7 @@ Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_ste
 equal ones anyhow.  ``contact/event_location`` asks for the factor where a step up to a transition is too inaccurate.
 
 The other methods ask the same formula: ``collocation/one_contact/run.length_factor`` (growth up to 3),
-``taylor/step_start`` (1.5), ``timestepping/time_loop.adapt`` (2).
+``taylor/step_start`` (1.5).
 """
 
 from __future__ import annotations

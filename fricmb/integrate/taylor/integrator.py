@@ -38,8 +38,8 @@ from fricmb.integrate.taylor.trajectory import Checkpoints, TaylorRun, samples_o
 from fricmb.integrate.trajectory import Counters, Trajectory
 
 FAILURES = {
-    CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (timestepping takes them)",
-    WIDE: "a transition is felt by too many degrees of freedom within one step (timestepping or bdf take this)",
+    CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (take radau)",
+    WIDE: "a transition is felt by too many degrees of freedom within one step (take radau)",
     NOT_FINITE: "the state grew beyond what numbers hold",
     TOO_SHORT: "the step size fell below round-off: a function of time cannot be followed",
     CREEPS: "the direction of slip turns so fast that steps are next to nothing (take radau or bdf)",
