@@ -16,6 +16,7 @@ PACKAGE = (
     ("equations",),
     ("plan",),
     ("system", "stated"),
+    ("field",),
     ("simulate", "sweep"),
     ("analysis", "audit", "sensitivity", "fit"),
     ("plot",),

@@ -54,6 +54,7 @@ from .scene import parameter as parameter
 from .scene import speed as speed
 from .scene import t as t
 from .solution import Solution as Solution
+from .values import Hz as Hz
 from .values import Units as Units
 
 __version__: str

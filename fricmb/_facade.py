@@ -29,6 +29,8 @@ TARGETS = {
     "fricmb.scene._scene:Scene.equations": "fricmb.equations:scene_equations",
     "fricmb.scene._scene:Scene.plan": "fricmb.plan:make_plan",
     "fricmb.solution._differentiated:Differentiated._differentiate": "fricmb.sensitivity:derive",
+    "fricmb.solution._signals:Signals._element_axes": "fricmb.field:element_axes",
+    "fricmb.solution._signals:Signals._from_scene": "fricmb.field:from_scene",
     "fricmb.solution._solution:Solution._repr_html_": "fricmb.plot._view:solution_notebook",
     "fricmb.solution._solution:Solution.audit": "fricmb.audit:audit",
     "fricmb.solution._solution:Solution.plot": "fricmb.plot:SolutionPlots",

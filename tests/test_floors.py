@@ -20,6 +20,7 @@ FLOORS = (
     {"equations"},
     {"plan"},
     {"stated", "system"},
+    {"field"},
     {"simulate", "sweep"},
     {"analysis", "audit", "fit", "sensitivity"},
     {"plot"},

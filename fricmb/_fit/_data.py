@@ -22,7 +22,7 @@ class Measured:
     Attributes
     ----------
     name : str
-        A signal ("mass.x", "mass.x.velocity"), transitions ("sole.stick"), or "period".
+        A signal ("mass.x", "sole.force"), transitions ("sole.stick"), or "period".
     kind : str
         "signal", "event" or "period".
     t : (n,)

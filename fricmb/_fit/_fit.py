@@ -50,10 +50,10 @@ def fit(
     ----------
     scene : Scene
     data : dict, array (n_t, 1 + n_signals) or pandas.DataFrame
-        Signals over times: ``{"t": t, "mass.x": x, "mass.x.velocity": v}``, an array whose first column is the time, or
-        a table with the times as its index or a column "t"; nan: not measured.  In a dict also the times of transitions
-        in their order from the start on, ``{"sole.stick": times}`` (kinds as in ``sol.events``), and ``"period"``, one
-        or several measured periods of the limit cycle.
+        Signals over times by their names in ``sol[name]``, ``{"t": t, "mass.x": x, "sole.force": F}``, an array whose
+        first column is the time, or a table with the times as its index or a column "t"; nan: not measured.  In a dict
+        also the times of transitions in their order from the start on, ``{"sole.stick": times}`` (kinds as in
+        ``sol.events``), and ``"period"``, one or several measured periods of the limit cycle.
     parameters : dict
         Bounds by the names of ``scene.parameters``, ``{"sole.law.mu_s": (1.0, 2.0)}``, or (low, high, first guess);
         without a guess the scene's value if it lies within, else the middle.  Initial values are parameters as well.
@@ -92,7 +92,8 @@ def fit(
 
     Notes
     -----
-    :func:`scipy.optimize.least_squares` within the bounds, on derivatives that are exact through transitions.  The
+    :func:`scipy.optimize.least_squares` within the bounds, on derivatives that are exact through transitions; those of
+    accelerations and forces are differences of two runs for each parameter.  The
     covariance is that of the linearised problem, ``s^2 (J^T J)^-1``; with ``sigma`` given s is 1.
     """
     check_scene(scene)

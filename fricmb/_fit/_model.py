@@ -11,7 +11,7 @@ import numpy as np
 from fricmb._fit._data import Measured
 from fricmb._simulate import simulate
 from fricmb.analysis.cycles import Cycle, limit_cycle
-from fricmb.errors import FricmbError, unknown_name
+from fricmb.errors import FricmbError, SceneError, unknown_name
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene
 from fricmb.solution import Solution
@@ -20,6 +20,24 @@ from fricmb.solution import Solution
 _FAR = 1e8
 #: Transitions that a run has not had yet are waited for this much longer than the last one measured.
 _LONGER = 1.25
+#: Parameters move by this share for signals without exact derivatives: runs agree to far more digits.
+_STEP = 1e-4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """Two runs whose values of one parameter are ``width`` apart."""
+
+    width: float
+    first: Solution
+    last: Solution
+
+    def slope(self, name: str) -> Floats:
+        """Derivative (n_t,) of a signal; 0 where a transition lies between both: the signal may jump there."""
+        same = (self.first.record.samples.mode == self.last.record.samples.mode).all(axis=0)
+        difference = (self.last.scalar(name) - self.first.scalar(name)) / self.width
+        found: Floats = np.where(same, difference, 0.0)
+        return found
 
 
 @dataclass(kw_only=True)
@@ -83,28 +101,49 @@ class Model:
     def _computed(self, p: Floats) -> tuple[Floats, Floats]:
         self.runs += 1
         sol = self.run(p, sensitivities=self.names)
-        parts = [self._one(m, sol, p) for m in self.measured]
+        beside = self._beside(sol, p)
+        parts = [self._one(m, sol, p, beside) for m in self.measured]
         return np.concatenate([x for x, _ in parts]), np.concatenate([J for _, J in parts])
 
-    def _one(self, m: Measured, sol: Solution | None, p: Floats) -> tuple[Floats, Floats]:
+    def _beside(self, sol: Solution | None, p: Floats) -> tuple[Beside, ...]:
+        """Runs with a value a little lower and higher, for signals that have no exact derivatives."""
+        exact = set() if sol is None else set(sol.derivatives.known(sol.names))
+        if sol is None or all(m.name in exact for m in self.measured if m.kind == "signal"):
+            return ()
+        return tuple(self._pair(p, i, sol) for i in range(p.size))
+
+    def _pair(self, p: Floats, i: int, sol: Solution) -> Beside:
+        """Where the scene cannot have one of both values, this run stands for it."""
+        found = []
+        for sign in (-1.0, 1.0):
+            moved = p.copy()
+            moved[i] += sign * _STEP * max(abs(p[i]), _STEP)
+            try:
+                found.append((moved[i], self.run(moved)))
+            except FricmbError:
+                found.append((p[i], sol))
+        (low, first), (high, last) = found
+        if first is None or last is None or low == high:
+            raise SceneError(f"parameters: the scene has no values beside {p[i]:g} of {self.names[i]}")
+        return Beside(width=float(high - low), first=first, last=last)
+
+    def _one(self, m: Measured, sol: Solution | None, p: Floats, beside: tuple[Beside, ...]) -> tuple[Floats, Floats]:
         if m.kind == "period":
             return self._period(m, p)
         assert sol is not None
         if m.kind == "event":
             return _events(m, sol, self.names)
         places = np.searchsorted(sol.t, m.t)
-        J = np.array([sol.sensitivity(m.name, name)[places] for name in self.names]).T
-        return (_signal(sol, m.name)[places] - m.x) / m.sigma, J / m.sigma[:, None]
+        if m.name in sol.derivatives.known(sol.names):
+            J = np.array([sol.sensitivity(m.name, name)[places] for name in self.names]).T
+        else:
+            J = np.array([pair.slope(m.name)[places] for pair in beside]).T
+        return (sol.scalar(m.name, "data")[places] - m.x) / m.sigma, J / m.sigma[:, None]
 
     def _period(self, m: Measured, p: Floats) -> tuple[Floats, Floats]:
         self.cycle = limit_cycle(self.with_values(p), start=self.cycle)
         slopes = np.array([self.cycle.sensitivity("period", name) for name in self.names])
         return (self.cycle.period - m.x) / m.sigma, slopes / m.sigma[:, None]
-
-
-def _signal(sol: Solution, name: str) -> Floats:
-    dof = name.removesuffix(".velocity")
-    return sol.velocity(dof) if name.endswith(".velocity") else sol[dof]
 
 
 def _events(m: Measured, sol: Solution, names: tuple[str, ...]) -> tuple[Floats, Floats]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
@@ -13,10 +14,10 @@ from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
 from fricmb._sweep._workers import Job, outcomes
 from fricmb._version import installed_version
-from fricmb.errors import IntegrationError, SceneError
+from fricmb.errors import IntegrationError, SceneError, unknown_name
 from fricmb.integrate.compile.cache_files import say
 from fricmb.scene._other_values import check_values
-from fricmb.solution import Solution
+from fricmb.solution import Solution, owner_of
 
 
 def sweep(
@@ -24,7 +25,7 @@ def sweep(
     runs: Iterable[Mapping[str, Any]],
     *,
     t_end: float,
-    reduce: Callable[[Solution], Any] | None = None,
+    reduce: Callable[[Solution], Any] | str | Sequence[str] | None = None,
     workers: Any = None,
     progress: bool = True,
     store: str | PathLike[str] | None = None,
@@ -40,9 +41,9 @@ def sweep(
     runs : iterable of dict
         Values by the names of ``scene.parameters``, one dict a run.
     t_end : float
-    reduce : callable, optional
+    reduce : callable, name or list of names, optional
         ``reduce(sol)`` runs in the worker, and what it returns takes the place of the solution: send back what you need
-        rather than all of it.
+        rather than all of it.  The name of a signal stands for ``sol[name]``, several for a dict of them.
     workers : int, "threads", concurrent.futures.Executor or dask.distributed.Client, optional
         Number of processes (1: in this one; default: the cores), or what runs them.  A function or a law that is
         defined in a script can be sent to processes that are forked, or that import the script.  With "threads", as
@@ -85,12 +86,11 @@ def sweep(
     values = [{**(parameters or {}), **run} for run in own]
     for value in values:
         check_values(scene, value)
-    if reduce is not None and not callable(reduce):
-        raise SceneError(f"reduce: got {reduce!r}; expected a function of a Solution, or None")
+    chosen = _reducer(scene, reduce)
     if run_limit is not None and not (isinstance(run_limit, int | float) and run_limit > 0):
         raise SceneError(f"run_limit: got {run_limit!r}; expected a number of seconds > 0, or None")
-    job = Job(scene=scene, reduce=reduce, options={"t_end": t_end, **options})
-    kept = None if store is None else Store(store, (installed_version(), scene, reduce, job.options))
+    job = Job(scene=scene, reduce=chosen, options={"t_end": t_end, **options})
+    kept = None if store is None else Store(store, (installed_version(), scene, chosen, job.options))
     results = SweepResults([None] * len(values), values=own)
     missing = dict(enumerate(values))
     if kept is not None:
@@ -114,6 +114,34 @@ def sweep(
             say(f"interrupted: {done}, kept {where}{'' if kept is None else '; the same call goes on from there'}")
             raise
     return results
+
+
+@dataclass(frozen=True)
+class _Signals:
+    """Signals of a run by their names."""
+
+    names: str | tuple[str, ...]
+
+    def __call__(self, sol: Solution) -> Any:
+        return sol[self.names] if isinstance(self.names, str) else {name: sol[name] for name in self.names}
+
+
+def _reducer(scene: Any, reduce: Any) -> Callable[[Solution], Any] | None:
+    """What makes a result of a run."""
+    if reduce is None:
+        return None
+    if callable(reduce):
+        found: Callable[[Solution], Any] = reduce
+        return found
+    several = isinstance(reduce, list | tuple) and reduce and all(isinstance(name, str) for name in reduce)
+    if several or isinstance(reduce, str):
+        for name in reduce if several else [reduce]:
+            owner = owner_of(name) or name
+            if owner not in scene and not scene.has_motion(owner):
+                known = [*scene.motion_names, *(part.name for part in scene.parts)]
+                raise unknown_name("signal in reduce", name, known)
+        return _Signals(tuple(reduce) if several else reduce)
+    raise SceneError(f"reduce: got {reduce!r}; expected a function of a Solution, names of signals, or None")
 
 
 def _is_lost(result: Any) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from fricmb.analysis._errors import (
     positive,
     refuse,
 )
-from fricmb.errors import IntegrationError, unknown_name
+from fricmb.errors import IntegrationError
 
 if TYPE_CHECKING:
     from fricmb.plot._branches import DiagramPlots
@@ -42,24 +42,31 @@ class Poincare:
     Attributes
     ----------
     t : (n,)
-    q, v : (n_dof, n)
-    dofs : tuple of str
+    solution : Solution
+        The run at these times.
     """
 
     t: Floats
-    q: Floats
-    v: Floats
-    dofs: tuple[str, ...]
+    solution: Solution = field(repr=False)
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the rows of q and v."""
+        return self.solution.dof_names
+
+    @property
+    def q(self) -> Floats:
+        """Positions (n_dof, n)."""
+        return self.solution.q
+
+    @property
+    def v(self) -> Floats:
+        """Velocities (n_dof, n)."""
+        return self.solution.v
 
     def __getitem__(self, name: str) -> Floats:
-        """A degree of freedom, or with ".velocity" behind its name its velocity (n,)."""
-        if not isinstance(name, str):
-            raise unknown_name("degree of freedom", name, self.dofs)
-        dof, velocity = name.removesuffix(".velocity"), name.endswith(".velocity")
-        if dof not in self.dofs:
-            raise unknown_name("degree of freedom", name, self.dofs)
-        found: Floats = (self.v if velocity else self.q)[self.dofs.index(dof)]
-        return found
+        """A signal (n,) there, by its name in ``sol[name]``."""
+        return self.solution.scalar(name)
 
 
 def poincare_section(
@@ -77,7 +84,7 @@ def poincare_section(
     sol : Solution
         With its dense output.
     section : (str, float), optional
-        A signal of ``sol.columns()`` and its value, ``("mass.x.velocity", 0.0)``; or give ``period``.
+        A signal, as in ``sol[name]``, and its value, ``("mass.x.velocity", 0.0)``; or give ``period``.
     period : float, optional
         Of a drive.
     rising : bool or None
@@ -102,8 +109,7 @@ def poincare_section(
     else:
         assert section is not None
         t = _passes(sol, *section, begin, rising)
-    seen = sol.at(t)
-    return Poincare(t=t, q=seen.q, v=seen.v, dofs=sol.dof_names)
+    return Poincare(t=t, solution=sol.at(t))
 
 
 def _check(who: str, section: Any, period: Any, discard: Any) -> None:
@@ -124,9 +130,7 @@ def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool |
     from scipy.optimize import brentq
 
     def value(t: Floats) -> Floats:
-        dof = name.removesuffix(".velocity")
-        seen = sol.at(t)
-        return (seen.velocity(dof) if name.endswith(".velocity") else seen[dof]) - level
+        return sol.at(t).scalar(name, "section") - level
 
     rows = sol.run.row_motion().samples.t
     t = np.unique(np.concatenate([np.linspace(begin, sol.t_end, _POINTS), rows[rows >= begin]]))
@@ -214,7 +218,7 @@ def bifurcation_diagram(
     t_end : float
         Length of each run.
     signal : str
-        A degree of freedom, or its velocity ("mass.x.velocity").
+        As in ``sol[name]``: "mass.x.velocity", "sole.force".
     section, period, rising, discard
         As :func:`poincare_section`.  A drive's period that depends on ``over`` has to be left to a section.
     follow : bool
@@ -233,7 +237,7 @@ def bifurcation_diagram(
     who = "bifurcation_diagram"
     checked_scene(who, scene)
     checked_kind(who, "over", over, str, "a name out of scene.parameters")
-    checked_kind(who, "signal", signal, str, "a degree of freedom, or its name and .velocity")
+    checked_kind(who, "signal", signal, str, 'the name of a signal, such as "mass.x.velocity"')
     _check(who, section, period, discard)
     check_options(who, options, simulate, "t_end", "parameters", "initial")
     grid = checked_numbers(who, "values", values, "(n,) and finite")

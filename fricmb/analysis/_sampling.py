@@ -16,7 +16,7 @@ from fricmb.analysis._errors import (
     checked_number,
     checked_solution,
 )
-from fricmb.errors import shown, unknown_name
+from fricmb.errors import shown
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -61,7 +61,7 @@ def uniform(
     ----------
     sol : Solution
     name : str
-        A column of ``sol.columns()`` ("pad.y", "pad.y.velocity", "lining.force.x", ...).
+        As in ``sol[name]``: "pad.y", "pad.y.acceleration", "lining.force.x", ...
     dt : float, optional
         Sampling interval.  Default: halved until less than 1e-5 of the power lies above pi/dt.
     t_start, t_end : float, optional
@@ -131,20 +131,8 @@ def _share_above(fine: Floats) -> float:
 
 
 def signal_of(sol: Solution, name: str, t: Floats) -> Floats:
-    """A column of ``sol.columns()`` at given times."""
-    known = sol.names.known_motions()
-    if not isinstance(name, str):
-        raise unknown_name("signal", name, known)
-    seen = sol.at(t)
-    head, _, last = name.rpartition(".")
-    if name in known:
-        return seen[name]
-    if last == "velocity" and head in known:
-        return seen.velocity(head)
-    columns = seen.columns()
-    if name not in columns:
-        raise unknown_name("signal", name, [*known, *(f"{motion}.velocity" for motion in known), *columns])
-    return np.asarray(columns[name], dtype=float)
+    """A signal at given times."""
+    return np.asarray(sol.at(t).scalar(name, _WHO), dtype=float)
 
 
 def _short_phases(sol: Solution, begin: float, end: float, dt: float) -> float:

@@ -14,11 +14,11 @@ from fricmb.audit._fading import Fading
 from fricmb.audit._gather import LIMIT, Gathered
 from fricmb.audit._points import Points
 from fricmb.audit._result import Audit
-from fricmb.audit._statements import Statements
 from fricmb.audit._transitions import Changes
 from fricmb.audit._units import ROUND_OFF, Units, at_rest, units_of
 from fricmb.audit._weak import NODES, Weak
 from fricmb.errors import SceneError, shown
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import KeptTrajectory, take
 from fricmb.integrate.trajectory import Samples

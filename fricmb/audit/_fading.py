@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.trajectory import Samples
 

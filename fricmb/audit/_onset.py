@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._contacts import Rubs
 from fricmb.audit._gather import Gathered
 from fricmb.audit._points import row_unit
 from fricmb.audit._release import _matrix
-from fricmb.audit._statements import Statements
 from fricmb.audit._transitions import opening
 from fricmb.audit._units import Units
+from fricmb.field._contacts import Rubs
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.trajectory import Samples
 

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._contacts import Rubs
 from fricmb.audit._gather import Gathered
-from fricmb.audit._motions import Moment, Row
-from fricmb.audit._parts import Found
-from fricmb.audit._statements import Statements
 from fricmb.audit._units import ROUND_OFF, Units
+from fricmb.field._contacts import Rubs
+from fricmb.field._motions import Moment, Row
+from fricmb.field._parts import Found
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Floats
 from fricmb.integrate.trajectory import Samples
 

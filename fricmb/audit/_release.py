@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._motions import Moment, Row
-from fricmb.audit._parts import Found
-from fricmb.audit._statements import Statements
+from fricmb.field._motions import Moment, Row
+from fricmb.field._parts import Found
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats
 
 #: More degrees of freedom or rows than this are not solved for.

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._contacts import Rubs
 from fricmb.audit._gather import Gathered
-from fricmb.audit._motions import Moment
 from fricmb.audit._points import row_unit
 from fricmb.audit._release import holding
-from fricmb.audit._statements import Statements
 from fricmb.audit._units import ROUND_OFF, Units
+from fricmb.field._contacts import Rubs
+from fricmb.field._motions import Moment
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Floats, Ints
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._motions import Moment
-from fricmb.audit._statements import Statements
+from fricmb.field._motions import Moment
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples

@@ -14,8 +14,8 @@ import numpy as np
 
 from fricmb.audit._fading import Fading
 from fricmb.audit._gather import LIMITS
-from fricmb.audit._statements import Statements
 from fricmb.audit._units import Units
+from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.trajectory import Samples
 

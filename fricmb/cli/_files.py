@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import fricmb as fm
 from fricmb.cli._output import replace_together
@@ -65,25 +64,9 @@ def write_all(
     return replace_together(folder, write, tuple(f"{name}.{kind}" for name in PICTURES for kind in FORMATS))
 
 
-def columns(sol: fm.Solution) -> dict[str, NDArray[Any]]:
-    """Signals by name, as in ``sol.to_pandas()``, time first."""
-    table: dict[str, NDArray[Any]] = {"t": sol.t}
-    for name in sol.dof_names:
-        table[name] = sol[name]
-        table[f"{name}.velocity"] = sol.velocity(name)
-    for contact in sol.contact_names:
-        axes = sol.names.axes(contact)
-        for axis, force, speed in zip(axes, sol.force(contact), sol.relative_velocity(contact), strict=True):
-            table[f"{contact}.force.{axis}"] = force
-            table[f"{contact}.relative_velocity.{axis}"] = speed
-        table[f"{contact}.normal_force"] = sol.normal_force(contact)
-        table[f"{contact}.mode"] = sol.mode(contact)
-    return table
-
-
 def write_csv(sol: fm.Solution, path: Path) -> None:
     """Comma-separated values with a header; every digit that a float has."""
-    table = columns(sol)
+    table = {"t": sol.t, **sol.columns()}
     rows = zip(*(map(repr, values.tolist()) for values in table.values()), strict=True)
     with path.open("w", encoding="utf-8") as file:
         file.write(",".join(table) + "\n")

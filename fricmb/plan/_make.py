@@ -21,6 +21,7 @@ from fricmb.plan._same import common
 from fricmb.plan._truncate import truncated
 from fricmb.scene import Contact, Driven, Element, Joint, MatrixElement, Part, Scene, topology
 from fricmb.scene._scene import BODIES
+from fricmb.solution import owner_of
 from fricmb.values._pause import no_collection
 
 
@@ -122,7 +123,8 @@ def _targets(scene: Scene, names: tuple[str, ...]) -> Wanted:
     """What the observed names stand for."""
     place = {name: i for i, name in enumerate(scene.dof_names)}
     wanted = Wanted()
-    for name in names:
+    for given in names:
+        name = _owner(scene, given)
         if name in scene and isinstance(scene[name], Element | Contact | MatrixElement | Joint):
             wanted.parts.add(name)
         elif scene.has_motion(name):
@@ -139,8 +141,13 @@ def _targets(scene: Scene, names: tuple[str, ...]) -> Wanted:
         elif name in scene:
             wanted.dofs |= {place[dof] for dof in getattr(scene[name], "dof_names", ())}
         else:
-            raise unknown_name("name to observe", name, [*scene.motion_names, *(p.name for p in scene.parts)])
+            raise unknown_name("name to observe", given, [*scene.motion_names, *(p.name for p in scene.parts)])
     return wanted
+
+
+def _owner(scene: Scene, name: str) -> str:
+    """What has to be run for a signal: "mass.x" for "mass.x.velocity", "sole" for "sole.force.x"."""
+    return name if name in scene or scene.has_motion(name) else owner_of(name) or name
 
 
 def _sources(links: Links, wanted: Wanted) -> set[int]:

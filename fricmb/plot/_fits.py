@@ -52,10 +52,8 @@ class FitPlots:
         for panel, m in zip(axes, signals, strict=False):
             assert sol is not None
             t = np.linspace(sol.t_start, sol.t_end, 2000)
-            seen, dof = sol.at(t), m.name.removesuffix(".velocity")
-            curve = seen.velocity(dof) if m.name.endswith(".velocity") else seen[dof]
             panel.plot(m.t, m.x, ".", color=paint().slip, markersize=4, label="measured")
-            panel.plot(t, curve, color=paint().stick, linewidth=1.0, label="fitted")
+            panel.plot(t, sol.at(t).scalar(m.name), color=paint().stick, linewidth=1.0, label="fitted")
             finish(panel, x="", y=m.name, legend=True)
         axes[-1].set_xlabel(f"time [{self.fit.scene.units.time}]")
         return figure_of(axes)

@@ -27,7 +27,7 @@ class ModalBody(Part):
     name : str
         Unique in a scene, without dots.
     frequencies : array_like, (n,)
-        Angular frequencies, >= 0; 0: a rigid mode.
+        Angular frequencies, >= 0; 0: a rigid mode.  Of frequencies in hertz: ``[120.0, 345.0] * fm.Hz``.
     damping_ratios : float or array_like, (n,)
         Parts of critical damping, >= 0.
     shapes : dict of str to array_like, (len(axes), n)

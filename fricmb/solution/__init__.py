@@ -6,6 +6,7 @@ from fricmb.solution._energy import Energy, Reference
 from fricmb.solution._events import Event, Events
 from fricmb.solution._names import Motion, Names, Vector
 from fricmb.solution._run import Flags, Mechanics, Origin, Piece, Record, Run, first_bad, times_inside
+from fricmb.solution._signals import owner_of
 from fricmb.solution._solution import Solution
 from fricmb.solution._stats import IslandStats, Stats
 from fricmb.solution._stored import builder
@@ -30,6 +31,7 @@ __all__ = [
     "Vector",
     "builder",
     "first_bad",
+    "owner_of",
     "take",
     "times_inside",
 ]

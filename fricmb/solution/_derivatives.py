@@ -61,6 +61,12 @@ class Derivatives:
             raise unknown_name("sensitivity", name, self.columns)
         return self.columns.index(name)
 
+    @staticmethod
+    def known(names: Names) -> list[str]:
+        """Names of the signals that have derivatives: motions, their velocities, states of laws."""
+        motions = [*names.dofs, *names.motions]
+        return [*motions, *(f"{x}{VELOCITY}" for x in motions), *_states(names)]
+
     def signal(self, names: Names, signal: str, name: str, samples: Any) -> Floats:
         """Derivative (n_t,) of a named signal."""
         S = self.S[:, :, self.column(name)].T
@@ -72,11 +78,10 @@ class Derivatives:
             return found
         if motion in names.motions:
             return _point(names.motions[motion], S, n, rate, samples)
-        states = [f"{c}.state.{s}" for c, held in zip(names.contacts, names.states, strict=True) for s in held]
+        states = _states(names)
         if isinstance(signal, str) and signal in states:
             return np.array(S[2 * n + states.index(signal)])
-        known = [*names.dofs, *names.motions]
-        raise unknown_name("signal", signal, [*known, *(f"{x}{VELOCITY}" for x in known), *states])
+        raise unknown_name("signal with derivatives", signal, self.known(names))
 
     @property
     def monodromy(self) -> Floats:
@@ -84,6 +89,10 @@ class Derivatives:
         if not self.n_states:
             raise SceneError('monodromy: simulate with sensitivities="state"')
         return self.end[:, : self.n_states].copy()
+
+
+def _states(names: Names) -> list[str]:
+    return [f"{c}.state.{s}" for c, held in zip(names.contacts, names.states, strict=True) for s in held]
 
 
 def _point(motion: Motion, S: Floats, n: int, rate: bool, samples: Any) -> Floats:

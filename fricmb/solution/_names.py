@@ -42,6 +42,16 @@ class Motion:
         return value
 
 
+    def acceleration(self, q: Floats, v: Floats, a: Floats) -> Floats:
+        """Second derivative for q, v and accelerations a (n, n_t); shape (n_t,)."""
+        value: Floats = self.coefficient @ a[self.index]
+        if self.angle >= 0:
+            sin, cos = np.sin(q[self.angle]), np.cos(q[self.angle])
+            turn, bend = self.arm[1] * cos - self.arm[0] * sin, self.arm[0] * cos + self.arm[1] * sin
+            value = value + a[self.angle] * turn - v[self.angle] ** 2 * bend
+        return value
+
+
 @dataclass(frozen=True, kw_only=True)
 class Vector:
     """What several coordinates of a body in space say together; ``index`` (k,) of those that turn.

@@ -102,13 +102,6 @@ class Recorded:
         """Names of the contacts."""
         return self.names.contacts
 
-    def __getitem__(self, name: str) -> Floats:
-        """Position (n_t,) of a degree of freedom, a point ("plate.tip.x") or a driven body ("belt.x").
-
-        Of bodies in space also "rod.rotation" (3, 3, n_t), "rod.omega" and "axle.axis" (3, n_t).
-        """
-        return self._motion(name, 0)
-
     def velocity(self, name: str) -> Floats:
         """Velocity (n_t,) of a degree of freedom, a point or a driven body."""
         return self._motion(name, 1)

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 from fricmb._facade import facade
 from fricmb.integrate import Samples
 from fricmb.integrate.problem import Codes, Floats
-from fricmb.solution._contact_signals import ContactSignals
 from fricmb.solution._derivatives import Derivatives
-from fricmb.solution._differentiated import Differentiated
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Events
 from fricmb.solution._names import Names
 from fricmb.solution._run import Record
+from fricmb.solution._signals import Signals
 from fricmb.solution._stats import Stats
 from fricmb.solution._stored import Stored
 from fricmb.solution._summary import describe, summarise
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from fricmb.plot import SolutionPlots
 
 
-class Solution(ContactSignals, Differentiated):
+class Solution(Signals):
     """What a run found: motion, contacts, transitions, energies, and the cost of it.
 
     Made by :func:`fricmb.simulate`.  Time is the last axis of every array; units are those of the scene.
@@ -91,17 +90,23 @@ class Solution(ContactSignals, Differentiated):
         fricmb.audit.Audit
             ``.ok``, ``.checks``, ``.table()``; printed, three lines.
         """
-    def columns(self) -> dict[str, Floats | Codes]:
-        """Every signal (n_t,) by name, as in :meth:`to_pandas`."""
+    def columns(self, names: Iterable[str] | None = None) -> dict[str, Floats | Codes]:
+        """Signals (n_t,) by name, as in :meth:`to_pandas`.
+
+        Parameters
+        ----------
+        names : names, optional
+            Those wanted, as in ``sol[name]``; default: positions, velocities, and what the run holds of contacts.
+        """
         from fricmb.solution._table import columns
 
-        return columns(self)
+        return columns(self, names)
 
-    def to_pandas(self) -> pandas.DataFrame:
-        """All signals as a table over time; needs pandas."""
+    def to_pandas(self, names: Iterable[str] | None = None) -> pandas.DataFrame:
+        """Signals as a table over time; needs pandas.  ``names``: as :meth:`columns`."""
         from fricmb.solution._table import table
 
-        return table(self)
+        return table(self, names)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything to an npz file, ".npz" being added if there is no suffix."""

@@ -1,23 +1,34 @@
-"""A solution as a pandas table."""
+"""Signals of a solution as a table."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from fricmb.errors import SceneError, shown
 
 if TYPE_CHECKING:
     import pandas
 
     from fricmb.integrate.problem import Codes, Floats
-    from fricmb.solution._solution import Solution
+    from fricmb.solution._signals import Signals
 
 
-def columns(sol: Solution) -> dict[str, Floats | Codes]:
-    """Every signal (n_t,) by the name of its column.
+def columns(sol: Signals, names: Iterable[str] | None = None) -> dict[str, Floats | Codes]:
+    """Signals (n_t,) by name, those named or all that the run holds.
 
     ``"pad.x"``, ``"pad.x.velocity"`` (points of modal bodies too), ``"lining.force.x"``,
     ``"lining.relative_velocity.x"``, ``"lining.normal_force"``, ``"lining.mode"``, ``"lining.state.z"``.
     """
-    table: dict[str, Floats | Codes] = {}
+    if names is None:
+        return _all_columns(sol)
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise SceneError(f"names: got {shown(names)}; expected a list of names of signals")
+    return {name: sol.scalar(name, "names") for name in names}
+
+
+def _all_columns(sol: Signals) -> dict[str, Floats | Codes]:
+    table: dict[str, Any] = {}
     for name in (*sol.names.dofs, *sol.names.motions):
         table[name] = sol[name]
         table[f"{name}.velocity"] = sol.velocity(name)
@@ -33,10 +44,10 @@ def columns(sol: Solution) -> dict[str, Floats | Codes]:
     return table
 
 
-def table(sol: Solution) -> pandas.DataFrame:
-    """All signals over time, the index being ``t``."""
+def table(sol: Signals, names: Iterable[str] | None = None) -> pandas.DataFrame:
+    """Signals over time, the index being ``t``."""
     try:
         import pandas
     except ImportError as error:
         raise ImportError('to_pandas needs pandas: pip install "fricmb[pandas]"') from error
-    return pandas.DataFrame(columns(sol), index=pandas.Index(sol.t, name="t"))
+    return pandas.DataFrame(columns(sol, names), index=pandas.Index(sol.t, name="t"))

@@ -3,6 +3,7 @@
 from fricmb.values._asked import ask, expressions, one_expression
 from fricmb.values._declaration import Declaration
 from fricmb.values._held import Held, held, is_foreign
+from fricmb.values._hertz import Hz
 from fricmb.values._in_symbols import in_symbols
 from fricmb.values._numbers import (
     Number,
@@ -28,6 +29,7 @@ __all__ = [
     "SI",
     "Declaration",
     "Held",
+    "Hz",
     "Number",
     "Parameter",
     "Symbolic",

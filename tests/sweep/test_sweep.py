@@ -100,7 +100,7 @@ def test_a_wrong_run_is_told_before_anything_is_run(tmp_path):
     assert not (tmp_path / "s").exists()
     with pytest.raises(fm.SceneError, match=r"runs: entry 1 is 3.0; expected a dict"):
         fm.sweep(swinging(), [RUNS[0], 3.0], t_end=2.0, progress=False)
-    with pytest.raises(fm.SceneError, match="reduce: got 'mean'"):
+    with pytest.raises(fm.SceneError, match="unknown signal in reduce 'mean'"):
         fm.sweep(swinging(), RUNS, t_end=2.0, reduce="mean", progress=False)
     for workers in (0, -1, 1.5, True, "all"):
         with pytest.raises(fm.SceneError, match="workers: got"):
@@ -108,7 +108,7 @@ def test_a_wrong_run_is_told_before_anything_is_run(tmp_path):
 
 
 def test_an_error_of_reduce_is_raised():
-    with pytest.raises(KeyError, match="unknown motion"):
+    with pytest.raises(KeyError, match="unknown signal"):
         fm.sweep(swinging(), RUNS, t_end=2.0, reduce=lambda sol: sol["pad.x"], workers=1, progress=False)
     assert fm.sweep(swinging(), [], t_end=2.0, progress=False) == []
 

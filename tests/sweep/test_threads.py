@@ -56,7 +56,7 @@ def test_an_error_of_reduce_is_raised_and_no_further_run_is_begun():
         return sol["pad.x"]
 
     before = threading.active_count()
-    with pytest.raises(KeyError, match="unknown motion"):
+    with pytest.raises(KeyError, match="unknown signal"):
         fm.sweep(swinging(), RUNS * 50, t_end=2.0, reduce=reduce, **QUIET)
     assert len(begun) < 60
     assert threading.active_count() == before

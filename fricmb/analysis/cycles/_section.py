@@ -35,7 +35,7 @@ def checked_section(section: Any, names: Names, who: str) -> Section:
         ) from None
     known = [*names.dofs, *(f"{dof}.velocity" for dof in names.dofs)]
     if name not in known:
-        raise unknown_name("degree of freedom or velocity in section", name, known)
+        raise unknown_name("section (a degree of freedom or its velocity)", name, known)
     return Section(name=name, index=known.index(name), value=value)
 
 

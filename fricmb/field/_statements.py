@@ -6,13 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._contacts import Presses, Rubs
-from fricmb.audit._motions import Frame, Moment
-from fricmb.audit._parts import Acting, Found, Joins, acting, least_masses, masses
+from fricmb.field._contacts import Presses, Rubs
+from fricmb.field._motions import Frame, Moment
+from fricmb.field._parts import Acting, Found, Joins, acting, least_masses, masses
 from fricmb.integrate.problem import SLIP, Floats
 from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Contact, Joint
 from fricmb.scene._space_body import with_inner
+
+
+def frame_of(names: Any, piece: Any) -> Frame:
+    """What tells the motions of one piece of a run."""
+    scene = piece.mechanics.placed
+
+    def driven(name: str, t: Floats) -> Floats:
+        position, _ = piece.mechanics.signals(t)
+        found: Floats = position[names.signals[name]]
+        return found
+
+    breaks = piece.trajectory.problem.signals.breakpoints if scene.is_mechanism else np.zeros(0)
+    return Frame(scene=scene, index=dict(names.dof_index), driven=driven, breaks=breaks)
 
 
 class Statements:
@@ -35,8 +48,7 @@ class Statements:
         scene, held = mechanics.placed, set(mechanics.plan.parts)
         index = dict(self.names.dof_index)
         self.scene = scene
-        breaks = piece.trajectory.problem.signals.breakpoints if scene.is_mechanism else np.zeros(0)
-        self.frame = Frame(scene=scene, index=index, driven=self._driven, breaks=breaks)
+        self.frame = frame_of(self.names, piece)
         self.mass, self.mass_matrices = masses(scene, held, index)
         self.weight = np.maximum(self.mass, least_masses(scene, index))
         numbers = self.names.contact_index
@@ -57,11 +69,6 @@ class Statements:
                 self.joints.append(found)
             if found is not None:
                 self.acting.append(found)
-
-    def _driven(self, name: str, t: Floats) -> Floats:
-        position, _ = self.piece.mechanics.signals(t)
-        found: Floats = position[self.names.signals[name]]
-        return found
 
     def moment(self, samples: Samples) -> Moment:
         """Samples of the run as a moment; forces in the units of the user."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.audit._functions import Given
+from fricmb.field._functions import Given
 from fricmb.integrate.problem import Floats
 
 
@@ -15,7 +15,7 @@ class Drive:
 
     def __init__(self, given: str, value: Any, start: float) -> None:
         self.integrated, self.start = given == "rate", start
-        self.value, self.rate = Given(value), Given(value, derivative=True)
+        self.value, self.rate = Given(value), Given(value, order=1)
 
     def at(self, t: Floats, breaks: Floats) -> tuple[Any, Any]:
         """Value and rate (n_t,); ``breaks``: times at which functions of time jump."""

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from fricmb import stated
-from fricmb.audit._functions import Given, function
-from fricmb.audit._motions import Moment, Row
-from fricmb.audit._parts import Found
 from fricmb.equations import numbers
+from fricmb.field._functions import Given, function
+from fricmb.field._motions import Moment, Row
+from fricmb.field._parts import Found
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Contact
 from fricmb.values import value_of

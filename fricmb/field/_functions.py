@@ -29,21 +29,21 @@ def function(statement: stated.Statement) -> Function:
 class Given:
     """A number or expression of a declaration: ``motions`` it reads, and its value at given times.
 
-    ``derivative``: of time, instead of the value.
+    ``order``: of the derivative by time that is meant, 0 for the value itself.
     """
 
-    def __init__(self, value: Any, *, derivative: bool = False) -> None:
+    def __init__(self, value: Any, *, order: int = 0) -> None:
         self.number: float | None = None
         self.coordinates: list[str] = []
         self.speeds: list[str] = []
         self._parameters: list[float] = []
         if not is_expression(value):
-            self.number = 0.0 if derivative else float(value_of(value))
+            self.number = 0.0 if order else float(value_of(value))
             return
         read = stated.reads(value)
         self.coordinates, self.speeds = list(read.coordinates), list(read.speeds)
         self._parameters = [float(s.value) for s in read.parameters]
-        self._function = function(stated.expression(value, read.symbols, int(derivative)))
+        self._function = function(stated.expression(value, read.symbols, order))
 
     def at(self, moment: Any) -> Any:
         """Values (n_t,) in a state of the run, or one number."""

@@ -8,10 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from fricmb import stated
-from fricmb.audit._drives import Drive
-from fricmb.audit._functions import Given, function
-from fricmb.audit._motions import Moment, Row
 from fricmb.equations import numbers
+from fricmb.field._drives import Drive
+from fricmb.field._functions import Given, function
+from fricmb.field._motions import Moment, Row
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Body, Force, Gravity, Joint, MatrixElement, ModalBody, RigidBody, SpaceBody, modal_matrices
 from fricmb.values import value_of
@@ -60,12 +60,19 @@ class Acts:
         self.function = function(stated.element(element, len(self.forms)))
         self.numbers = numbers(element)
 
+    def forces(self, moment: Moment) -> list[Any]:
+        """Its force on each of its motions."""
+        return self._forces(moment, [moment.form(form) for form in self.forms])
+
     def add(self, moment: Moment, found: Found) -> None:
         """Its forces."""
         motions = [moment.form(form) for form in self.forms]
-        x, v = [m[0] for m in motions], [m[1] for m in motions]
-        for (_, _, row), force in zip(motions, self.function(*x, *v, moment.t, *self.numbers), strict=True):
+        for (_, _, row), force in zip(motions, self._forces(moment, motions), strict=True):
             found.push(row, force)
+
+    def _forces(self, moment: Moment, motions: list[tuple[Any, Any, Row]]) -> list[Any]:
+        x, v = [m[0] for m in motions], [m[1] for m in motions]
+        return list(self.function(*x, *v, moment.t, *self.numbers))
 
 
 class Pushes:
@@ -74,6 +81,10 @@ class Pushes:
     def __init__(self, part: Force) -> None:
         self.form = part.local_coordinates()[0]
         self.value = Given(part.value)
+
+    def forces(self, moment: Moment) -> list[Any]:
+        """Its one force."""
+        return [self.value.at(moment)]
 
     def add(self, moment: Moment, found: Found) -> None:
         """The force on its body."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb import stated
-from fricmb.audit._functions import Given, function
+from fricmb.field._functions import Given, function
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Driven, LinearForm, Scene
 from fricmb.values import value_of
@@ -44,7 +44,7 @@ class Frame:
             if letter in body.velocity:
                 found = (None, Given(body.velocity[letter]))
             else:
-                found = (Given(body.position[letter]), Given(body.position[letter], derivative=True))
+                found = (Given(body.position[letter]), Given(body.position[letter], order=1))
             self._given[name] = found
         return found
 
