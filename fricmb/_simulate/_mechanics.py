@@ -127,6 +127,18 @@ class SceneMechanics:
         """Stored energy (n_t,)."""
         return self._sum(samples, moving, lambda system, part: system.potential(part))
 
+    def delivered(self, samples: MotionSamples) -> Floats | None:
+        """Work (n_t,) of loads that are constant or linear in coordinates, but for a constant; None without such."""
+        if self.whole is not None:
+            return self.whole.system.delivered(samples) if self.whole.system.has_loads else None
+        if not any(isinstance(part, Element) and part.is_load for part in self.placed.parts):
+            return None
+        total = np.zeros(samples.t.size)
+        for member in self.members:
+            if member.system.has_loads:
+                total += member.system.delivered(member.place.part(samples))
+        return total
+
     def leaps(self, t_start: float, t_end: float) -> Floats | None:
         """Times between two others at which driven positions jump, rising; None where none can."""
         if not any(is_expression(value) for body in self.placed.driven for value in body.position.values()):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from fricmb.errors import SceneError, shown
 from fricmb.scene._axes import check_axis, direction, is_end
@@ -26,7 +26,13 @@ class Force(Element):
         Letter, or direction over the first axes of the body.
     value : float or SymPy expression
         In ``fm.t``, ``fm.coordinate("pad.x")``, ``fm.speed("pad.x")`` and parameters.
+
+    Notes
+    -----
+    In ``sol.energy`` its work is input, also that of a constant one; what is linear in a speed counts as damping.
     """
+
+    is_load: ClassVar[bool] = True
 
     body: End
     _: KW_ONLY

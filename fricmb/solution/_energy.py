@@ -24,11 +24,12 @@ class Energy:
     Attributes
     ----------
     kinetic, potential : (n_t,)
-        Kinetic and stored energy.
+        Kinetic and stored energy: of springs, modes, pressed contacts, and weight (``Gravity``).
     friction_loss_by_contact : (n_contacts, n_t)
         Energy lost to friction since the start of the run, in the order of ``contacts``.
     damping_loss, input : (n_t,)
-        Energy lost to damping, and brought in by forces, driven bodies and slides, since the start.
+        Energy lost to damping, and brought in by forces and torques of the scene (constant ones as well), driven bodies
+        and slides, since the start.
     contacts : tuple of str
     """
 

@@ -35,7 +35,7 @@ class Leaps:
         if t is None or not t.size:
             return cls(np.zeros(0), np.zeros(0), None if t is None else trajectory.ends)
         there = trajectory.motion(t)
-        after, first = (mechanics.potential(_moved(there, side)) for side in (0.5, -0.5))
+        after, first = (_stored(mechanics, _moved(there, side)) for side in (0.5, -0.5))
         return cls(t, np.cumsum(after - first), trajectory.ends)
 
     def seen(self, samples: _Samples) -> _Samples:
@@ -55,6 +55,13 @@ class Leaps:
             return np.zeros(t.shape, dtype=bool)
         near = np.searchsorted(self.t, t + SAME * np.abs(t), side="right") - 1
         return (near >= 0) & (np.abs(t - self.t[np.maximum(near, 0)]) <= SAME * np.abs(t))
+
+
+def _stored(mechanics: Any, samples: MotionSamples) -> Floats:
+    """Stored energy, the potential of loads included: by that their work jumps as well, which is none."""
+    given, stored = mechanics.delivered(samples), mechanics.potential(samples)
+    found: Floats = stored if given is None else stored - given
+    return found
 
 
 def _moved(samples: _Samples, side: Any) -> _Samples:

@@ -42,6 +42,9 @@ class Mechanics(Protocol):
     def potential(self, samples: MotionSamples, moving: Ints | None = None) -> Floats:
         """Stored energy (n_t,)."""
 
+    def delivered(self, samples: MotionSamples) -> Floats | None:
+        """Work (n_t,) of loads that have a potential, but for a constant; None where there are none."""
+
     def leaps(self, t_start: float, t_end: float) -> Floats | None:
         """Times between two others at which driven positions jump, rising; None where none can."""
 
@@ -130,18 +133,32 @@ class Piece:
 
     def rows(self) -> Samples:
         """Values at the accepted steps."""
-        return self._with_leaps(self._cut(self.trajectory.rows(), self.trajectory.sample, Samples))
+        return self._with_input(self._cut(self.trajectory.rows(), self.trajectory.sample, Samples))
 
     def sample(self, t: Floats) -> Samples:
         """Values at times within the run, in any order."""
-        return self._with_leaps(self.trajectory.sample(t))
+        return self._with_input(self.trajectory.sample(t))
 
     def motion(self, t: Floats) -> MotionSamples:
         """The same without energies, where these cost something."""
-        return self._with_leaps(self.trajectory.motion(t))
+        return self._with_input(self.trajectory.motion(t))
 
-    def _with_leaps(self, samples: _Samples) -> _Samples:
-        return self.leaps.added(samples) if isinstance(samples, Samples) and self.leaps.t.size else samples
+    def _with_input(self, samples: _Samples) -> _Samples:
+        """With what an integrator does not know of: work of its steady forces that loads do, and what jumps bring."""
+        if not isinstance(samples, Samples):
+            return samples
+        if self.leaps.t.size:
+            samples = self.leaps.added(samples)
+        given = self._delivered(samples)
+        return samples if given is None else replace(samples, input=samples.input + given - self._delivered_before)
+
+    def _delivered(self, samples: MotionSamples) -> Floats | None:
+        return self.mechanics.delivered(samples if self.leaps.span is None else self.leaps.seen(samples))
+
+    @cached_property
+    def _delivered_before(self) -> float:
+        given = self._delivered(self.trajectory.motion(np.array([self.t_start])))
+        return 0.0 if given is None else float(given[0])
 
     def energies(self, samples: MotionSamples, moving: Ints | None = None) -> tuple[Floats, Floats]:
         """Kinetic and potential energy (n_t,); ``moving``: degrees of freedom that may move (None: all)."""
@@ -150,7 +167,7 @@ class Piece:
 
     def row_motion(self) -> MotionSamples:
         """The same without energies, where these cost something."""
-        return self._with_leaps(self._cut(self.trajectory.row_motion(), self.trajectory.motion, MotionSamples))
+        return self._with_input(self._cut(self.trajectory.row_motion(), self.trajectory.motion, MotionSamples))
 
     def _cut(self, rows: _Samples, sampled: Callable[[Floats], _Samples], kind: type[_Samples]) -> _Samples:
         """Rows up to ``t_end``, which is one of them: a cut within a step is the end of the run all the same."""

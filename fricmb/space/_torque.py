@@ -41,6 +41,7 @@ class Torque(Element):
     """
 
     _fixed: ClassVar[tuple[str, ...]] = ("name", "body", "kind")
+    is_load: ClassVar[bool] = True
 
     body: Any
     _: KW_ONLY

@@ -47,6 +47,10 @@ class MechanismSystem(System):
         """Stored energy (n_t,), weight included."""
         return super().potential(self._extended(samples))
 
+    def delivered(self, samples: MotionSamples) -> Floats:
+        """Work (n_t,) of loads."""
+        return super().delivered(self._extended(samples))
+
     def potentials(self, samples: MotionSamples) -> dict[str, Floats]:
         """Stored energy by part."""
         return super().potentials(self._extended(samples))

@@ -46,7 +46,8 @@ Local = Sequence[tuple[int, int, float]]
 class Store:
     """Potential of one element: ``x K x/2 - f x + constant`` on its local rows, and that of its nonlinear remainder.
 
-    ``nonlinear``: index in the table of nonlinear elements, or None.
+    ``nonlinear``: index in the table of nonlinear elements, or None.  ``is_load``: what the linear part gives up is
+    work from outside, and nothing is stored.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Store:
     f: Local
     constant: float = 0.0
     nonlinear: int | None = None
+    is_load: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,6 +177,7 @@ class Structure:
                 f=terms.f,
                 constant=terms.constant,
                 nonlinear=nonlinear,
+                is_load=element.is_load,
             )
         )
 
@@ -194,7 +197,7 @@ class Structure:
 
     # -- forces -------------------------------------------------------------------------------------------------
     def add_force(self, force: Force) -> None:
-        """A force term by term: constant and linear ones are a potential, those of time alone a signal."""
+        """A force term by term: constant or linear in coordinates, or of time alone (a signal)."""
         what = f"Force {force.name!r}: value"
         own, *_ = force.local_coordinates()
         row = self.motions.row(own)
@@ -217,7 +220,7 @@ class Structure:
             self.B.extend((i, j, c) for i, c in row.q)
         if terms.rest is not None:
             nonlinear = self._moving_force(row, terms.rest, what)
-        self.stores.append(Store(name=force.name, rows=tuple(rows), K=K, f=f, nonlinear=nonlinear))
+        self.stores.append(Store(name=force.name, rows=tuple(rows), K=K, f=f, nonlinear=nonlinear, is_load=True))
 
     def _moving_force(self, row: Row, value: Any, what: str) -> int:
         expression = force_expression(value, what)

@@ -104,7 +104,7 @@ class System:
         return np.asarray(0.5 * np.einsum("it,it->t", v, self.problem.linear.M @ v))
 
     def potential(self, samples: MotionSamples) -> Floats:
-        """Stored energy (n_t,): springs, normal-force laws, and forces that are constant or linear in coordinates."""
+        """Stored energy (n_t,): springs, normal-force laws, weight."""
         total = self._linear.energy(samples.q, self.signals(samples.t)[0])
         if (
             any(store.nonlinear is not None for store in self.stores)
@@ -113,6 +113,16 @@ class System:
             for _, value in self._each_potential(samples, linear=False):
                 total += value
         return total
+
+    @property
+    def has_loads(self) -> bool:
+        """Whether forces from outside do work that :meth:`delivered` knows."""
+        return any(store.is_load and (store.K or store.f) for store in self.stores)
+
+    def delivered(self, samples: MotionSamples) -> Floats:
+        """Work (n_t,) of loads that are constant or linear in coordinates, but for a constant."""
+        given: Floats = -self._given.energy(samples.q, self.signals(samples.t)[0])
+        return given
 
     @cached_property
     def _masses(self) -> Floats | None:
@@ -126,7 +136,13 @@ class System:
 
     @cached_property
     def _linear(self) -> Stored:
-        return stored_of(self.stores, self.lined, self._n_coordinates, self.problem.n_u)
+        held = tuple(store for store in self.stores if not store.is_load)
+        return stored_of(held, self.lined, self._n_coordinates, self.problem.n_u)
+
+    @cached_property
+    def _given(self) -> Stored:
+        loads = tuple(store for store in self.stores if store.is_load)
+        return stored_of(loads, (), self._n_coordinates, self.problem.n_u)
 
     @property
     def _n_coordinates(self) -> int:
@@ -147,8 +163,9 @@ class System:
         for lined in self.lined if linear else ():
             yield from lined.each(samples.q)
         for store in self.stores:
-            if store.nonlinear is not None or (linear and (store.K or store.f or store.constant)):
-                yield store.name, self._stored(store, samples.q, u[0], X, linear)
+            held = linear and not store.is_load
+            if store.nonlinear is not None or (held and (store.K or store.f or store.constant)):
+                yield store.name, self._stored(store, samples.q, u[0], X, held)
         for k in pressed:
             yield self.contact_names[k], _value(contacts.normal_table, int(k), X, 5)[3]
 

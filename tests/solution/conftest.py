@@ -94,6 +94,9 @@ class Mechanics:
     def kinetic(self, samples, moving=None):
         return 0.5 * samples.v[0] ** 2
 
+    def delivered(self, samples):
+        return None
+
     def potential(self, samples, moving=None):
         return 0.5 * self.stiffness * samples.q[0] ** 2
 
