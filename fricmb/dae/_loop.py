@@ -16,8 +16,7 @@ from fricmb.dae._foreign import Compiled, call, lapack
 from fricmb.dae._matrix import Banded, Dense
 from fricmb.dae._stepper import advance
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.run.stop import watched
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.slices import slice_over, slicing, ticks
 
 _ELSEWHERE, _DENSE, _BANDED = 0, 1, 2
 _N, _LOWER, _UPPER, _HEIGHT, _ONE, _TRANS, _INFO = range(7)  # entries of the 32-bit integers that LAPACK reads
@@ -56,7 +55,7 @@ def run(
     floor: Any, direction: Any, work: Any, flags: Any, n: Any,
     times: Any, ys: Any, yps: Any, orders: Any, size: Any,
 ) -> int:  # fmt: skip
-    """Make and record steps until the record is full, the end is reached, a step fails, or Python has to serve.
+    """Make and record steps until the record is full, a slice or the run is over, a step fails, or Python has to serve.
 
     ``addresses``: kind of matrix, fun, jac (0: finite differences, -1: elsewhere), four LAPACK routines.
     ``size``: points recorded, points at which to return.
@@ -64,8 +63,9 @@ def run(
     kind, fun, jac, routines = addresses[0], addresses[1], addresses[2], addresses[3:]
     t = real[L.T_NEW : L.T_NEW + 1]
     y, yp, delta = rows[L.Y], rows[L.YP], rows[L.DELTA]
+    begun = ticks()
     while True:
-        if stopped():
+        if slice_over(begun):
             return L.FULL
         request = advance(whole, real, rows, rtol, atol, served)
         if request < 0:
@@ -149,14 +149,14 @@ class CompiledEngine(Engine):
         pattern = (m.pattern.start, m.pattern.rows, m.pattern.place)
         served = L.SERVED
         while True:
-            request = watched(
-                run,
-                self.whole, self.real, self.rows, s.rtol, s.atol, served, self.addresses, self.code.parameters,
-                self.code.parameters if self.jac is None else self.jac.parameters,
-                m.dy, m.dyp, m.store, self.pivots, self.small, pattern, self.members, self.ends,
-                self.floor, self.direction, self.work, self.flags, self.n,
-                record.t, record.y, record.yp, record.order, size,
-            )  # fmt: skip
+            with slicing():
+                request = run(
+                    self.whole, self.real, self.rows, s.rtol, s.atol, served, self.addresses, self.code.parameters,
+                    self.code.parameters if self.jac is None else self.jac.parameters,
+                    m.dy, m.dyp, m.store, self.pivots, self.small, pattern, self.members, self.ends,
+                    self.floor, self.direction, self.work, self.flags, self.n,
+                    record.t, record.y, record.yp, record.order, size,
+                )  # fmt: skip
             record.size = int(size[0])
             if request < 0 or request in (L.FULL, L.FINISHED):
                 return int(request)

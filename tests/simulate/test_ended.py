@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import pickle
 import signal
 import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 import sympy
+from numba import njit
 from scipy.integrate import solve_ivp
 
 import fricmb as fm
 from fricmb._simulate import _arguments
-from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.radau import Radau
 from fricmb.integrate.problem import Start
-from fricmb.integrate.run import memory
-from fricmb.integrate.run.stop import Watch, watched, watching
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run import memory, slices
+from fricmb.integrate.run.stop import Watch, watching
 from fricmb.system import build
 
 METHODS = ("auto", "bdf", "radau", "collocation", "taylor", "bdf2-paper")
@@ -226,93 +228,118 @@ def test_ctrl_c_ends_a_run_within_a_second_and_keeps_it(method, scene, asked, se
         assert at_exception - at_signal < 1.0
 
 
-@entry
-def hang(x):
-    """What a kernel does that does not get on."""
-    n = 0
-    while not stopped():
-        n += 1
-    return n
-
-
-def test_a_hanging_kernel_ends_at_its_limit():
-    with watching(Watch(1e-9)):
-        watched(hang, 1.0)  # compiles it
+def test_a_run_ends_at_its_limit():
     begin = time.perf_counter()
-    watch = Watch(0.2)
-    with watching(watch):
-        assert watched(hang, 1.0) > 0
-    assert watch.reason == "the time limit of 0.2 s was reached"
+    with pytest.raises(fm.IntegrationError, match=r"the time limit of 0\.2 s was reached") as caught:
+        fm.simulate(endless(), t_end=1e12, t_eval=[0.0, 1e12], method="radau", time_limit=0.2)
     assert time.perf_counter() - begin < 60.0
+    assert caught.value.t > 0.0
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_what_a_handler_raises_comes_out_of_a_hanging_kernel():
-    class Mine(Exception):
-        pass
+class Mine(Exception):
+    """What a handler of the user's own raises."""
+
+
+@contextmanager
+def alarm(seconds):
+    """A signal after so many seconds, whose handler raises."""
 
     def handler(number, frame):
         raise Mine("it is time")
 
-    with watching(Watch(1e-9)):
-        watched(hang, 1.0)  # compiled
     before = signal.signal(signal.SIGALRM, handler)
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
-        with pytest.raises(Mine, match="it is time"):
-            watched(hang, 1.0)
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        yield
     finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
-
-
-@entry
-def ask(times):
-    """How many of so many questions are answered with yes."""
-    yes = 0
-    for _ in range(int(times)):
-        yes += stopped()
-    return yes
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_a_kernel_that_is_not_watched_takes_no_signal():
-    """It would swallow what the handler raised, and answer yes from then on, in runs that nobody ends."""
+@pytest.mark.parametrize("method", ["radau", "collocation", "taylor"])
+def test_what_a_handler_raises_comes_out_of_a_run(method):
+    fm.simulate(endless(), t_end=1.0, t_eval=[0.0, 1.0], method=method)  # compiles
+    with alarm(0.2), pytest.raises(Mine, match="it is time"):
+        fm.simulate(endless(), t_end=1e12, t_eval=[0.0, 1e12], method=method)
+    assert fm.simulate(endless(), t_end=1.0, method=method).t[-1] == 1.0
 
-    class Mine(Exception):
-        pass
 
-    def handler(number, frame):
-        raise Mine
-
-    def later():
-        while True:
-            assert ask(3e6) == 0
-
-    watched(ask, 1.0)  # compiled, and this thread has words
-    before = signal.signal(signal.SIGALRM, handler)
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
-        with pytest.raises(Mine):
-            later()
-    finally:
-        signal.signal(signal.SIGALRM, before)
-    assert ask(1000.0) == 0
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_what_a_handler_raises_comes_out_of_solve_dae():
+    oscillator = njit(lambda t, y, yp: np.array([yp[0] - y[1], yp[1] + y[0]]))
+    fm.solve_dae(oscillator, (0.0, 1.0), [1.0, 0.0])  # compiles
+    with alarm(0.2), pytest.raises(Mine, match="it is time"):
+        fm.solve_dae(oscillator, (0.0, 1e9), [1.0, 0.0], t_eval=[1e9])
 
 
 def test_threads_have_limits_of_their_own():
     found = {}
 
     def run(limit):
-        with watching(watch := Watch(limit)):
-            watched(hang, 1.0)
-        found[limit] = watch.reason
+        with pytest.raises(fm.IntegrationError) as caught:
+            fm.simulate(endless(), t_end=1e12, t_eval=[0.0, 1e12], method="radau", time_limit=limit)
+        found[limit] = caught.value.reason
 
+    fm.simulate(endless(), t_end=1.0, t_eval=[0.0, 1.0], method="radau")  # compiles
     threads = [threading.Thread(target=run, args=(limit,)) for limit in (0.1, 0.3)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
     assert found == {limit: f"the time limit of {limit:g} s was reached" for limit in (0.1, 0.3)}
+
+
+#: A scene that each method takes, with stick and slip, and how far.
+SLICED = {
+    "radau": (lambda: fm.models.belt_oscillator(), 40.0),
+    "bdf": (lambda: fm.models.belt_oscillator(), 40.0),
+    "collocation": (lambda: fm.models.brake4dof("2"), 60.0),
+    "taylor": (lambda: fm.models.stick_slip_chain(6), 10.0),
+    "bdf2-paper": (lambda: fm.models.belt_oscillator(), 10.0),
+    "mechanism": (lambda: fm.models.slider_crank(), 0.2),
+}
+
+
+@pytest.mark.parametrize("method", SLICED)
+def test_results_do_not_depend_on_where_slices_end(method):
+    """A number that changes at every look ends each slice as soon as it may end."""
+    make, t_end = SLICED[method]
+    asked = {"t_end": t_end, "method": "radau" if method == "mechanism" else method, **step_of(method)}
+    whole = fm.simulate(make(), **asked)
+    done = threading.Event()
+
+    def count():
+        while not done.is_set():
+            slices._ticks[0] += 1
+            time.sleep(0.0)
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    try:
+        cut = fm.simulate(make(), **asked)
+    finally:
+        done.set()
+        counter.join()
+    np.testing.assert_array_equal(cut.t, whole.t)
+    np.testing.assert_array_equal(cut.q, whole.q)
+    np.testing.assert_array_equal(cut.v, whole.v)
+    assert [(e.t, e.contact, e.kind) for e in cut.events] == [(e.t, e.contact, e.kind) for e in whole.events]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes that are forked")
+def test_a_forked_process_ends_runs_too():
+    fm.simulate(endless(), t_end=1.0, t_eval=[0.0, 1.0], method="radau")
+    with slices.slicing():
+        process = multiprocessing.get_context("fork").Process(target=limited)
+        process.start()
+    process.join(60.0)
+    assert process.exitcode == 0
+
+
+def limited():
+    with pytest.raises(fm.IntegrationError, match="time limit"):
+        fm.simulate(endless(), t_end=1e12, t_eval=[0.0, 1e12], method="radau", time_limit=0.2)
 
 
 def test_a_result_that_finds_no_room_ends_the_run(monkeypatch):

@@ -27,7 +27,6 @@ from fricmb.integrate.collocation.one_contact.run import (
     ENDLESS,
     FULL,
     NOT_FINITE,
-    PAUSE,
     UNDERFLOW,
     UNSETTLED,
     run_single,
@@ -41,7 +40,7 @@ from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.chunks import counters
-from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.run.stop import ended, in_slices
 from fricmb.integrate.trajectory import Trajectory, Transitions
 
 _FAILURES = {
@@ -198,17 +197,15 @@ def _run_in(
     if t_end > start.t:
         set_longest_step(run, longest_step(problem, s, t_end - start.t))
     _set_state(run, start, tolerance)
-    pause = (t_end - start.t) / 100.0 if progress is not None else np.inf
+    tell = None if progress is None else lambda: progress(float(run.time))
     while True:
-        code = watched(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, run.time + pause)
+        code = in_slices(run_single, run, t_end, safety * tolerance.rtol, Z_EXACT[s] * 1.0001, tell=tell)
         if code == FULL and ended() is None:
             rows = Rows(run.steps, run.kinds, run.phases, run.events)
             longer = lengthened(rows) if may_grow(rows, memory) else None
             if longer is None:
                 break
             run = held[0] = with_rows(run, longer)
-        elif code == PAUSE and progress is not None and ended() is None:
-            progress(float(run.time))
         else:
             break
     n_rows, phases, n_events = (int(i) for i in run.used)

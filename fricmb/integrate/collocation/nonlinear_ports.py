@@ -21,7 +21,6 @@ from fricmb.integrate.model.forces import Scratch, evaluate
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import OPEN, Floats3
-from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 
@@ -224,8 +223,6 @@ def exact_ports(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     first_inputs(packed, s, y, one)
     last = np.inf
     for iteration in range(15):
-        if stopped():
-            return False
         all_outputs(ex, slot)
         evaluate_elements(packed, s, one, m, mi - m)
         evaluate_normals(packed, s, one, first_normal)

@@ -25,7 +25,6 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.forces import element_powers, evaluate
 from fricmb.integrate.problem import NORMAL_LAW, Floats
-from fricmb.integrate.run.stopped import stopped
 
 
 @kernel
@@ -140,8 +139,6 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
     # where everything comes to rest, round-off is that of what has been
     size0, load0 = largest(y.a), max(largest(y.lam), largest(y.F), HISTORY * k.borne_before)
     for iteration in range(ITERATIONS):
-        if stopped():
-            return False
         instant_residual(mech, k, w, y)
         for i in range(nz):
             w.r[n + m + n_c + i] = 0.0

@@ -25,8 +25,8 @@ from fricmb.integrate.methods.backward_differences import Differences, differenc
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
-from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL
-from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
+from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.step_control import SAMPLED, first_step
 
 CHUNK = 1024
@@ -74,13 +74,13 @@ def run_mechanism(
         past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
         go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, *past)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
-        code = watched(begin, mech, k, w, y, control, out, part, start.mode is not None, small)
+        code = begin(mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
             _settle(workspace, problem, start, t_end, reach)
             code = chunks.fill(go_on, y, memory, progress)
         chunks.take()
         failure = None if code == DONE else ended()
-        failure = failure or (failure_text(code, problem, k, y, out) if code not in (DONE, FULL) else None)
+        failure = failure or (failure_text(code, problem, k, y, out) if code not in (DONE, FULL, SLICE_OVER) else None)
         last, counts = end_of(y), control.counts.copy()
     values, span, force, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
     if chunks.broken:

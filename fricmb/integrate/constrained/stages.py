@@ -24,7 +24,6 @@ from fricmb.integrate.constrained.problem_structs import Mech, mech_of, mechanis
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
 from fricmb.integrate.problem import Complexes2, Floats, Floats2, Pivots, Problem
-from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.tableau import Tableau
 
 
@@ -213,8 +212,6 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
     last = np.inf
     st.found = 1.0
     for iteration in range(ITERATIONS):
-        if stopped():
-            return 0
         for i in range(s):
             stage_residual(mech, k, y, st, h, i)
         if st.turns.near > 0:

@@ -36,8 +36,9 @@ from fricmb.integrate.run.outcomes import (
     FAIL_SINGULAR,
     FULL,
     HANDOVER,
+    SLICE_OVER,
 )
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.slices import slice_over, ticks
 
 
 @run_entry
@@ -91,14 +92,13 @@ def drive(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
     rec: Record, part: Codes, past: Differences, formula: Formula,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the space for steps is used up.
+    """Step from y until the end of the span, or until a slice is over or the space for steps is used up.
 
     Steps are those of the one-step method, and where the history ``past`` lets BDF begin those of ``formula``.
     """
     stop = set_window(c, k.s.window, y.t)
+    begun = ticks()
     while True:
-        if stopped():
-            return FULL
         # a stop is kept until it has been gone through: a step may end on it to the last digit
         if reached(y.t, stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
@@ -106,6 +106,8 @@ def drive(
             if code == DONE and stop >= c.span[1]:
                 return DONE
             stop = next_stop(c, y.t)
+        elif slice_over(begun):
+            return SLICE_OVER
         elif crowded(rec, y.mode.shape[0]):
             return FULL
         elif past.on == 1:

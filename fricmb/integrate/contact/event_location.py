@@ -19,7 +19,6 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.event_functions import BY_EITHER, find_changing_contact, margin
 from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
@@ -65,8 +64,6 @@ def locate(
             return contact
         step = new if 0.0 < new < h else step
     for trial in range(60):
-        if stopped():
-            return -1
         if hi <= 4.0 * t_unit or step <= 2.0 * t_unit:
             copy_state(y, end)
             return contact

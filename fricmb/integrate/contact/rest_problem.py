@@ -22,7 +22,6 @@ from fricmb.integrate.model.law_values import coefficient, point_along
 from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Contacts, Floats, Floats2, Problem
-from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.contact_unknowns import PortState, port_state
 
@@ -104,7 +103,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
         elif r.part[k] == 2:
             r.mode[k] = SLIP
     for trial in range(6 * nc + 10):
-        if stopped() or not try_modes(packed, y, r, s):
+        if not try_modes(packed, y, r, s):
             break
         worst, back = find_wrong(y, r, held, least * big, big)
         if worst >= 0:

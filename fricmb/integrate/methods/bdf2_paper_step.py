@@ -19,8 +19,8 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
-from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL, SLICE_OVER
+from fricmb.integrate.run.slices import slice_over, ticks
 from fricmb.integrate.step.one_step import newton_tolerances, prepare_at
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stage_predictor import contacts_from_start
@@ -107,8 +107,11 @@ def drive_paper(
 ) -> int:  # fmt: skip
     """Step from y to ``t_end``, or until the space for rows is used up."""
     n = y.q.shape[0]
+    begun = ticks()
     while True:
-        if stopped() or crowded(out, 2, y.mode.shape[0]):
+        if slice_over(begun):
+            return SLICE_OVER
+        if crowded(out, 2, y.mode.shape[0]):
             return FULL
         left = t_end - y.t
         if left <= 1e-12 * max(abs(t_end), abs(y.t)):
@@ -118,7 +121,7 @@ def drive_paper(
             last.trial[k] = SLIP if packed.ports.law[k] == LAW_SMOOTH else (OPEN if y.mode[k] == OPEN else STICK)
         settled = False
         for _ in range(3 * y.mode.shape[0] + 3):
-            if stopped() or not solve_with(packed, s, y, one, acc, last, last.trial, step):
+            if not solve_with(packed, s, y, one, acc, last, last.trial, step):
                 return FAIL_STEP
             if not revise(packed, s, y, one, last.trial):
                 settled = True

@@ -18,7 +18,7 @@ from fricmb.integrate.output.row_trajectory import RowTrajectory
 from fricmb.integrate.problem import Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
-from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import SAMPLED, first_step
@@ -84,7 +84,7 @@ class Collector:
         # a function of time that switches right at the start has switched
         self.scratch.window[0] = self.start.t + 4e-16 * abs(self.start.t) + 1e-300
         rooms = (self.packed, self.scratch, self.y, self.rest, self.old)
-        code = watched(begin, *rooms, given, self.rows)
+        code = begin(*rooms, given, self.rows)
         if not self._finite():
             return FAIL_INFINITE
         return (DONE, FAIL_MODES, FAIL_REDUNDANT, FAIL_INFINITE)[code]

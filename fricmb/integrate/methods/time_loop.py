@@ -17,8 +17,8 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.run.breakpoints import reached, set_window
-from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER, SLICE_OVER
+from fricmb.integrate.run.slices import slice_over, ticks
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.step_matrix import forget
 
@@ -50,13 +50,14 @@ def drive(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
     past: Differences, guard: BdfGuard, r: Rest, old: Before, out: Rows, clock: Clock,
 ) -> int:  # fmt: skip
-    """Step from y until the end of the span, or until the space for rows is used up.
+    """Step from y until the end of the span, or until a slice is over or the space for rows is used up.
 
     Steps are those of the one-step method ``one``, and where the history ``past`` lets BDF begin those of ``multi``.
     """
     stop = set_window(clock, s.window, y.t)
+    begun = ticks()
     while True:
-        if stopped() or crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
+        if crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
         left = stop - y.t
         if reached(y.t, stop):
@@ -64,6 +65,8 @@ def drive(
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
             past.on = 0
+        elif slice_over(begun):  # not on a stop, which would be taken for one behind
+            return SLICE_OVER
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)
             if code == ACCEPTED and is_slower(past, max(clock.usual, clock.wanted)):

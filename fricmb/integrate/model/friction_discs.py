@@ -14,7 +14,6 @@ from fricmb.integrate.model.friction_cone import friction_size
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.run.room_protocols import Mobility
-from fricmb.integrate.run.stopped import stopped
 
 #: Gradients taken at most, residual at which they end and at which they will do, in parts of the largest force.
 MOST, FINE, COARSE = 20000, 1e-13, 1e-7
@@ -70,8 +69,6 @@ def least_energy(
     ahead, last, step = F.copy(), F.copy(), np.zeros(m)
     speed = 1.0
     for _ in range(MOST):
-        if stopped():
-            return False
         for a in range(m):
             if scale[a] > 0.0:
                 step[a] = scale[a] / steep * relative_acceleration(ports, a0, ahead, a)

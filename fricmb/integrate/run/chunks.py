@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from fricmb.integrate.problem import Ints, Start
 from fricmb.integrate.run.outcomes import FULL
-from fricmb.integrate.run.stop import ended, present, watched
+from fricmb.integrate.run.stop import ended, in_slices
 from fricmb.integrate.trajectory import Counters, Transitions
 
 
@@ -46,15 +45,16 @@ class Chunks:
     ) -> int:
         """Let ``step`` fill the recorder, again and again, until the end of the run, of memory (bytes), or a failure.
 
-        ``y``: the state of the run.  Returns what the last call did; FULL where something else ended the run.
+        ``y``: the state of the run.  Returns what the last call did; FULL or SLICE_OVER where
+        something else ended the run.
         """
+        tell = None if progress is None else lambda: progress(float(y.t))
         code = FULL
         while code == FULL and ended() is None:
-            with telling(progress, lambda: float(y.t)):
-                code = watched(step)
+            code = in_slices(step, tell=tell)
             self.take()
-            if progress is not None:
-                progress(float(y.t))
+            if tell is not None:
+                tell()
             if memory is not None and sum(part[0].nbytes for part in self.parts) >= memory:
                 break
         return code
@@ -63,20 +63,6 @@ class Chunks:
         """All that were recorded."""
         event = np.concatenate(self._events) if self._events else np.zeros((0, 3))
         return Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
-
-
-@contextmanager
-def telling(progress: Callable[[float], None] | None, time: Callable[[], float]) -> Iterator[None]:
-    """Let kernels tell the time that they have reached while they work: space for rows may take minutes to fill."""
-    watch = present()
-    if progress is None or watch is None:
-        yield
-        return
-    watch.tell = lambda: progress(time())
-    try:
-        yield
-    finally:
-        watch.tell = None
 
 
 def counters(counts: Ints, notes: tuple[str, ...] = ()) -> Counters:

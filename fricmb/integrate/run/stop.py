@@ -1,28 +1,23 @@
 """How a compiled run is ended from outside: Ctrl-C, a limit on its time, a limit on its memory.
 
-No signal is handled while a kernel works.  Its loops therefore ask ``stopped`` now and then, which looks at the clock,
-and some twenty times a second lets pending signals be handled and calls back into Python, where limits are checked.
-What is found there raises a flag that all loops of this thread obey; the kernel returns, and the reason is left with
-the run's :class:`Watch`.
+The loop of a run returns after each slice (:mod:`fricmb.integrate.run.slices`).  What ends the run is looked at then,
+and the reason is left with its :class:`Watch`.
 """
 
 from __future__ import annotations
 
-import ctypes
 import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 from numba.core.compiler_lock import global_compiler_lock
 
-from fricmb.integrate.problem import Ints
 from fricmb.integrate.run.memory import Footprint
-from fricmb.integrate.run.stopped import DUE, EVERY, FLAG, RAISED, call_back, now, own_words
-
-_Result = TypeVar("_Result")
+from fricmb.integrate.run.outcomes import SLICE_OVER
+from fricmb.integrate.run.slices import slicing
 
 
 class Watch:
@@ -36,8 +31,6 @@ class Watch:
         What was raised by a signal's handler (KeyboardInterrupt).
     reason : str or None
         Why the run was ended; None: it was not.
-    tell : callable or None
-        Called while kernels work, at each look: tells how far they are.
     """
 
     def __init__(
@@ -46,7 +39,6 @@ class Watch:
         self.limit = limit
         self.cause: BaseException | None = None
         self.reason: str | None = None
-        self.tell: Callable[[], None] | None = None
         self._end = None if limit is None else (time.perf_counter() if since is None else since) + limit
         self._footprint = footprint
         self._stop: threading.Event | None = getattr(_local, "stop", None)
@@ -71,61 +63,26 @@ class Watch:
 _local = threading.local()
 
 
-def _ask() -> int:
-    """Python's part of ``stopped``, after signals have been handled."""
-    watch: Watch = present() or getattr(_local, "active", None) or Watch()
-    words = own_words()
-    try:
-        if words[RAISED] != 0:
-            watch.interrupt(_raised(words))
-        watch.look()
-        if watch.tell is not None:
-            watch.tell()
-        words[DUE] = now() + EVERY
-    except BaseException as error:  # of a signal that came just now
-        watch.interrupt(error)
-    words[FLAG] = watch.reason is not None
-    return int(words[FLAG])
+def in_slices(loop: Callable[..., int], *arguments: Any, tell: Callable[[], None] | None = None) -> int:
+    """Call the loop of a run until it has done what it can: what it returns, SLICE_OVER where the run is to end.
 
-
-call_back(_ask)
-
-
-def _raised(words: Ints) -> BaseException:
-    """The exception that the kernel has fetched; goes on its way when the kernel has returned."""
-    taken: list[Any] = [None if word == 0 else _object_at(int(word)) for word in words[RAISED:]]
-    words[RAISED:] = 0
-    kind, value = taken[0], taken[1]
-    if isinstance(value, BaseException):
-        return value
-    error: BaseException = kind() if value is None else kind(value)
-    return error
-
-
-def _object_at(address: int) -> Any:
-    """The object at an address, whose reference is handed over."""
-    found = ctypes.cast(address, ctypes.py_object).value
-    ctypes.pythonapi.Py_DecRef(ctypes.py_object(found))
-    return found
-
-
-def watched(function: Callable[..., _Result], *arguments: Any) -> _Result:
-    """Call an entry, to be ended by the watch of the present run.
-
-    Outside of :func:`watching` what a signal's handler raised is raised here; inside, :func:`ended` tells.
+    ``tell`` is called between slices.  What a signal's handler raises inside of :func:`watching` is kept, and
+    :func:`ended` tells; outside it is raised here.
     """
     watch = present()
-    own = watch if watch is not None else Watch()
-    words = own_words()
-    before = getattr(_local, "active", None), int(words[FLAG]), int(words[DUE])
-    _local.active = own
-    words[FLAG], words[DUE] = own.reason is not None, now() + EVERY
     try:
-        return function(*arguments)
-    finally:
-        _local.active, words[FLAG], words[DUE] = before
-        if watch is None and own.cause is not None:
-            raise own.cause
+        with slicing():
+            while True:
+                code = loop(*arguments)
+                if code != SLICE_OVER or ended() is not None:
+                    return code
+                if tell is not None:
+                    tell()
+    except BaseException as error:
+        if watch is None:
+            raise
+        watch.interrupt(error)
+        return SLICE_OVER
 
 
 @contextmanager

@@ -15,7 +15,6 @@ from fricmb.integrate.compile.lu import lu_factor, lu_solve
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats, Floats2, Floats4
-from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_convergence import creep, force_change, smooth_miss, speed_change
 from fricmb.integrate.step.contact_unknowns import PortState, evaluate_ports
 
@@ -206,8 +205,6 @@ def general_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Float
     close = not some_stick(mode)
     last, last_turn = np.inf, np.inf
     for iteration in range(25):
-        if stopped():
-            return -1
         port_residual(ports, w, hA, mode)
         if renew:
             port_jacobian(ports, w, hA, mode)

@@ -17,7 +17,6 @@ from fricmb.integrate.compile.lapack import solve_real
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Ports, Table
 from fricmb.integrate.problem import OPEN, SLIP, STICK, Codes, Floats, Floats2
-from fricmb.integrate.run.stopped import stopped
 from fricmb.integrate.step.contact_newton import some_stick
 from fricmb.integrate.step.contact_unknowns import PortState
 
@@ -201,8 +200,6 @@ def plain_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Floats2
     done = -1
     close = False
     for iteration in range(25):
-        if stopped():
-            return -1
         plain_outputs(ports, w, mode)
         if size == 0:
             done = 1

@@ -12,7 +12,7 @@ import numpy as np
 from fricmb.integrate.compile.exchange import put_zeros, with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
-from fricmb.integrate.run.stop import ended, watched
+from fricmb.integrate.run.stop import ended, in_slices
 from fricmb.integrate.suits_taylor import fastest
 from fricmb.integrate.taylor.driving import Driving, find_driving
 from fricmb.integrate.taylor.friction_curve import LEAST
@@ -105,7 +105,7 @@ class Taylor(Integrator):
             if t_eval is not None:
                 empty = no_samples(problem.n, problem.m, len(t_eval))
                 net = with_arrays(net, **{**empty, "times": np.ascontiguousarray(t_eval, dtype=float)})
-            watched(settle_start, net)
+            settle_start(net)
             marks = Checkpoints(problem.n)
             code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
             done = _trajectory(problem, net, degree, marks, code, t_eval)
@@ -159,7 +159,7 @@ def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], 
     marks.add(net)
     report = float(net.time) + every
     while True:
-        code = watched(drive_taylor, net, math.inf, marks.stride)
+        code = in_slices(drive_taylor, net, int(net.n_steps) + marks.stride)
         if code == PAUSE and ended() is None:
             marks.add(net)
             if progress is not None and net.time > report:

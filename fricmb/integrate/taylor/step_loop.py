@@ -7,7 +7,8 @@ import math
 from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.compile.kernel_library import long_loops
 from fricmb.integrate.problem import STICK
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.outcomes import SLICE_OVER
+from fricmb.integrate.run.slices import slice_over, ticks
 from fricmb.integrate.taylor.account import pay_groups
 from fricmb.integrate.taylor.change import taylor_change
 from fricmb.integrate.taylor.event_heap import pop_due, push_due
@@ -24,7 +25,7 @@ from fricmb.integrate.taylor.starting_modes import set_window, settle
 from fricmb.integrate.taylor.step_start import begin_step, follow_signals
 
 #: Why a run came back.
-DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, STOPPED, TOO_SHORT, TOO_STEEP, CREEPS = range(10)
+DONE, FULL, PAUSE, CROWDED, WIDE, NOT_FINITE, TOO_SHORT, TOO_STEEP, CREEPS = range(9)
 #: Steps in a row that do not move the time.
 PATIENCE = 100
 #: A step of so many last digits of the time is nothing.
@@ -69,12 +70,12 @@ def next_sample(net: Net) -> float:
 
 
 @kernel
-def go_through(net: Net) -> int:
-    """Transitions and samples of the step in order of time."""
+def go_through(net: Net, begun: int) -> int:
+    """Transitions and samples of the step in order of time; ``begun``: the slice."""
     grain = 4.0 * EPS * max(abs(net.time), net.step) / net.step
     while True:
-        if stopped():
-            return STOPPED
+        if slice_over(begun):
+            return SLICE_OVER
         end = next_end(net)
         at = next_sample(net)
         until = net.until
@@ -176,9 +177,9 @@ def list_may_be_full(net: Net) -> bool:
 
 @run_entry
 @long_loops
-def drive_taylor(net: Net, t_pause: float, most: int) -> int:
-    """Step until the end, until an array is full, until t_pause, or until ``most`` steps are done."""
-    until = net.n_steps + most
+def drive_taylor(net: Net, until: int) -> int:
+    """Step until the end, until an array is full, a slice is over, or ``until`` steps are done in all."""
+    begun = ticks()
     while True:
         if net.phase == SETTLE:
             if net.n_stop >= net.stops.shape[0]:
@@ -192,7 +193,7 @@ def drive_taylor(net: Net, t_pause: float, most: int) -> int:
         if net.phase == BEGIN:
             if net.n_steps >= net.steps.shape[0] or list_may_be_full(net):
                 return FULL
-            if net.n_steps >= until or net.time > t_pause:
+            if net.n_steps >= until:
                 return PAUSE
             busy = begin_step(net)
             # a start from rest may take some steps that are nothing; more of them are no way to get on.  Towards a pole
@@ -208,7 +209,7 @@ def drive_taylor(net: Net, t_pause: float, most: int) -> int:
             net.supply += belt_work(net, 0.0)
             count_rest(net, 0.0, 1.0)
             net.phase = INSIDE
-        code = go_through(net)
+        code = go_through(net, begun)
         if code != DONE:
             return code
         code = finish_step(net)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fricmb.integrate.compile.exchange import numbers_of, put_numbers, with_arrays
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
 from fricmb.integrate.run.chunked_run import take
-from fricmb.integrate.run.stop import watched
+from fricmb.integrate.run.stop import in_slices
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.prepare import net_lent, no_samples
 from fricmb.integrate.taylor.prepare_groups import has_planar
@@ -151,7 +151,7 @@ class TaylorRun(Trajectory):
             net.n_samples = 0
             if self.failure is not None:
                 net.end = self.end.t  # nothing comes behind it
-            while net.n_samples < len(t) and watched(drive_taylor, net, np.inf, STRIDE) == PAUSE:
+            while net.n_samples < len(t) and in_slices(drive_taylor, net, int(net.n_steps) + STRIDE) == PAUSE:
                 pass
             for at in range(int(net.n_samples), len(t)):  # of a run that could not begin
                 net.out_q[at], net.out_v[at], net.out_mode[at] = net.q, net.v, net.mode

@@ -28,15 +28,16 @@ from fricmb.integrate.collocation.one_contact.step import (
     transfer_weights,
     weigh,
 )  # fmt: skip
-from fricmb.integrate.collocation.one_contact.stick import release_time
+from fricmb.integrate.collocation.one_contact.stick import AGAIN, NO_END, release_time
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.outcomes import SLICE_OVER
+from fricmb.integrate.run.slices import slice_over, ticks
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
 #: Why a run came back: at its end; no space for rows; for a progress report; or what went wrong.
-DONE, FULL, PAUSE, UNDERFLOW, ENDLESS, NOT_FINITE = range(6)
+DONE, FULL, UNDERFLOW, ENDLESS, NOT_FINITE = range(5)
 #: Steps after which the reference point moves along.
 REBASE = 16
 #: Mode of a contact at g = 0 whose accelerations have not been asked yet.
@@ -73,7 +74,7 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float) -> int:
     fresh = True
     for a in range(m):
         fresh = fresh and run.g[a] == 0.0
-    while taken < REBASE and not stopped():
+    while taken < REBASE:
         left = (t_end - run.time) - run.time_low
         if left <= 0.0:
             break
@@ -132,8 +133,8 @@ def slip_phase(run: Run, t_end: float, tol: float, stiff: float) -> int:
 
 
 @block
-def stick_phase(run: Run, t_end: float) -> int:
-    """Stick until the force reaches its cone or the run ends."""
+def stick_phase(run: Run, t_end: float, begun: int) -> int:
+    """Stick until the force reaches its cone or the run ends; ``begun``: the slice."""
     n = run.pos.shape[0]
     m = run.belt.shape[0]
     b = run.stuck_blocks
@@ -159,8 +160,10 @@ def stick_phase(run: Run, t_end: float) -> int:
             value -= run.hold_v[a, j] * run.e1[j]
         run.free[a, 1] = value
     left = (t_end - run.time) - run.time_low
-    found = release_time(run, left)
-    if found == -2.0:
+    found = release_time(run, left, begun)
+    if found == AGAIN:
+        return SLICE_OVER
+    if found == NO_END:
         return ENDLESS
     h = left if found < 0.0 else found
     keep_row(run, STICK, b, h)
@@ -187,9 +190,10 @@ def stick_phase(run: Run, t_end: float) -> int:
 
 
 @run_entry
-def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float) -> int:
-    """Run from the state until the end, or until there is no space for the rows of another phase."""
+def run_single(run: Run, t_end: float, tol: float, stiff: float) -> int:
+    """Run from the state until the end, a slice is over, or there is no space for the rows of another phase."""
     stalled = 0
+    begun = ticks()
     if run.mode == UNSETTLED:
         settle(run)
     while run.time + run.time_low < t_end:
@@ -197,14 +201,12 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float, t_pause: float)
             return FULL
         if run.used[2] + 2 > run.events.shape[0]:
             return FULL
-        if run.time > t_pause:
-            return PAUSE
-        if stopped():
-            return FULL
+        if slice_over(begun):
+            return SLICE_OVER
         t = run.time
         low = run.time_low
         if run.mode == STICK:
-            code = stick_phase(run, t_end)
+            code = stick_phase(run, t_end, begun)
         else:
             code = slip_phase(run, t_end, tol, stiff)
         if code != DONE:

@@ -12,7 +12,10 @@ import math
 from fricmb.integrate.collocation.block_motion import fundamental
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.run.stopped import stopped
+from fricmb.integrate.run.slices import slice_over
+
+#: What a search for a release finds that is no time: none, that its slice is over, that it does not end.
+NEVER, AGAIN, NO_END = -1.0, -2.0, -3.0
 
 
 @kernel
@@ -74,8 +77,11 @@ def safe_step(F: float, FdF: float, dF: float, bound: float, limit: float) -> fl
 
 
 @kernel
-def release_time(run: Run, longest: float) -> float:
-    """First time in [0, longest] at which |F| reaches ``limit``; -1 if it does not, -2 if the search does not end."""
+def release_time(run: Run, longest: float, begun: int) -> float:
+    """First time in [0, longest] at which |F| reaches ``limit``; NEVER, AGAIN, or NO_END.
+
+    A search that is called again goes on from ``run.searched``.
+    """
     m = run.belt.shape[0]
     b = run.stuck_blocks
     limit = run.mu_s_N
@@ -90,10 +96,12 @@ def release_time(run: Run, longest: float) -> float:
             cap = min(cap, 0.5 / rate)
         elif run.w2[1, j] == 0.0 and run.damp[1, j] == 0.0 and run.k[j] != 0.0:
             cap = min(cap, abs(run.a[j] / run.k[j]) + brief)
-    t = 0.0
+    t = run.searched
+    run.searched = 0.0
     for _ in range(100000000):
-        if stopped():
-            break
+        if slice_over(begun):
+            run.searched = t
+            return AGAIN
         bound = stuck_force(run, t, b, cap)
         F = 0.0
         FdF = 0.0
@@ -118,5 +126,5 @@ def release_time(run: Run, longest: float) -> float:
             step = max(step, least)
         t += step
         if t >= longest:
-            return -1.0
-    return -2.0
+            return NEVER
+    return NO_END
