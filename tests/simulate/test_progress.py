@@ -8,7 +8,7 @@ import pytest
 
 import fricmb as fm
 from fricmb._simulate import _progress
-from fricmb.integrate.run import stop
+from tests.ticking import ticking
 
 
 @pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
@@ -22,8 +22,8 @@ def test_kernels_tell_how_far_they_are(method, monkeypatch):
         yield told.append
 
     monkeypatch.setattr(_progress, "progress_bar", record)
-    monkeypatch.setattr(stop, "EVERY", 0)  # at every question
-    seen = fm.simulate(scene, t_end=8.0, method=method)
+    with ticking():
+        seen = fm.simulate(scene, t_end=8.0, method=method)
     assert len(set(told)) > 5
     assert max(told) <= 8.0 * (1 + 1e-12)
     np.testing.assert_array_equal(seen.q, alone.q)
@@ -37,8 +37,8 @@ def test_a_mechanism_tells_too(monkeypatch):
         yield told.append
 
     monkeypatch.setattr(_progress, "progress_bar", record)
-    monkeypatch.setattr(stop, "EVERY", 0)
-    fm.simulate(fm.models.dry_pendulum(), t_end=4.0)
+    with ticking():
+        fm.simulate(fm.models.dry_pendulum(), t_end=4.0)
     assert len(set(told)) > 5
 
 

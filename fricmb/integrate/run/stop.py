@@ -72,9 +72,9 @@ def in_slices(loop: Callable[..., int], *arguments: Any, tell: Callable[[], None
     watch = present()
     try:
         with slicing():
-            while True:
+            while ended() is None:
                 code = loop(*arguments)
-                if code != SLICE_OVER or ended() is not None:
+                if code != SLICE_OVER:
                     return code
                 if tell is not None:
                     tell()
@@ -82,7 +82,7 @@ def in_slices(loop: Callable[..., int], *arguments: Any, tell: Callable[[], None
         if watch is None:
             raise
         watch.interrupt(error)
-        return SLICE_OVER
+    return SLICE_OVER
 
 
 @contextmanager
