@@ -65,8 +65,6 @@ def run(
     y, yp, delta = rows[L.Y], rows[L.YP], rows[L.DELTA]
     begun = ticks()
     while True:
-        if slice_over(begun):
-            return L.FULL
         request = advance(whole, real, rows, rtol, atol, served)
         if request < 0:
             return request
@@ -81,7 +79,7 @@ def run(
             served = L.SERVED
             if real[L.T] == real[L.T_END]:
                 return L.FINISHED
-            if m + 1 >= size[1]:
+            if m + 1 >= size[1] or slice_over(begun):
                 return L.FULL
             continue
         doubtful = jac == 0 and whole[L.NEWTON_FAILS] >= 2 and flags[D.CENTRAL] == 0

@@ -169,6 +169,7 @@ def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
     if tolerance.atol_v is not None:
         np.maximum(run.scale, tolerance.atol_v / tolerance.rtol, out=run.scale)
     run.time, run.next_step, run.first_step = start.t, run.ladder[8], run.ladder[8]
+    run.searched = run.looks = 0.0  # a run that was ended may have left them
     w = run.belt
     g = run.wt @ start.v - w
     speed = math.sqrt(g @ g)

@@ -106,8 +106,6 @@ def drive(
             if code == DONE and stop >= c.span[1]:
                 return DONE
             stop = next_stop(c, y.t)
-        elif slice_over(begun):
-            return SLICE_OVER
         elif crowded(rec, y.mode.shape[0]):
             return FULL
         elif past.on == 1:
@@ -126,3 +124,5 @@ def drive(
                 start_past(y, past, formula, min(0.1 * h, past.good if past.good > 0.0 else h))
         if code > FULL:
             return code
+        if slice_over(begun) and not reached(y.t, stop):
+            return SLICE_OVER

@@ -109,8 +109,6 @@ def drive_paper(
     n = y.q.shape[0]
     begun = ticks()
     while True:
-        if slice_over(begun):
-            return SLICE_OVER
         if crowded(out, 2, y.mode.shape[0]):
             return FULL
         left = t_end - y.t
@@ -172,3 +170,5 @@ def drive_paper(
         last.h = step
         one.counts[0] += 1
         copy_state(end, y)
+        if slice_over(begun):
+            return SLICE_OVER

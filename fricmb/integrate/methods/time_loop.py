@@ -65,8 +65,6 @@ def drive(
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
             past.on = 0
-        elif slice_over(begun):  # not on a stop, which would be taken for one behind
-            return SLICE_OVER
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)
             if code == ACCEPTED and is_slower(past, max(clock.usual, clock.wanted)):
@@ -85,3 +83,6 @@ def drive(
                     forget(multi.fac)
         if code > CHANGED:
             return code
+        # not on a stop, which would be taken for one behind
+        if slice_over(begun) and not reached(y.t, stop):
+            return SLICE_OVER

@@ -24,6 +24,8 @@ from fricmb.integrate.compile.kernel import kernel
 
 #: Seconds of a slice, and how long the thread goes on counting when no run is under way: starting one takes longer.
 SLICE, IDLE = 0.02, 1.0
+#: Below 0 the number says that each look ends a slice: so results are shown not to depend on where slices end.
+ALWAYS_OVER = -(1 << 62)
 _SYMBOL = "fricmb_ticks"
 _ticks = np.zeros(1, dtype=np.int64)
 llvmlite.binding.add_symbol(_SYMBOL, _ticks.ctypes.data)
@@ -55,8 +57,12 @@ def ticks() -> int:
 
 @kernel
 def slice_over(begun: int) -> bool:
-    """Whether the slice in which a loop began is over, so that it has to go back to Python."""
-    return bool(_read_ticks() != begun)
+    """Whether the slice in which a loop began is over, so that it has to go back to Python.
+
+    Loops ask behind a step, so that each slice gets on.
+    """
+    now = _read_ticks()
+    return bool(now != begun or now < 0)
 
 
 class _Bell:

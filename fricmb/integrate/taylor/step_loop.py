@@ -74,8 +74,6 @@ def go_through(net: Net, begun: int) -> int:
     """Transitions and samples of the step in order of time; ``begun``: the slice."""
     grain = 4.0 * EPS * max(abs(net.time), net.step) / net.step
     while True:
-        if slice_over(begun):
-            return SLICE_OVER
         end = next_end(net)
         at = next_sample(net)
         until = net.until
@@ -98,6 +96,8 @@ def go_through(net: Net, begun: int) -> int:
         pop_due(net)
         if taylor_change(net, c, end) == 1:
             return WIDE
+        if slice_over(begun):
+            return SLICE_OVER
 
 
 @kernel
@@ -215,3 +215,5 @@ def drive_taylor(net: Net, until: int) -> int:
         code = finish_step(net)
         if code != DONE:
             return code
+        if slice_over(begun):
+            return SLICE_OVER

@@ -35,7 +35,7 @@ class Run(Layout):
     ``terms`` (n,), ``radau`` (s, s), ``rhs`` (s,), ``coefficients`` (s+1,), ``out`` (3, m), ``change`` (m,) of signals
     per impulse on a row.
     State between phases: ``pos`` with its low part, ``vel``, ``scale`` (n,); ``g``, ``n`` (m,); ``time`` with its
-    low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``searched`` of a stick, ``mode``.
+    low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``searched``, ``looks`` of a stick, ``mode``.
     ``used`` (3,) rows of steps, phases and events; ``counts`` (5,) work done (see Counters).
     ``steps``, ``kinds``, ``phases``, ``events``: rows of what is kept.
     """
@@ -127,6 +127,7 @@ class Run(Layout):
     next_step: float
     first_step: float
     searched: float
+    looks: float
     mode: int
     used: Ints
     counts: Ints

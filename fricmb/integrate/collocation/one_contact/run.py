@@ -163,6 +163,7 @@ def stick_phase(run: Run, t_end: float, begun: int) -> int:
     found = release_time(run, left, begun)
     if found == AGAIN:
         return SLICE_OVER
+    run.looks = 0.0
     if found == NO_END:
         return ENDLESS
     h = left if found < 0.0 else found
@@ -201,8 +202,6 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float) -> int:
             return FULL
         if run.used[2] + 2 > run.events.shape[0]:
             return FULL
-        if slice_over(begun):
-            return SLICE_OVER
         t = run.time
         low = run.time_low
         if run.mode == STICK:
@@ -217,4 +216,6 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float) -> int:
         stalled = stalled + 1 if (run.time - t) + (run.time_low - low) <= 1e-15 * abs(t) else 0
         if stalled > 50:
             return ENDLESS
+        if slice_over(begun) and run.time + run.time_low < t_end:
+            return SLICE_OVER
     return DONE

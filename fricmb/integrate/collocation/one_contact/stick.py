@@ -16,6 +16,8 @@ from fricmb.integrate.run.slices import slice_over
 
 #: What a search for a release finds that is no time: none, that its slice is over, that it does not end.
 NEVER, AGAIN, NO_END = -1.0, -2.0, -3.0
+#: Looks of one search.
+MOST_LOOKS = 1e8
 
 
 @kernel
@@ -80,7 +82,7 @@ def safe_step(F: float, FdF: float, dF: float, bound: float, limit: float) -> fl
 def release_time(run: Run, longest: float, begun: int) -> float:
     """First time in [0, longest] at which |F| reaches ``limit``; NEVER, AGAIN, or NO_END.
 
-    A search that is called again goes on from ``run.searched``.
+    A search that is called again goes on from ``run.searched``; ``run.looks`` counts its looks.
     """
     m = run.belt.shape[0]
     b = run.stuck_blocks
@@ -98,10 +100,8 @@ def release_time(run: Run, longest: float, begun: int) -> float:
             cap = min(cap, abs(run.a[j] / run.k[j]) + brief)
     t = run.searched
     run.searched = 0.0
-    for _ in range(100000000):
-        if slice_over(begun):
-            run.searched = t
-            return AGAIN
+    while run.looks < MOST_LOOKS:
+        run.looks += 1.0
         bound = stuck_force(run, t, b, cap)
         F = 0.0
         FdF = 0.0
@@ -127,4 +127,7 @@ def release_time(run: Run, longest: float, begun: int) -> float:
         t += step
         if t >= longest:
             return NEVER
+        if slice_over(begun):
+            run.searched = t
+            return AGAIN
     return NO_END
