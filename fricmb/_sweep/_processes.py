@@ -26,6 +26,8 @@ Run = Callable[[Mapping[str, Any]], Any]
 #: Seconds between looks at the clock.
 _LOOK = 0.5
 _READY = -1
+#: The signal that ends a process where memory is short; Windows has none of that name.
+_KILLED = getattr(signal, "SIGKILL", 9)
 
 
 def lost(why: str, parameters: Mapping[str, Any]) -> IntegrationError:
@@ -61,7 +63,7 @@ class _Worker:
         self.process.join()
         code = self.process.exitcode
         self.process.close()
-        if code == -signal.SIGKILL:
+        if code == -_KILLED:
             return "its process was killed (out of memory?)"
         return f"its process ended with {'signal' if code and code < 0 else 'status'} {abs(code or 0)}"
 
@@ -153,7 +155,10 @@ def _look(workers: list[_Worker], limit: float | None, runs: Mapping[int, Mappin
 def _work(pipe: Any, run: Run, parent: int) -> None:
     """Run what comes in until the pipe ends."""
     _end_with(parent)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # the parent takes them, lets runs under way come to their end, and then ends this process
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     if hasattr(os, "setpgrp"):
         os.setpgrp()  # the terminal's Ctrl-C goes to the parent alone
     pipe.send((_READY, True, None))

@@ -10,13 +10,14 @@ from typing import Any
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options, check_scene
 from fricmb._simulate._progress import bar
+from fricmb._sweep._check import MANY, check_runs
 from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
-from fricmb._sweep._workers import Job, outcomes
+from fricmb._sweep._workers import Job, ReduceError, outcomes
 from fricmb._version import installed_version
 from fricmb.errors import IntegrationError, SceneError, unknown_name
 from fricmb.integrate.compile.cache_files import say
-from fricmb.scene._other_values import check_values
+from fricmb.integrate.run.ending_signals import as_interrupts
 from fricmb.solution import Solution, owner_of
 
 
@@ -55,7 +56,8 @@ def sweep(
         A folder that keeps each result as it comes in.  The same sweep with the same store goes on where it stopped;
         a run is made again where scene, values, options, ``reduce``, a law, or a function or global that these use has
         changed.  What cannot be followed (a file that ``reduce`` reads) is not seen; what can be seen to be so is said.
-        Results are pickles: do not use a folder that others can write to.
+        Several sweeps may write to it at once.  Numbers, words, arrays, and lists and dicts of them are kept as data,
+        other results as pickles, which are read only where nobody else can write.
     parameters : dict, optional
         Values that all runs share; those of a run win.
     run_limit : float, optional
@@ -67,16 +69,16 @@ def sweep(
     Returns
     -------
     SweepResults
-        A list in the order of ``runs``: solutions, what ``reduce`` made of them, or, for a run that failed, its
-        IntegrationError.  It knows the values of each run, as a table and in pictures.
+        A list in the order of ``runs``: solutions, what ``reduce`` made of them, or, for a run that failed or whose
+        ``reduce`` raised, an IntegrationError.  It knows the values of each run, as a table and in pictures.
 
     Raises
     ------
     SceneError
         For a wrong name or value, before anything is run.
     KeyboardInterrupt
-        After Ctrl-C, once the runs under way are done (at once after a second one); its ``results`` are those that
-        were made, None for others.
+        After Ctrl-C, SIGTERM or SIGHUP, once the runs under way are done (at once after a second one).  The
+        ``results`` of this and of any other error that ends the sweep are those that were made, None for others.
     """
     check_scene(scene)
     check_options("sweep", options, simulate, "t_end", "parameters")
@@ -84,36 +86,57 @@ def sweep(
         raise SceneError(f"runs: got {runs!r}; expected a list of dicts of parameter names and values, one a run")
     own = [dict(_checked(run, i)) for i, run in enumerate(runs)]
     values = [{**(parameters or {}), **run} for run in own]
-    for value in values:
-        check_values(scene, value)
+    check_runs(scene, values, progress)
     chosen = _reducer(scene, reduce)
     if run_limit is not None and not (isinstance(run_limit, int | float) and run_limit > 0):
         raise SceneError(f"run_limit: got {run_limit!r}; expected a number of seconds > 0, or None")
     job = Job(scene=scene, reduce=chosen, options={"t_end": t_end, **options})
     kept = None if store is None else Store(store, (installed_version(), scene, chosen, job.options))
     results = SweepResults([None] * len(values), values=own)
+    try:
+        with as_interrupts():
+            _run(job, values, results, kept, progress, workers, run_limit)
+    except BaseException as stop:
+        stop.results = results  # type: ignore[attr-defined]
+        raise
+    finally:
+        if kept is not None:
+            kept.close()
+    return results
+
+
+def _run(
+    job: Job, values: list[dict[str, Any]], results: SweepResults, kept: Store | None, progress: bool,
+    workers: Any, run_limit: float | None,
+) -> None:  # fmt: skip
+    """Fill in results, those that were kept and those that are made."""
     missing = dict(enumerate(values))
     if kept is not None:
-        for i, value in enumerate(values):
-            there, results[i] = kept.get(value)
-            if there:
+        with bar(len(values), "run", "kept", progress and len(values) > MANY) as shown:
+            for i, result in kept.among(values, shown.update):
+                results[i] = result
                 del missing[i]
     made = outcomes(job, dict(missing), workers, run_limit)
+    broken: list[ReduceError] = []
     with bar(len(values), "run", "sweep", progress, done=len(values) - len(missing)) as shown:
         try:
             for i, result in made:
                 results[i] = result
                 del missing[i]
-                if kept is not None and not _is_lost(result):
+                if isinstance(result, ReduceError):
+                    broken.append(result)
+                    if len(broken) == 1:
+                        say(f"a run of the sweep has no result: {result.reason}; {values[i]!r}")
+                elif kept is not None and not _is_lost(result):
                     kept.put(values[i], result)
                 shown.update()
-        except KeyboardInterrupt as stop:
-            stop.results = results  # type: ignore[attr-defined]
+        except KeyboardInterrupt:
             done = f"{len(values) - len(missing)} of {len(values)} runs are done"
             where = "nowhere: give store=" if kept is None else f"in {kept.path}"
             say(f"interrupted: {done}, kept {where}{'' if kept is None else '; the same call goes on from there'}")
             raise
-    return results
+    if len(broken) > 1:
+        say(f"reduce raised in {len(broken)} of {len(values)} runs, which have no result; {broken[0].reason}")
 
 
 @dataclass(frozen=True)

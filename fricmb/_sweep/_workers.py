@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -19,6 +20,10 @@ from fricmb.integrate.compile.cache_files import say
 from fricmb.solution import Solution
 
 
+class ReduceError(IntegrationError):
+    """What stands in the place of a run whose ``reduce`` raised; not kept in a store."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Job:
     """What all runs of a sweep share."""
@@ -28,12 +33,24 @@ class Job:
     options: Mapping[str, Any]
 
     def run(self, parameters: Mapping[str, Any]) -> Any:
-        """One run: what ``reduce`` makes of its solution, or the IntegrationError that it ended in."""
+        """One run: what ``reduce`` makes of its solution, or the IntegrationError that it or ``reduce`` ended in."""
         try:
             sol = simulate(self.scene, parameters=parameters, **self.options)
         except IntegrationError as error:
             return error
-        return sol if self.reduce is None else self.reduce(sol)
+        if self.reduce is None:
+            return sol
+        try:
+            return self.reduce(sol)
+        except Exception as error:
+            return _failed(error, sol.t_end, parameters)
+
+
+def _failed(error: Exception, t: float, parameters: Mapping[str, Any]) -> ReduceError:
+    """What is left of an error of ``reduce``: its words and the line that raised it, which can be sent."""
+    line = traceback.extract_tb(error.__traceback__)[-1]
+    reason = f"reduce raised {type(error).__name__}: {error} ({line.filename}, line {line.lineno})"
+    return ReduceError(f"the run {dict(parameters)!r} has no result: {reason}", t=t, reason=reason)
 
 
 #: What asks for threads of this process, as many as there are cores.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import multiprocessing
 import os
 import signal
@@ -33,6 +34,8 @@ PICTURES = ("velocities", "phase", "energy", "transitions", "force")
 PATIENCE, PATIENCE_EACH = 30.0, 5.0
 #: Seconds between two looks at what is there.
 LOOK = 0.2
+#: Rows of a table between two looks at the clock.
+ROWS = 10_000
 #: Kinds of files they are written as.
 FORMATS = ("png", "svg", "pdf")
 
@@ -42,35 +45,60 @@ def pieces(sol: fm.Solution, plots: str | None) -> int:
     return len(DATA) + (0 if plots is None else len(PICTURES) if sol.contact_names else len(PICTURES) - 2)
 
 
+class Late(Exception):
+    """The time for writing is over."""
+
+
 def write_all(
-    sol: fm.Solution, folder: Path, summary: str, *, plots: str | None, told: Told = lambda done, name: None
-) -> list[str]:
+    sol: fm.Solution, folder: Path, summary: str, *, plots: str | None, told: Told = lambda done, name: None,
+    until: float = math.inf, without: tuple[str, ...] = (),
+) -> list[str]:  # fmt: skip
     """Write summary, data and pictures of the format ``plots`` (None: no pictures); returns the names of the files.
 
-    Those of an earlier run are replaced together, once all have been written, and its other pictures go.  ``told``
-    is told how many are written, and which is next.
+    Those of an earlier run are replaced together, once all have been written, and what else it left goes.  ``told``
+    is told how many are written, and which is next.  The table and the pictures that are not there at the time
+    ``until`` (time.monotonic) are left out, and so are data named in ``without``.
     """
 
     def write(new: Path) -> list[str]:
         writers: tuple[Callable[[Path], object], ...] = (
-            lambda path: path.write_text(summary), sol.save, partial(write_csv, sol), partial(write_events, sol),
+            lambda path: path.write_text(summary), sol.save, partial(write_csv, sol, until=until),
+            partial(write_events, sol),
         )  # fmt: skip
+        there = []
         for done, (name, writer) in enumerate(zip(DATA, writers, strict=True)):
             told(done, name)
-            writer(new / name)
-        drawn = write_pictures(sol, new, plots, lambda done, name: told(len(DATA) + done, name)) if plots else []
-        return [*DATA, *drawn]
+            if name not in without:
+                with contextlib.suppress(Late):
+                    writer(new / name)
+                    there.append(name)
+        drawn = write_pictures(sol, new, plots, lambda done, name: told(len(DATA) + done, name), until) if plots else []
+        return [*there, *drawn]
 
-    return replace_together(folder, write, tuple(f"{name}.{kind}" for name in PICTURES for kind in FORMATS))
+    stale = (*DATA, *(f"{name}.{kind}" for name in PICTURES for kind in FORMATS))
+    return replace_together(folder, write, stale)
 
 
-def write_csv(sol: fm.Solution, path: Path) -> None:
-    """Comma-separated values with a header; every digit that a float has."""
+def sizes(sol: fm.Solution) -> dict[str, float]:
+    """About how many bytes the large files will have."""
+    numbers = sol.t.size * (1 + 2 * len(sol.dof_names) + sum(2 * _width(sol, name) + 2 for name in sol.contact_names))
+    return {"solution.npz": 8.0 * numbers, "solution.csv": 20.0 * numbers}
+
+
+def _width(sol: fm.Solution, contact: str) -> int:
+    return len(sol.names.axes(contact))
+
+
+def write_csv(sol: fm.Solution, path: Path, until: float = math.inf) -> None:
+    """Comma-separated values with a header; every digit that a float has.  Late if it is not done in time."""
     table = {"t": sol.t, **sol.columns()}
-    rows = zip(*(map(repr, values.tolist()) for values in table.values()), strict=True)
     with path.open("w", encoding="utf-8") as file:
         file.write(",".join(table) + "\n")
-        file.writelines(",".join(row) + "\n" for row in rows)
+        for begin in range(0, sol.t.size, ROWS):
+            if time.monotonic() > until:
+                raise Late
+            rows = zip(*(map(repr, values[begin : begin + ROWS].tolist()) for values in table.values()), strict=True)
+            file.writelines(",".join(row) + "\n" for row in rows)
 
 
 def write_events(sol: fm.Solution, path: Path) -> None:
@@ -80,8 +108,10 @@ def write_events(sol: fm.Solution, path: Path) -> None:
         file.writelines(f"{event.t!r},{event.contact},{event.kind}\n" for event in sol.events)
 
 
-def write_pictures(sol: fm.Solution, folder: Path, kind: str, told: Told) -> list[str]:
-    """Velocities, phase planes, forces with their cones, transitions, energy."""
+def write_pictures(sol: fm.Solution, folder: Path, kind: str, told: Told, until: float = math.inf) -> list[str]:
+    """Velocities, phase planes, forces with their cones, transitions, energy; those that are drawn in time."""
+    if time.monotonic() > until:
+        return []
     plots = sol.plot
     pictures: Pictures = {
         folder / f"velocities.{kind}": plots.velocities,
@@ -91,11 +121,11 @@ def write_pictures(sol: fm.Solution, folder: Path, kind: str, told: Told) -> lis
     if sol.contact_names:
         pictures[folder / f"transitions.{kind}"] = plots.transitions
         pictures[folder / f"force.{kind}"] = partial(plots.force, sol.contact_names[0])
-    _draw_by_two(pictures, told)
-    return [path.name for path in pictures]
+    _draw_by_two(pictures, told, until)
+    return [path.name for path in pictures if path.exists()]
 
 
-def _draw_by_two(pictures: Pictures, told: Told = lambda done, name: None) -> None:
+def _draw_by_two(pictures: Pictures, told: Told = lambda done, name: None, until: float = math.inf) -> None:
     """Draw pictures, with a forked helper where one can be had, which inherits the solution: drawing takes longest.
 
     Each takes the next that is left.  What the two did not bring about is drawn at the end, so that an error of the
@@ -106,14 +136,14 @@ def _draw_by_two(pictures: Pictures, told: Told = lambda done, name: None) -> No
     if found is not None:
         helper, taken = found
         try:
-            _draw_in_turn(pictures, taken, told)
+            _draw_in_turn(pictures, taken, told, until)
             now = time.monotonic()
-            _wait(helper, pictures, now + PATIENCE + PATIENCE_EACH * (now - begin), told)
+            _wait(helper, pictures, min(now + PATIENCE + PATIENCE_EACH * (now - begin), until), told)
         finally:
             helper.terminate()
             helper.join()
     for path, picture in pictures.items():
-        if not path.exists():
+        if not path.exists() and time.monotonic() <= until:
             told(_there(pictures), path.name)
             _draw(path, picture)
 
@@ -155,10 +185,10 @@ def _draw_quietly(pictures: Pictures, taken: Any) -> None:
         _draw_in_turn(pictures, taken, lambda done, name: None)
 
 
-def _draw_in_turn(pictures: Pictures, taken: Any, told: Told) -> None:
-    """Take one picture after the other until all are taken."""
+def _draw_in_turn(pictures: Pictures, taken: Any, told: Told, until: float = math.inf) -> None:
+    """Take one picture after the other until all are taken, or the time is over."""
     entries = list(pictures.items())
-    while (i := _take(taken)) < len(entries):
+    while time.monotonic() <= until and (i := _take(taken)) < len(entries):
         told(_there(pictures), entries[i][0].name)
         _draw(*entries[i])
 

@@ -27,10 +27,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     _set_up(options)
     from fricmb.errors import FricmbError, IntegrationError
     from fricmb.integrate.compile.few_collections import few_collections
+    from fricmb.integrate.run.ending_signals import as_interrupts
 
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        with few_collections():  # what a command loads stays until its end
+        with few_collections(), as_interrupts():  # what a command loads stays until its end
             status = command(options)
         _flush()
     except IntegrationError as error:
@@ -163,7 +164,11 @@ def _add_run(commands: _Commands) -> None:
     sub.add_argument("--rtol", type=float, default=1e-6, metavar="R", help="relative tolerance (default: %(default)g)")
     sub.add_argument("--method", default="auto", metavar="NAME", help="integrator (default: %(default)s)")
     sub.add_argument("--step", type=float, metavar="H", help="step of a fixed-step method")
-    sub.add_argument("--time-limit", type=float, metavar="S", help="seconds after which the run ends, with status 3")
+    limit = (
+        "seconds after which the run ends, with status 3; tables and pictures that take more than a tenth of it longer "
+        "(or 5 s) are left out"
+    )
+    sub.add_argument("--time-limit", type=float, metavar="S", help=limit)
     sub.add_argument(
         "--points",
         type=int,
@@ -173,6 +178,7 @@ def _add_run(commands: _Commands) -> None:
     sub.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: fricmb-out/MODEL)")
     sub.add_argument("--no-plots", action="store_true", help="no pictures")
     _add_format(sub)
+    sub.add_argument("--yes", action="store_true", help="write a run of gigabytes without a question")
     sub.add_argument("--audit", action="store_true", help="check the run against the scene's equations: sol.audit()")
     sub.add_argument("--json", action="store_true", help="print the summary as JSON and nothing else")
     sub.add_argument("--quiet", action="store_true", help="say nothing but errors and what is asked for")

@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import sys
+import time
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,14 +15,20 @@ import numpy as np
 
 import fricmb as fm
 from fricmb._simulate._progress import named_bar
-from fricmb.cli._files import pieces, write_all
+from fricmb.cli._files import pieces, sizes, write_all
 from fricmb.cli._load import Loaded, load
 from fricmb.cli._output import finite, make_folder, print_aside, stdout_to_stderr
 from fricmb.cli._summary import as_json, as_text
 from fricmb.errors import IntegrationError, Interrupted, SceneError
+from fricmb.integrate.compile.cache_files import say
 
 if TYPE_CHECKING:
     from fricmb.audit import Audit
+
+#: How much longer than the time limit the files of a run may take: a share of it, and at least so many seconds.
+LONGER, LEAST = 0.1, 5.0
+#: Bytes from which on it is asked whether a run is to be written.
+LARGE = 1e9
 
 
 def run(options: argparse.Namespace) -> int:
@@ -39,6 +46,7 @@ def _run(options: argparse.Namespace) -> int:
     folder = options.out or Path("fricmb-out") / loaded.label
     make_folder(folder)
     shown = sys.stderr.isatty() and not (options.json or options.quiet)
+    until = math.inf if options.time_limit is None else time.monotonic() + options.time_limit
     failure: IntegrationError | Interrupted | None = None
     try:
         sol = fm.simulate(
@@ -55,7 +63,7 @@ def _run(options: argparse.Namespace) -> int:
         if error.partial is None:
             raise
         sol, failure = error.partial, error
-    found = _results(sol, failure, folder, options, shown)
+    found = _results(sol, failure, folder, options, shown, until + max(LONGER * (options.time_limit or 0.0), LEAST))
     if options.json:
         print_aside(found.text)
     elif not options.quiet:
@@ -84,8 +92,10 @@ def _results(
     folder: Path,
     options: argparse.Namespace,
     shown: bool,
+    until: float,
 ) -> _Results:
     """Energies, audit and files, with a bar of their own: of a long run they may take longer than it did."""
+    without = _unwanted(sol, folder, options)
     plots = None if options.no_plots else options.format
     before = 2 if options.audit else 1
     with named_bar(before + pieces(sol, plots), "results", shown) as told:
@@ -96,8 +106,27 @@ def _results(
             audit = sol.audit()
             summary["audit"] = {"ok": audit.ok, "rtol": audit.rtol, "checks": [_row(check) for check in audit.checks]}
         text = json.dumps(finite(summary), indent=2, allow_nan=False) + "\n"
-        written = write_all(sol, folder, text, plots=plots, told=lambda done, name: told(before + done, name))
+        written = write_all(
+            sol, folder, text, plots=plots, told=lambda done, name: told(before + done, name), until=until,
+            without=without,
+        )  # fmt: skip
+    if len(written) + len(without) < pieces(sol, plots):
+        say("the time limit was reached: tables and pictures that are missing were not written in time")
     return _Results(text, audit, written)
+
+
+def _unwanted(sol: fm.Solution, folder: Path, options: argparse.Namespace) -> tuple[str, ...]:
+    """Files of gigabytes that nobody wants: asked on a terminal; elsewhere the table alone is left out."""
+    wanted = sizes(sol)
+    if options.yes or sum(wanted.values()) < LARGE:
+        return ()
+    told = ", ".join(f"{name} of about {size / 1e9:.2g} GB" for name, size in wanted.items())
+    if not options.json and sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty():
+        print(f"fricmb: {sol.t.size} steps would be written to {folder}: {told}. Write them? [y/N] ", end="",
+              file=sys.stderr, flush=True)  # fmt: skip
+        return () if sys.stdin.readline().strip().lower() in ("y", "yes") else tuple(wanted)
+    say(f"left out: {told.rpartition(', ')[2]}; --yes writes it, --points makes it small")
+    return ("solution.csv",)
 
 
 def _row(check: Any) -> dict[str, Any]:

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from operator import is_
 from typing import TYPE_CHECKING, Any
 
-from fricmb.scene._bodies import Body
+from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._parameters import apply
 from fricmb.scene._part import GROUND, End, Part, original_of
+from fricmb.values import Declaration
 
 if TYPE_CHECKING:
     from fricmb.scene._scene import Scene
@@ -59,8 +60,24 @@ def numbers_alone(scene: Scene, changed: dict[str, Part], parts: list[Part]) -> 
 def check_values(scene: Scene, values: Mapping[str, Any]) -> None:
     """Raise what :meth:`Scene.with_parameters` would; where numbers alone change, no scene is made for that."""
     changed = apply(scene, values)
-    if not all(_is_numbers(scene[name], part) and _leaves_others(scene, part) for name, part in changed.items()):
+    if not _stand_alone(scene, changed):
         scene._with_parts(changed)
+
+
+def stands_alone(scene: Scene, values: Mapping[str, Any]) -> bool:
+    """Whether values are accepted or refused by the parts that have them, whatever values others have; checks them."""
+    changed = apply(scene, values)
+    return _stand_alone(scene, changed) and all(map(_is_built_in, changed.values()))
+
+
+def _stand_alone(scene: Scene, changed: Mapping[str, Part]) -> bool:
+    return all(_is_numbers(scene[name], part) and _leaves_others(scene, part) for name, part in changed.items())
+
+
+def _is_built_in(thing: Declaration) -> bool:
+    """Whether a part is of this package, and the laws that it holds are."""
+    inner = [held for held in vars(thing).values() if isinstance(held, Declaration) and not held._referred]
+    return type(thing).__module__.startswith("fricmb.") and all(map(_is_built_in, inner))
 
 
 def _leaves_others(scene: Scene, part: Part) -> bool:
@@ -68,7 +85,7 @@ def _leaves_others(scene: Scene, part: Part) -> bool:
     if not isinstance(part, End):
         return True
     kind: Any = type(part)
-    if kind is not Body or len(scene.parts) > MANY:
+    if kind not in (Body, Driven) or len(scene.parts) > MANY:
         return False
     referring = [scene.parts[i] for i in _referring(scene).get(part.name, ())]
     return all(type(other).__module__.startswith("fricmb.") for other in referring)
@@ -80,4 +97,6 @@ def _is_numbers(old: Part, new: Part) -> bool:
         return False
     if one is Body:
         return bool(new.axes == old.axes)  # type: ignore[attr-defined]
+    if one is Driven:
+        return bool(new.letters == old.letters and new.moving == old.moving)  # type: ignore[attr-defined]
     return all(map(is_, old.ends(), new.ends())) and getattr(old, "dof_names", ()) == getattr(new, "dof_names", ())

@@ -77,7 +77,7 @@ def test_ctrl_c_while_files_are_written_leaves_those_of_before(capsys, monkeypat
     assert main([*RUN, "--no-plots", "--out", str(tmp_path)]) == 0
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
-    def interrupted(sol, path):
+    def interrupted(sol, path, until):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("fricmb.cli._files.write_csv", interrupted)

@@ -2,16 +2,18 @@
 
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import textwrap
 import time
+import types
 from pathlib import Path
 
 import pytest
 
 import fricmb as fm
-from fricmb._sweep import _workers
+from fricmb._sweep import _processes, _workers
 from fricmb._sweep._processes import run_in_processes
 
 
@@ -154,6 +156,61 @@ def test_ctrl_c_waits_for_what_is_under_way_and_a_second_one_does_not(started):
     assert time.monotonic() - begin < 10
     assert "waiting for 2 runs" in err
     wait_for(lambda: not any(map(alive, workers)), 10)
+
+
+@linux
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP])
+def test_what_ends_a_job_is_taken_as_ctrl_c(tmp_path, how):
+    """A batch system sends SIGTERM to all processes of a job, a terminal that is closed SIGHUP."""
+    (tmp_path / "script.py").write_text(textwrap.dedent(SWEEP))
+    command = [sys.executable, str(tmp_path / "script.py"), str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        wait_for(lambda: len(list(tmp_path.glob("*.pid"))) == 2)
+        process.send_signal(how)
+        for path in tmp_path.glob("*.pid"):
+            os.kill(int(path.stem), how)
+        out, err = process.communicate(timeout=60)
+    assert "waiting for 2 runs under way" in err
+    assert "2 of 6 runs are done, kept in" in err
+    assert out.strip() == "[0.0, 1.0, None, None, None, None]"
+    base = sqlite3.connect(tmp_path / "runs" / "results.sqlite")
+    assert base.execute("SELECT count(*) FROM results").fetchone() == (2,)
+    base.close()
+
+
+SWEEP = """
+    import os, signal, sys, time
+    # as in the background of a shell: Ctrl-C is ignored there
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    import fricmb as fm
+    from fricmb._sweep import _processes, _workers
+
+    def work(self, value):
+        open(os.path.join(sys.argv[1], f"{os.getpid()}.pid"), "w").close()
+        time.sleep(2.0)
+        return value["k.stiffness"]
+
+    if __name__ == "__main__":
+        _workers.Job.run = work
+        mass = fm.Body("mass", mass=1.0)
+        scene = fm.Scene("s", [mass, fm.Spring("k", mass, axis="x", stiffness=1.0)])
+        runs = [{"k.stiffness": float(x)} for x in range(6)]
+        before = [signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGHUP)]
+        try:
+            fm.sweep(scene, runs, t_end=1.0, workers=2, progress=False, store=os.path.join(sys.argv[1], "runs"))
+        except KeyboardInterrupt as stop:
+            print(stop.results)
+        assert before == [signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGHUP)]
+"""
+
+
+def test_a_process_ends_on_windows_too(monkeypatch, capfd):
+    """Which has no SIGKILL: its name alone ended the sweep when a worker had died."""
+    there = {name: held for name, held in vars(signal).items() if name != "SIGKILL"}
+    monkeypatch.setattr(_processes, "signal", types.SimpleNamespace(**there))
+    found = run([1, "leave", 3])
+    assert [found[0], found[2]] == [1, 9]
+    assert "status 7" in str(found[1])
 
 
 @linux

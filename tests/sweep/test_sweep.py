@@ -107,9 +107,46 @@ def test_a_wrong_run_is_told_before_anything_is_run(tmp_path):
             fm.sweep(swinging(), RUNS, t_end=2.0, workers=workers, progress=False)
 
 
-def test_an_error_of_reduce_is_raised():
-    with pytest.raises(KeyError, match="unknown signal"):
-        fm.sweep(swinging(), RUNS, t_end=2.0, reduce=lambda sol: sol["pad.x"], workers=1, progress=False)
+def positive(sol):
+    if sol["mass.x"][-1] < 0.0:
+        raise ArithmeticError("a logarithm of nothing")
+    return float(np.log(sol["mass.x"][-1]))
+
+
+@pytest.mark.parametrize("workers", [1, 2, "threads"])
+def test_an_error_of_reduce_costs_its_value_alone(tmp_path, capfd, workers):
+    """It ended the sweep, and all results with it."""
+    given = {"t_end": 2.0, "reduce": positive, "workers": workers, "progress": False, "store": tmp_path / str(workers)}
+    found = fm.sweep(swinging(), RUNS, **given)
+    bad = [i for i, x in enumerate(EXPECTED) if x < 0.0]
+    assert found.failed == tuple(bad) == (0, 1, 3)
+    assert found[2] == pytest.approx(np.log(EXPECTED[2]), abs=1e-3)
+    for i in bad:
+        assert isinstance(found[i], fm.IntegrationError)
+        assert "reduce raised ArithmeticError: a logarithm of nothing" in found[i].reason
+        assert "test_sweep.py, line" in found[i].reason
+    said = capfd.readouterr().err
+    assert said.count("a logarithm of nothing") == 2, "the first, and how many"
+    assert "reduce raised in 3 of 4 runs" in said
+    # it is tried again, as the code that it calls may be another by then
+    again = fm.sweep(swinging(), RUNS, **given)
+    assert again[2] == found[2]
+    assert "reduce raised in 3 of 4 runs" in capfd.readouterr().err
+
+
+def test_what_ends_a_sweep_leaves_its_results(monkeypatch):
+    def ended(self, parameters):
+        if parameters["spring.stiffness"] == 9.0:
+            raise MemoryError
+        return parameters["spring.stiffness"]
+
+    monkeypatch.setattr("fricmb._sweep._workers.Job.run", ended)
+    with pytest.raises(MemoryError) as stop:
+        fm.sweep(swinging(), RUNS, t_end=2.0, workers=1, progress=False)
+    assert stop.value.results == [1.0, 4.0, None, None]
+
+
+def test_no_run_is_no_sweep():
     assert fm.sweep(swinging(), [], t_end=2.0, progress=False) == []
 
 

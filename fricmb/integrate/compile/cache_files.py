@@ -123,8 +123,11 @@ def share_temporary() -> None:
     Each would make its own, and those that are killed would leave theirs behind.
     """
     with contextlib.suppress(OSError):
-        if not all(can_be_kept(cache_folder(kind)) for kind in ("kernels", "templates")):
-            _temporary_root()
+        for kind in ("kernels", "templates"):
+            folder = cache_folder(kind)
+            there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+            if _refusal(folder) is not None or not (there.is_dir() and os.access(there, os.W_OK)):
+                _temporary_root()
 
 
 def say(text: str) -> None:
