@@ -50,6 +50,8 @@ class ExactRun(RowTrajectory):
     ``exact``: number of nodes, and up to which w h modes are exact.
     """
 
+    integrates = False
+
     def __init__(
         self, problem: Problem, chunks: list[Chunk], transitions: Transitions, counters: Counters, end: Start,
         failure: str | None, *, exact: tuple[int, float | None],
@@ -59,8 +61,8 @@ class ExactRun(RowTrajectory):
 
     def _fill(
         self, workspace: InstantWorkspace, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2,
-        energies: bool,
-    ) -> None:
+        energies: bool, power: Floats2,
+    ) -> None:  # fmt: skip
         packed, problem = packed_of(self.problem), self.problem
         sizes, pivots = np.zeros(4, np.int32), np.zeros(max(1, problem.m, problem.n), np.int32)
         with exact_lent(problem, self._nodes, 1.0, self._exact_up_to) as exact:

@@ -21,12 +21,13 @@ from fricmb.integrate.run.breakpoints import set_window_around
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
     force: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
-    stored: Floats, project: bool, side: Floats,
+    stored: Floats, project: bool, side: Floats, power: Floats2,
 ) -> int:  # fmt: skip
     """Complete every state (row by row); ``force`` (n_t, m + 2 m_p) start values [lam, F, n].  Number of failures.
 
     ``project``: q and v, interpolated between steps, are first moved onto the constraints; ``stored`` (n_t,): energy in
-    contacts with damping; ``side`` (n_t,): a time on the side of a breakpoint on which each state is.
+    contacts with damping; ``side`` (n_t,): a time on the side of a breakpoint on which each state is; ``power``
+    (n_t, n_c + 2): what friction, damping and input take and give.
     """
     m, rows, n_c = y.lam.shape[0], y.F.shape[0], y.mode.shape[0]
     failed = 0
@@ -53,6 +54,8 @@ def instants(
         follow(mech, k, y, small)
         if not react(mech, k, w, y, False):
             failed += 1
+        for j in range(power.shape[1]):
+            power[i, j] = y.rate[j]
         k.borne_before = max(k.borne, k.borne_before)
         stored[i] = stored_by_damped(mech.port.damped, mech.port.normals, k.s)
         for j in range(m):

@@ -89,7 +89,7 @@ def run_mechanism(
     notes = (*notes, *impulse_notes(problem, span, values))
     return StepTrajectory(
         whole, span, values, force, mode, opened, after, chunks.transitions(), counters(counts, notes), last, failure,
-        nodes_of(stages),
+        nodes_of(stages), tolerance.rtol,
     )  # fmt: skip
 
 

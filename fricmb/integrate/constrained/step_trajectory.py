@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,10 @@ from fricmb.integrate.constrained.instants import instants
 from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
+from fricmb.integrate.output.step_energies import integrate_between, integrate_powers
 from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.step.tableau import radau
-from fricmb.integrate.trajectory import Counters, Samples, Trajectory, Transitions
+from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 
 class StepTrajectory(Trajectory):
@@ -33,10 +35,11 @@ class StepTrajectory(Trajectory):
         end: Start,
         failure: str | None,
         nodes: Floats,
+        rtol: float,
     ) -> None:
         super().__init__(problem, transitions, counters, end, failure)
         self._span, self._values, self._force, self._mode, self._after = span, values, force, mode, after
-        self._nodes, self._opened = nodes, opened
+        self._nodes, self._opened, self._rtol = nodes, opened, rtol
         # every step's end, the start of the run, and right-hand values after transitions
         twice = after != 0
         twice[-1:] = False
@@ -62,24 +65,93 @@ class StepTrajectory(Trajectory):
         """Values at the accepted steps."""
         if not len(self._span):
             return self._only_start()
+        motion, stored = self._at_rows()
+        return self._with_work(motion, stored, self._spent[self._row_step, self._row_side])
+
+    def row_motion(self) -> MotionSamples:
+        """Values at the accepted steps without energies."""
+        return self._at_rows()[0] if len(self._span) else self._only_start()
+
+    def _at_rows(self) -> tuple[MotionSamples, Floats]:
         values = self._values[self._row_step, np.where(self._row_side == 0, 0, len(self._nodes) - 1)]
         # what a step ends with belongs to the side of a breakpoint that it comes from
         side = np.where(self._row_side == 0, self.t, np.nextafter(self.t, -np.inf))
-        return self._since_start(self._complete(self.t, values, self._row_step, side=side))
+        return self._complete(self.t, values, self._row_step, side=side)[:2]
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
         t = np.ascontiguousarray(t, dtype=float)
         if not len(self._span):
             return self._only_start(len(t))
+        step, values = self._inside(t)
+        motion, stored, _ = self._complete(t, values, step, project=True)
+        said, before = values[:, -self._width :], self._values[step, 0, -self._width :]
+        own = integrate_between(self._powers, t, step, said, self._span[step, 0], before, self._rtol, self._scale)
+        return self._with_work(motion, stored, self._spent[step, 0] + own)
+
+    def motion(self, t: Floats) -> MotionSamples:
+        """Dense output without energies."""
+        t = np.ascontiguousarray(t, dtype=float)
+        if not len(self._span):
+            return self._only_start(len(t))
+        step, values = self._inside(t)
+        return self._complete(t, values, step, project=True)[0]
+
+    def _inside(self, t: Floats) -> tuple[Ints, Floats]:
+        """The step of every time, and the values there (n_t, .)."""
         step = np.clip(np.searchsorted(self._span[:, 0], t, side="right") - 1, 0, len(self._span) - 1)
+        return step, self._at(t, step)
+
+    def _at(self, t: Floats, step: Ints) -> Floats:
+        """Values (n_t, .) of the polynomials of steps."""
         x = np.clip((t - self._span[step, 0]) / self._span[step, 1], 0.0, 1.0)
-        weight = lagrange_weights(self._nodes, x)
-        values = np.einsum("tj,tjw->tw", weight, self._values[step])
-        return self._since_start(self._complete(t, values, step, project=True))
+        found: Floats = np.einsum("tj,tjw->tw", lagrange_weights(self._nodes, x), self._values[step])
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        made = {"_said", "_scale", "_spent", "_stored_at_start"}
+        return {name: value for name, value in super().__getstate__().items() if name not in made}
+
+    # -- energies -----------------------------------------------------------------------------------------------
+    @property
+    def _width(self) -> int:
+        """Number of energies: lost by each port, by damping, and brought in."""
+        return self.problem.n_c + 2
+
+    @cached_property
+    def _said(self) -> Floats:
+        """Energies of every step as its stages say (k, w)."""
+        said: Floats = self._values[:, -1, -self._width :] - self._values[:, 0, -self._width :]
+        return said
+
+    @cached_property
+    def _scale(self) -> Floats:
+        scale: Floats = np.abs(self._said).sum(axis=0)
+        return scale
+
+    @cached_property
+    def _spent(self) -> Floats:
+        """Energies at the start and at the end of every step (k, 2, w); impulses come between two."""
+        steps = np.arange(len(self._span))
+        start, end = self._span[:, 0], np.append(self._span[1:, 0], self.end.t)
+        found = integrate_powers(self._powers, start, end, steps, self._said, self._rtol, self._scale)
+        leaps = self._values[:, 0, -self._width :].copy()
+        leaps[1:] -= self._values[:-1, -1, -self._width :]
+        parts = np.stack([leaps, found], axis=1)
+        spent: Floats = np.cumsum(parts.reshape(-1, self._width), axis=0).reshape(parts.shape)
+        return spent
+
+    def _powers(self, t: Floats, step: Ints) -> Floats:
+        """Powers (n_t, w) of the dense output at times within steps."""
+        return self._complete(t, self._at(t, step), step, project=True)[2]
+
+    def _with_work(self, motion: MotionSamples, stored: Floats, work: Floats) -> Samples:
+        """With energies; of contacts with damping all that they take counts as lost, less what they store."""
+        damping = work[:, -2] - stored + self._stored_at_start
+        return motion.with_energies(friction_loss=work[:, :-2].T.copy(), damping_loss=damping, input=work[:, -1].copy())
 
     def _only_start(self, count: int = 1) -> Samples:
-        values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self.problem.n_c + 2)])
+        values = np.concatenate([self.end.q, self.end.v, self.end.z, np.zeros(self._width)])
         joints, nc, rows = mechanism_of(self.problem).joints, self.problem.n_c, self.problem.m
         m = int(joints.row[-1])
         self._opened = np.zeros((1, len(joints.port)), np.int8)
@@ -87,34 +159,33 @@ class StepTrajectory(Trajectory):
         self._mode = np.ones((1, nc), np.int8) if self.end.mode is None else self.end.mode[None]
         if self.end.direction is not None:
             self._force[0, m + rows :] = self.end.direction
-        start = self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))
-        return replace(start, damping_loss=np.zeros(count))
-
-    def _since_start(self, samples: Samples) -> Samples:
-        before = self._lost_at_start
-        return replace(samples, damping_loss=samples.damping_loss - before) if before else samples
+        start = self._complete(np.full(count, self.end.t), np.tile(values, (count, 1)), np.zeros(count, int))[0]
+        return start.with_energies(
+            friction_loss=np.zeros((nc, count)), damping_loss=np.zeros(count), input=np.zeros(count)
+        )
 
     @cached_property
-    def _lost_at_start(self) -> float:
-        """Damping loss before there was any: less by what contacts with damping store at the start."""
+    def _stored_at_start(self) -> float:
+        """What contacts with damping store before anything is lost."""
         if not damped_normals(self.problem).any():
             return 0.0
-        return float(self._complete(self._span[:1, 0], self._values[:1, 0], np.zeros(1, int)).damping_loss[0])
+        return float(self._complete(self._span[:1, 0], self._values[:1, 0], np.zeros(1, int))[1][0])
 
     def _complete(
         self, t: Floats, values: Floats, step: Ints, *, project: bool = False, side: Floats | None = None
-    ) -> Samples:
+    ) -> tuple[MotionSamples, Floats, Floats]:
+        """The motion, what contacts with damping store (n_t,), and powers (n_t, w)."""
         problem = self.problem
-        n, nz, nc = problem.n, problem.n_z, problem.n_c
-        q, v, z, work = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
+        n, nz = problem.n, problem.n_z
+        q, v, z, _ = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
         found = complete_open(
             problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project, side=side
         )
-        return Samples(
+        motion = MotionSamples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
-            mode=np.ascontiguousarray(self._mode[step].T), friction_loss=work[:, :nc].T.copy(),
-            damping_loss=work[:, nc] - found[5][0], input=work[:, nc + 1].copy(),
+            mode=np.ascontiguousarray(self._mode[step].T),
         )  # fmt: skip
+        return motion, found[5][0], found[6].T
 
 
 def with_open(problem: Problem, opened: Codes) -> Problem:
@@ -152,10 +223,10 @@ def complete_open(
 def complete_at(
     problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False,
     side: Floats | None = None,
-) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:  # fmt: skip
+) -> tuple[Floats, ...]:  # fmt: skip
     """F (m_p, n_t), N (n_c, n_t), g (m_p, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
 
-    The last are energies (1, n_t) that contacts with damping store.
+    The last two are energies (1, n_t) that contacts with damping store, and powers (n_c + 2, n_t).
 
     ``project``: q and v are first moved onto the constraints, in place.  ``side`` (n_t,): a time on the side of a
     breakpoint on which each state is, where that is not the right-hand one.
@@ -163,14 +234,16 @@ def complete_at(
     m, nc, rows, count = mechanism_of(problem).n_rows, problem.n_c, problem.m, len(t)
     F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
     lam, a, stored = np.zeros((count, m)), np.zeros((count, problem.n)), np.zeros(count)
+    power = np.zeros((count, nc + 2))
     mech = mech_of(problem)
     solid, still = np.ascontiguousarray, 1e-11 * float(np.abs(v).max(initial=0.0))
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),
             still, F, N, g, lam, a, stored, project, solid(t if side is None else side, float),
+            power,
         )  # fmt: skip
-    return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy(), stored[None]
+    return F.T.copy(), N.T.copy(), g.T.copy(), lam.T.copy(), a.T.copy(), stored[None], power.T.copy()
 
 
 def lagrange_weights(nodes: Floats, x: Floats) -> Floats:

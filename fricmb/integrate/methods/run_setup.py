@@ -102,7 +102,9 @@ class Collector:
             failure = failure or FAILURES[FAIL_INFINITE]
         counts = np.sum([one.counts for one in self.steps], axis=0)
         found = self.chunks.transitions(), counters(counts), end_of(self.y), failure
-        return self.made(self.problem, self.chunks.parts, *found)
+        run = self.made(self.problem, self.chunks.parts, *found)
+        run.rtol = float(self.acc.rtol)
+        return run
 
 
 def stages_for(problem: Problem, rtol: float, wanted: int | None) -> int:

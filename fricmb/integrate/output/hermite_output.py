@@ -171,12 +171,13 @@ def state_of_row(packed: Packed, s: Scratch, y: State, row: Floats, modes: Codes
 @entry
 def sample_rows(
     packed: Packed, s: Scratch, y: State, values: Floats2, kind: Codes, modes: Codes2, stops: Floats, index: Ints,
-    t: Floats, side: Floats, part: Floats3, out: Floats2, out_mode: Codes2, sizes: Pivots, pivots: Pivots,
+    t: Floats, side: Floats, part: Floats3, out: Floats2, out_mode: Codes2, power: Floats2, sizes: Pivots,
+    pivots: Pivots,
 ) -> None:  # fmt: skip
     """Rows [t, q, v, z, F, N, g, work] at times t within the rows ``index`` and their right neighbours.
 
     ``side``: a time in the interval between breakpoints that each belongs to; ``part``: space for the rows of a step,
-    of no length where energies are not asked for.
+    of no length where energies are not asked for; ``power`` (n_t, n_c + 2): the powers, or of no width.
     """
     n, nz, m, nc = y.q.shape[0], y.z.shape[0], y.F.shape[0], y.mode.shape[0]
     at_F = 1 + 3 * n + 2 * nz
@@ -195,3 +196,5 @@ def sample_rows(
         else:
             state_of_row(packed, s, y, left, modes[k], t[j])
         write_sample(packed, s, y, out[j], out_mode[j])
+        for i in range(power.shape[1]):
+            power[j, i] = y.rate[i]

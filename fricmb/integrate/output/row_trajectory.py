@@ -16,6 +16,7 @@ from fricmb.integrate.model.instant_workspace import InstantWorkspace, instant_w
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
+from fricmb.integrate.output.step_energies import integrate_between, integrate_powers
 from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
@@ -24,7 +25,14 @@ Chunk = tuple[Floats, Codes, Codes2]
 
 
 class RowTrajectory(Trajectory):
-    """A run kept as rows, in chunks until they are first asked for: to put them together takes as long as a copy."""
+    """A run kept as rows, in chunks until they are first asked for: to put them together takes as long as a copy.
+
+    ``rtol``: tolerance of the run, to which energies are integrated.
+    """
+
+    rtol: float = 1e-6
+    #: Whether a step's own energies are looked at again; those of exact structure are collocated with the motion.
+    integrates: bool = True
 
     def __init__(
         self, problem: Problem, chunks: list[Chunk], transitions: Transitions, counters: Counters, end: Start,
@@ -57,7 +65,8 @@ class RowTrajectory(Trajectory):
 
     def __getstate__(self) -> dict[str, Any]:
         rows = {name: getattr(self, name) for name in ("_values", "_kind", "_mode", "_times", "_steps")}
-        return {name: value for name, value in {**super().__getstate__(), **rows}.items() if name != "_parts"}
+        made = {"_parts", "_integrates", "_recorded", "_scale", "_spent"}
+        return {name: value for name, value in {**super().__getstate__(), **rows}.items() if name not in made}
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -77,19 +86,62 @@ class RowTrajectory(Trajectory):
 
     def rows(self) -> Samples:
         """Values at the accepted steps, as they were found."""
-        return self._complete(*self._sampled(self.t, self._steps))
+        motion, said = self._sampled(self.t, self._steps)
+        return self._complete(motion, self._spent.T if self._integrates else said)
+
+    def row_motion(self) -> MotionSamples:
+        """The same without energies."""
+        return self._sampled(self.t, self._steps)[0]
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
-        return self._complete(*self._inside(t))
+        t = np.ascontiguousarray(t, dtype=float)
+        motion, said = self._sampled(t, self._row_before(t))
+        if not self._integrates:
+            return self._complete(motion, said)
+        step = np.maximum(np.searchsorted(self.t, t, side="right") - 1, 0)
+        before = self._recorded[step]
+        own = integrate_between(self._powers, t, step, said.T, self.t[step], before, self.rtol, self._scale)
+        return self._complete(motion, (self._spent[step] + own).T)
 
     def motion(self, t: Floats) -> MotionSamples:
         """Dense output without energies, for which powers are integrated anew."""
-        return self._inside(t, energies=False)[0]
-
-    def _inside(self, t: Floats, energies: bool = True) -> tuple[MotionSamples, Floats2]:
         t = np.ascontiguousarray(t, dtype=float)
-        return self._sampled(t, np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0), energies)
+        return self._sampled(t, self._row_before(t), False)[0]
+
+    def _row_before(self, t: Floats) -> Ints:
+        return np.maximum(np.searchsorted(self._times, t, side="right") - 1, 0)
+
+    # -- energies -----------------------------------------------------------------------------------------------
+    @cached_property
+    def _integrates(self) -> bool:
+        """Whether powers are integrated anew; where damped contacts open, what they store knows more than powers."""
+        return self.integrates and not damped_normals(self.problem).any()
+
+    @cached_property
+    def _recorded(self) -> Floats:
+        """Energies at the accepted steps (n_t, n_c + 2), as their stages say."""
+        return self._sampled(self.t, self._steps)[1].T
+
+    @cached_property
+    def _scale(self) -> Floats:
+        scale: Floats = np.abs(np.diff(self._recorded, axis=0)).sum(axis=0)
+        return scale
+
+    @cached_property
+    def _spent(self) -> Floats:
+        """Energies at the accepted steps (n_t, n_c + 2)."""
+        t, own = self.t, np.diff(self._recorded, axis=0)
+        steps = np.flatnonzero(np.diff(t) > 0.0)
+        start, end = t[steps], t[steps + 1]
+        own[steps] = integrate_powers(self._powers, start, end, steps, own[steps], self.rtol, self._scale)
+        return np.concatenate([self._recorded[:1], self._recorded[0] + np.cumsum(own, axis=0)])
+
+    def _powers(self, t: Floats, step: Ints) -> Floats:
+        """Powers (n_t, n_c + 2) at times within steps."""
+        power = np.zeros((len(t), self.problem.n_c + 2))
+        self._sampled(t, self._row_before(t), False, power)
+        return power
 
     def _complete(self, motion: MotionSamples, work: Floats2) -> Samples:
         damping = work[-2] - self._lost_at_start if self._lost_at_start else work[-2]
@@ -102,8 +154,10 @@ class RowTrajectory(Trajectory):
             return 0.0
         return float(self._sampled(self._times[:1], np.zeros(1, np.int64), False)[1][-2, 0])
 
-    def _sampled(self, t: Floats, index: Ints, energies: bool = True) -> tuple[MotionSamples, Floats2]:
-        """Motion within the rows ``index``, and the energies (n_c+2, n_t)."""
+    def _sampled(
+        self, t: Floats, index: Ints, energies: bool = True, power: Floats2 | None = None
+    ) -> tuple[MotionSamples, Floats2]:
+        """Motion within the rows ``index``, and energies (n_c+2, n_t); ``power`` (n_t, n_c+2), if given, is filled."""
         problem = self.problem
         n, m, nc, nz = problem.n, problem.m, problem.n_c, problem.n_z
         out = np.zeros((len(t), 1 + 2 * n + nz + 2 * m + nc + nc + 2))
@@ -111,7 +165,8 @@ class RowTrajectory(Trajectory):
         index = index.astype(np.int64)
         side = np.where(self._arriving[index] & (t <= self._times[index]), np.nextafter(t, -np.inf), self._times[index])
         with instant_workspace(problem) as workspace:
-            self._fill(workspace, index, t, side, out, modes, energies)
+            none = np.zeros((0, 0))
+            self._fill(workspace, index, t, side, out, modes, energies, none if power is None else power)
         ends = np.cumsum([1, n, n, nz, m, nc, m, nc + 2])
         _, q, v, z, F, N, g, work = np.split(np.ascontiguousarray(out.T), ends[:-1])
         return MotionSamples(t=t, q=q, v=v, z=z, F=F, g=g, N=N, mode=np.ascontiguousarray(modes.T)), work
@@ -127,8 +182,8 @@ class RowTrajectory(Trajectory):
 
     def _fill(
         self, workspace: InstantWorkspace, index: Ints, t: Floats, side: Floats, out: Floats2, modes: Codes2,
-        energies: bool,
-    ) -> None:
+        energies: bool, power: Floats2,
+    ) -> None:  # fmt: skip
         """Rows of values and modes at times within the rows ``index``.
 
         ``side``: a time on the side of a breakpoint on which each is; ``energies``: whether they are needed.
@@ -141,5 +196,5 @@ class RowTrajectory(Trajectory):
         part = np.zeros((rows if energies else 0, 2, problem.n_c + 2))
         sample_rows(
             packed, workspace.s, workspace.y, self._values, self._kind, self._mode, packed.breakpoints, index, t, side,
-            part, out, modes, sizes, pivots,
+            part, out, modes, power, sizes, pivots,
         )  # fmt: skip
