@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb.dae import _arguments as arguments
 from fricmb.dae import _layout as L
+from fricmb.dae._chattering import Chattering
 from fricmb.dae._consistent import Start, consistent
 from fricmb.dae._engine import Record, System, first_step
 from fricmb.dae._events import Events
@@ -102,7 +103,8 @@ def solve_dae(
     -----
     Backward differentiation formulas of order 1 to 5 with variable step and fixed leading coefficient, as in DASSL and
     its descendants.  A jump of an algebraic component (an input that jumps) is stepped over by solving for consistent
-    values again after it.
+    values again after it.  Where fun jumps and drives y towards the jump from both sides, no solution goes on: the run
+    ends with a message that names the component.
     """
     t0, t_end = arguments.span(t_span)
     y_start, yp_start = arguments.state(y0, yp0)
@@ -117,8 +119,9 @@ def solve_dae(
     limits = (arguments.order(max_order), arguments.step(max_step, "max_step"))
     step = None if first_step is None else arguments.first(first_step, abs(t_end - t0))
     run = _Run(system, t0, t_end, limits, step, times, Events(events, extra), dense_output)
-    run.begin(y_start, yp_start)
-    run.go()
+    with np.errstate(all="ignore"):  # what is not finite, in a trial of Newton's method as well, is looked for
+        run.begin(y_start, yp_start)
+        run.go()
     return run.result()
 
 
@@ -142,6 +145,7 @@ class _Run:
         chunk = 16 if events.all else max(16, min(4096, 1_000_000 // n))
         self.engine = arguments.engine(system, limits, t_end, chunk)
         self.record = Record(n)
+        self.chattering = Chattering(n, t0, t_end)
         self.samples: list[tuple[Floats, Floats]] = []
         self.sampled = 0
         self.end: float | None = None  # where a terminal event stopped the run
@@ -173,12 +177,17 @@ class _Run:
         while self.end is None and self.record.t[self.record.size - 1] != self.t_end:
             before = self.record.size
             code = self.engine.run(self.record)
+            chatters = self.chattering.look(self.record, before, self.system.atol, self.system.rtol)
             stop = self.events.look(self.record, before) if self.events.all else None
             if stop is not None:
                 self.record.size = stop[0] + 1
                 self.end, self.status, self.message = stop[1], 1, _STOPPED
             elif code < 0 and not self._restart(code):
                 self.status, self.message = -1, self._failure(code)
+                self._sample()
+                return
+            elif chatters:
+                self.status, self.message = -1, chatters
                 self._sample()
                 return
             self._sample()
