@@ -65,6 +65,16 @@ def find_file(kind: str, name: str) -> Path | None:
     return next((path for path in places if path.is_file()), None)
 
 
+def missing_at_install() -> str:
+    """Why a kernel that is to be compiled was not made when the package was installed."""
+    with contextlib.suppress(OSError, ValueError):
+        why = (_SHIPPED / "why_none.txt").read_text(encoding="utf-8").strip()
+        return f"none were made when fricmb was installed, because {why}" if why else "none were made at install"
+    if any(_SHIPPED.glob("kernels/*")):
+        return "those made when fricmb was installed are for another processor, Python or numba"
+    return "an editable install has none; `fricmb compile` makes all"
+
+
 def can_be_kept(folder: Path) -> bool:
     """Whether files can be kept in a folder, which is made if need be, and read from there again."""
     try:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
+from collections.abc import Callable
 from typing import Any
 
 from numba.core.caching import Cache, CompileResultCacheImpl
@@ -18,6 +19,8 @@ from fricmb.integrate.compile.content import content_digest
 from fricmb.integrate.compile.kernel_library import has_long_loops
 
 _DIGEST = 32
+#: Called with each function that the cache does not hold, before it is compiled.
+on_miss: list[Callable[[Any], None]] = []
 
 
 def _seal(payload: bytes) -> bytes:
@@ -64,6 +67,8 @@ class KernelCache(Cache):  # type: ignore[misc]
             except Exception as error:  # whatever an unsound file can bring about: the kernel is made again
                 say(f"a kept kernel cannot be used ({error!r}) and is compiled again: {name}")
                 _files.discard(name)
+        for told in on_miss:
+            told(self._py_func)
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
