@@ -119,7 +119,8 @@ def test_a_wheel_with_kernels_is_for_one_python_on_one_processor(clone, tmp_path
 
 def test_the_sdist_holds_tests_pages_and_examples(clone, tmp_path):
     archive, _ = built(start(clone, "build_sdist", tmp_path, FRICMB_COMPILE="0"), tmp_path)
-    held = {name.partition("/")[2] for name in tarfile.open(archive).getnames()}
+    with tarfile.open(archive) as file:
+        held = {name.partition("/")[2] for name in file.getnames()}
     wanted = {
         "pyproject.toml", "setup.py", "README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md", ".ci/run",
         "fricmb/__init__.py", "models/__init__.py", "fricmb/py.typed", "tests/conftest.py", "docs/conf.py",
