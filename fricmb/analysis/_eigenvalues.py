@@ -13,12 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from fricmb.analysis._crossings import Crossing, crossings
 from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_scene
 from fricmb.analysis._steady import SteadySliding, checked_speeds, steady_sliding
-from fricmb.analysis._track import Complexes, Pairs, checked_values, follow, refine
+from fricmb.analysis._track import NEUTRAL, Complexes, Pairs, checked_values, follow, refine
 from fricmb.errors import shown
 from fricmb.values import DIMENSIONS, Units
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
+
+#: Growth beside an oscillation's own frequency, and beside the highest, that is round-off.
+_NEITHER, _LAST_DIGITS = 1e-9, 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,13 +69,25 @@ class Eigenvalues:
         """Angular frequencies (n_values, n_modes)."""
         return np.abs(self.eigenvalues.imag)
 
+    def _grows(self) -> NDArray[np.bool_]:
+        """Whether a mode grows at each value (n_values,), by more than round-off of what does neither.
+
+        That of an oscillation is some digits of its own frequency and of the highest; where two eigenvalues are 0, as
+        those of a free motion, it is the root of that.
+        """
+        found = self.eigenvalues
+        size, most = np.abs(found), np.abs(found).max(initial=0.0)
+        limit = np.where(found.imag != 0.0, np.maximum(_NEITHER * size, _LAST_DIGITS * most), NEUTRAL * most)
+        grows: NDArray[np.bool_] = (found.real > limit).any(axis=1)
+        return grows
+
     def __str__(self) -> str:
         lines = [f"{self.eigenvalues.shape[1]} modes over {self.over} = {self.values[0]:g} to {self.values[-1]:g}"]
         for c in self.critical:
             side = "above" if c.unstable_above else "below"
             lines.append(f"  {c.kind} {side} {self.over} = {c.value:.12g}, angular frequency {c.frequency:.6g}")
         if not self.critical:
-            lines.append("  unstable throughout" if (self.growth.max(axis=1) > 0).all() else "  no change of stability")
+            lines.append("  unstable throughout" if self._grows().all() else "  no change of stability")
         return "\n".join(lines)
 
 

@@ -55,8 +55,9 @@ def _one(
     if rate <= 0.0 or rate * (t_end - t) < 4.0:
         return
     at = t + np.array(_TIMES) / rate
-    # the formula does not see what another contact's transition makes of forces within it
-    cuts = np.unique(np.concatenate([at, kinks[(kinks > at[0]) & (kinks < at[-1])]]))
+    # the rule does not see what another contact's transition, or a knot of the law, makes of forces within it; steps
+    # end there
+    cuts = np.unique(np.concatenate([at, *(x[(x > at[0]) & (x < at[-1])] for x in (kinks, rows.t))]))
     x, w = np.polynomial.legendre.leggauss(_NODES)
     half = 0.5 * np.diff(cuts)
     nodes = (cuts[:-1] + half)[:, None] + half[:, None] * x

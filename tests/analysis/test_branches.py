@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy
 from scipy.integrate import solve_ivp
-from scipy.optimize import fsolve
+from scipy.optimize import brentq, fsolve
 
 import fricmb as fm
 from fricmb.analysis import Flip, Fold, Grazing, NeimarkSacker, StickAppears, StickDisappears
@@ -121,6 +121,46 @@ def test_grazing_ends_a_branch():
     assert isinstance(graze, Grazing)
     assert graze.value == pytest.approx(abs(1.0 - 1.69 + 0.26j) / 1.3, rel=1e-11)
     assert "touches" in branch.ended
+
+
+def last_speed(k=1.3, d=0.12, mu_s=1.4, mu_k=1.0):
+    """The belt's speed at which slip that has broken away just gets back to it: damped vibration, by hand."""
+    w = np.sqrt(k - d * d / 4.0)
+
+    def missing(V):
+        A = (mu_s - d * V - mu_k) / k
+        B = (V + d / 2.0 * A) / w
+
+        def speed(t):
+            along, across = B * w - d / 2.0 * A, A * w + d / 2.0 * B
+            return np.exp(-d * t / 2.0) * (along * np.cos(w * t) - across * np.sin(w * t))
+
+        def rate(t):
+            place = np.exp(-d * t / 2.0) * (A * np.cos(w * t) + B * np.sin(w * t))
+            return -d * speed(t) - k * place
+
+        t = np.linspace(0.2, 2.3 * np.pi / w, 400)
+        top = np.flatnonzero((rate(t[:-1]) > 0.0) & (rate(t[1:]) <= 0.0))[0]
+        return speed(brentq(rate, t[top], t[top + 1], xtol=1e-15)) - V
+
+    return brentq(missing, 0.3, 0.5, xtol=1e-15)
+
+
+def test_branch_of_stick_slip_ends_where_slip_misses_its_stick():
+    """Its stick is as long as ever there; the slip before comes to the belt's speed without deceleration."""
+    V = 0.25
+    b, belt = fm.Body("b", mass=1.0, velocity={"x": V}), fm.Driven("belt", velocity={"x": V})
+    law = fm.laws.Coulomb(mu_s=1.4, mu_k=1.0)
+    parts = [b, belt, fm.Spring("k", b, axis="x", stiffness=1.3), fm.Damper("d", b, axis="x", damping=0.12)]
+    scene = fm.Scene("belt", [*parts, fm.Contact("c", b, belt, law=law, normal_force=1.0)])
+    cycle = fm.analysis.limit_cycle(scene, start=fm.simulate(scene, t_end=100.0, rtol=1e-10))
+    branch = fm.analysis.continue_cycle(cycle, "belt.velocity.x", to=0.7, progress=False)
+    (graze,) = branch.special
+    assert isinstance(graze, Grazing)
+    assert graze.value == pytest.approx(last_speed(), rel=1e-12)
+    assert "touches" in branch.ended
+    assert [event.kind for event in branch.cycles[-1].events] == ["stick", "slip"]
+    assert branch.cycles[-1].residual < 1e-8
 
 
 # ---- an independent program: smooth pieces of the forced belt by DOP853, turned round where the slip speed is 0

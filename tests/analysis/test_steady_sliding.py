@@ -332,3 +332,24 @@ def test_one_degree_of_freedom_does_not_flutter():
     (critical,) = fm.analysis.complex_eigenvalues(alone, over="disc.velocity.x", values=[0.05, 1.0]).critical
     assert critical.kind == "self-excitation"
     assert critical.frequency == pytest.approx(10.0, rel=1e-9)
+
+
+def test_undamped_modes_are_not_unstable_by_round_off():
+    """Friction that does not couple: all growth rates are 0 but for the last digits of the highest frequency."""
+    k = np.arange(30.0)
+    body = fm.ModalBody(
+        "b", frequencies=np.linspace(1e3, 3e4, 30), damping_ratios=0.0, axes="xz",
+        shapes={"p": np.vstack([np.cos(k), np.sin(3.0 * k)])},
+    )  # fmt: skip
+    belt, mu = fm.Driven("d", velocity={"x": 5.0}), fm.parameter("mu", 0.1)
+    pressed = fm.normal.Spring(axis="z", stiffness=1e3, preload=10.0)
+    law = fm.laws.Coulomb(mu_s=mu, mu_k=mu)
+    scene = fm.Scene("s", [body, belt, fm.Contact("k", body.point("p"), belt, law=law, normal_force=pressed, axes="x")])
+    found = complex_eigenvalues(scene, over="mu", values=np.linspace(0.0, 0.5, 4))
+    assert 0.0 < np.abs(found.growth).max() < 1e-8
+    assert "no change of stability" in str(found)
+    # slow growth beside high frequencies is growth all the same
+    slow = scene.replace("k", law=fm.laws.Stribeck(mu_s=0.3, mu_k=mu, v_s=5.0, exponent=1.0))
+    grows = complex_eigenvalues(slow, over="mu", values=[0.1, 0.11])
+    assert grows.growth.max() < 1e-3 * grows.frequency.max()
+    assert "unstable throughout" in str(grows)

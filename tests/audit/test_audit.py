@@ -181,3 +181,12 @@ def test_what_slides_evenly_in_a_guide_is_not_found_wrong(axis, weight):
     push = fm.Gravity("push", acceleration=dict(zip("xyz", weight * across / np.linalg.norm(across), strict=True)))
     found = fm.simulate(fm.Scene("guide", [body, guide, push]), t_end=1.0, rtol=1e-8).audit()
     assert found.ok
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+def test_knots_of_a_table_are_no_errors(rtol):
+    """Slip passes knots, where the integrand of its growth bends: a rule over them erred by 1e5 times the bar."""
+    law = fm.laws.Tabulated(speed=(0.0, 0.2, 1.0, 3.0), mu=(1.2, 0.9, 0.7, 0.8))
+    scene = fm.models.belt_oscillator(law=law, belt=0.1)
+    found = fm.simulate(scene, t_end=60.0, rtol=rtol).audit()
+    assert found.ok, found

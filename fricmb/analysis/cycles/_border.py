@@ -17,6 +17,8 @@ from fricmb.integrate import STICK
 
 #: First step away from a border, in units of the cycle's extent; halved until the orbit is what it should be.
 _STEP, _HALVINGS = 0.02, 6
+#: The same where the orbit on a border itself cannot be run.
+_BEFORE = 1e-4
 #: A phase shorter than this part of the period has the length 0.
 _INSTANT = 1e-6
 
@@ -50,14 +52,21 @@ def solve_border(orbit: Orbit, border: Border, over: str, p_scale: float) -> Sol
 
 
 def on_border(solved: Solved, shooting: Shooting) -> Orbit:
-    """The orbit on a border as a lap from a calm instant."""
+    """The orbit on a border as a lap from a calm instant.
+
+    One that only just gets to its stick is taken a little before the border: a run along it may miss the stick by
+    round-off.
+    """
+    if solved.border.kind == "arrival":
+        return as_lap(*_just_before(solved), shooting, solved.frozen.over)
     return as_lap(solved.frozen, solved.found.u, shooting, solved.frozen.over)
 
 
 def beyond(solved: Solved, shooting: Shooting) -> tuple[Orbit, Floats] | None:
     """A cycle on the other side, and the direction (period, parameter) in which it lies, scaled.
 
-    None where there is no other side: a slip that touches 0 under mu_s > mu_k would stick for a finite time.
+    None where there is no other side: a slip that touches 0 under mu_s > mu_k would stick for a finite time, and one
+    that gets to a stick without deceleration would miss it.
     """
     side = _other_side(solved)
     if side is None:
@@ -76,6 +85,18 @@ def beyond(solved: Solved, shooting: Shooting) -> tuple[Orbit, Floats] | None:
             return as_lap(frozen, found.u, shooting, frozen.over), direction
         step *= 0.25
     return None
+
+
+def _just_before(solved: Solved) -> tuple[Frozen, Floats]:
+    """An orbit near a border that gets to its stick with a little deceleration; the parameter differs by its square."""
+    frozen = replace(solved.frozen, start=solved.frozen.start[:1])
+    _, arrival = solved.frozen.start
+    tangent = np.linalg.svd(frozen.jacobian(solved.found.u))[2][-1]
+    for step in (_BEFORE, -_BEFORE):
+        found = newton(frozen, solved.found.u + step * tangent)
+        if found is not None and solved.border.before * frozen.missed(arrival, found.u) < 0.0:
+            return frozen, found.u
+    return solved.frozen, solved.found.u
 
 
 def as_lap(frozen: Frozen, u: Floats, shooting: Shooting, over: str) -> Orbit:
@@ -107,6 +128,8 @@ def _until_calm(frozen: Frozen, lengths: Floats) -> float:
 def _other_side(solved: Solved) -> tuple[Frozen, Floats, Callable[[Floats], float]] | None:
     """Equations of the orbits beyond a border, its orbit as their unknowns, and what is positive beyond it."""
     border, frozen, k = solved.border, solved.frozen, solved.border.contact
+    if border.kind == "arrival":
+        return None
     stop = Condition(kind="stop", contact=k)
     if border.kind == "stick":
         frozen, u = _without_instants(frozen, solved.found.u)

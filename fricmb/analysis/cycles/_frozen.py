@@ -32,8 +32,8 @@ _MOST_STEPS = 25
 class Condition:
     """What holds at an instant for one contact in one dimension.
 
-    ``kind``: "stop" (relative velocity 0), "turn" (its rate 0 in slip) or "release" (the force that keeps it stuck, in
-    the direction ``sign``, is all that it can).
+    ``kind``: "stop" (relative velocity 0), "turn" (its rate 0 in slip), "arrival" (its rate 0 in the slip that ends the
+    lap) or "release" (the force that keeps it stuck, in the direction ``sign``, is all that it can).
     """
 
     kind: str
@@ -135,13 +135,15 @@ class Frozen:
         k = condition.contact
         row, n = int(system.problem.contacts.row[k]), system.problem.n
         speed = float(np.abs(system.problem.contacts.W[:, row]) @ self.y_scale[n : 2 * n])
+        if condition.kind == "arrival":
+            phase = self.phases[-1]
         mode = phase.mode.copy()
         if condition.kind == "release":
             mode[k] = STICK
         field = Field(system=system, mode=mode, direction=phase.direction)
         if condition.kind == "stop":
             return np.asarray(field.slip(t, y)[row] / speed)
-        if condition.kind == "turn":
+        if condition.kind in ("turn", "arrival"):
             return np.asarray(field.turning(t, y)[row] * self.T_scale / speed)
         most = field.break_away(t, y, k)
         return np.asarray((condition.sign * field.rate_and_force(t, y)[1][row] - most) / most)

@@ -28,8 +28,8 @@ class Border:
     Attributes
     ----------
     kind : str
-        "stick" (a stick that gets short), "reversal" (one at which the force gets able to hold) or "touch" (a slip
-        whose speed gets small).
+        "stick" (a stick that gets short), "reversal" (one at which the force gets able to hold), "touch" (a slip
+        whose speed gets small) or "arrival" (a stick that a slip gets to without deceleration: it will not get there).
     near : float
         How far it is, as a part of the cycle's period, force or speed.
     t : float
@@ -113,7 +113,7 @@ def borders(orbit: Orbit) -> list[Border]:
     if not in_one_dimension(orbit):
         return []
     lap = Lap(orbit)
-    found = [*_short_sticks(lap), *_weak_reversals(lap), *_touches(lap)]
+    found = [*_short_sticks(lap), *_weak_reversals(lap), *_touches(lap), *_arrivals(lap)]
     return sorted((b for b in found if b.near < NEAR), key=lambda b: b.near)
 
 
@@ -133,6 +133,32 @@ def _short_sticks(lap: Lap) -> list[Border]:
             kind="stick", contact=k, near=float(lap.lengths[i] / lap.orbit.T), t=float(lap.t[j]),
             y=lap.state(float(lap.t[j])), phases=phases, lengths=lap.lengths[order], start=start, before=before,
             after=after,
+        ))  # fmt: skip
+    return found
+
+
+def _arrivals(lap: Lap) -> list[Border]:
+    """Sticks that begin with little deceleration, beside the largest change of speed in the slip before."""
+    found, count = [], len(lap.events)
+    for i, event in enumerate(lap.events):
+        k = lap.system.contact_names.index(event.contact)
+        if event.kind != "stick" or lap.mode[i - 1, k] != SLIP:
+            continue
+        order = [(i + n) % count for n in range(count)]
+        phases = tuple(lap.phase(n, last=n == order[-1]) for n in order)
+        row, at, y = lap.row(k), float(lap.t[i]), lap.state(float(lap.t[i]))
+        field = Field(system=lap.system, mode=phases[-1].mode, direction=phases[-1].direction)
+        rate = abs(float(field.turning(np.array([at]), y[:, None])[row, 0]))
+        t = lap.sol.t_start + np.mod(
+            float(lap.t[i - 1]) + lap.lengths[i - 1] * np.linspace(0.0, 1.0, _POINTS + 1) - lap.sol.t_start, lap.orbit.T
+        )
+        g = lap.sol.at(np.minimum(t, lap.sol.t_end)).record.samples.g[row]
+        fastest = float(np.abs(np.diff(g)).max()) * _POINTS / float(lap.lengths[i - 1])
+        sign = float(lap.direction[i - 1, row])
+        start = (Condition(kind="stop", contact=k), Condition(kind="arrival", contact=k))
+        found.append(Border(
+            kind="arrival", contact=k, near=rate / max(fastest, 1e-300), t=at, y=y, phases=phases,
+            lengths=lap.lengths[order], start=start, before=sign, after=sign,
         ))  # fmt: skip
     return found
 

@@ -41,7 +41,10 @@ class NeimarkSacker(Special):
 
 
 class Grazing(Special):
-    """A slip speed touches 0 where the contact would then stick for a finite time: the branch ends there."""
+    """A slip speed touches 0 where the contact then sticks for a finite time: the branch ends there.
+
+    From the one side slip becomes so slow that it would stick, from the other so fast that it misses its stick.
+    """
 
 
 class StickAppears(Special):
