@@ -13,7 +13,7 @@ from numba.core.errors import TypingError
 import fricmb
 from fricmb.integrate.compile.compilers import MachineCompiler
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.compile.kernel_library import long_loops
+from fricmb.integrate.compile.long_loops import long_loops
 from fricmb.integrate.problem import Floats
 
 compiled = njit(error_model="numpy", pipeline_class=MachineCompiler)

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from typing import cast as typed
 
 from llvmlite import binding, ir
-from numba import config, njit, types
+from numba import njit, types
 from numba.extending import intrinsic
 
 from fricmb.integrate.compile.compilers import MachineCompiler
@@ -63,8 +63,6 @@ def block(function: _Function) -> _Function:
 
     Argument types are read from the annotations (:func:`fricmb.integrate.compile.layout.argument_types`).
     """
-    if config.DISABLE_JIT:
-        return function
     name = function.__name__
     if name in _blocks and _blocks[name][0].py_func.__module__ != function.__module__:
         raise NameError(f"a block {name!r} is defined in {block_module(name)} and in {function.__module__}")
@@ -75,7 +73,7 @@ def block(function: _Function) -> _Function:
 
 def declared(function: _Function) -> _Function:
     """A block that a floor above defines: its name, arguments and result; nothing of its body is compiled."""
-    return function if config.DISABLE_JIT else _called(function.__name__, function)
+    return _called(function.__name__, function)
 
 
 def _called(name: str, function: _Function) -> _Function:

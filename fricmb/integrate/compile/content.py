@@ -8,7 +8,6 @@ that is called by name the layouts it takes, but not its inside: that is compile
 
 from __future__ import annotations
 
-import dis
 import hashlib
 import inspect
 import sys
@@ -19,30 +18,31 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.plain import is_plain, names_taken
+
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
-_COMPILER = (
-    "layout", "room", "lanes", "block", "template", "kernel", "compilers", "passes", "kernel_library", "quick_typing",
-    "short_lowering", "array_view",
-)  # fmt: skip
+_COMPILER = ("layout", "room", "lanes", "block", "template", "kernel", "compilers")
+#: Those of the quick passes, which go into the stamps of what is compiled by them.
+_QUICK = ("passes", "kernel_library", "quick_typing", "short_lowering", "array_view")
 
 
-@lru_cache(maxsize=1)
-def _toolchain() -> str:
+@lru_cache(maxsize=2)
+def _toolchain(plain: bool) -> str:
     import llvmlite
     import numba
 
     digest = hashlib.sha256()
-    for name in _COMPILER:
+    for name in (*_COMPILER, *(() if plain else (f"fast/{name}" for name in _QUICK))):
         digest.update((Path(__file__).parent / f"{name}.py").read_bytes())
     versions = f"{sys.implementation.cache_tag} numba {numba.__version__} llvmlite {llvmlite.__version__}"
-    return f"{versions} {digest.hexdigest()}"
+    return f"{versions} {'plain' if plain else 'quick'} {digest.hexdigest()}"
 
 
 def content_digest(function: Any, options: str, signature: Any, machine: Any) -> str:
     """Digest of a kernel for one signature on one processor; equal exactly where the machine code may be shared."""
     reader = _Reader()
     reader.read(function)
-    text = "\n".join([_toolchain(), options, describe_signature(signature), repr(machine), *reader.lines])
+    text = "\n".join([_toolchain(is_plain()), options, describe_signature(signature), repr(machine), *reader.lines])
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
@@ -67,10 +67,6 @@ def describe_signature(signature: Any) -> str:
     if isinstance(signature, tuple):
         return f"({', '.join(map(describe, signature))})"
     return f"({', '.join(map(describe, signature.args))}) -> {describe(signature.return_type)}"
-
-
-#: Instructions: one that takes a name from the module, and one that holds the upper bits of the next one's argument.
-_GLOBAL, _EXTENDED = dis.opmap["LOAD_GLOBAL"], dis.opmap["EXTENDED_ARG"]
 
 
 class _Reader:
@@ -160,7 +156,7 @@ class _Reader:
                 continue
             is_code = isinstance(constant, CodeType)
             constants.append(self._code(constant, around) if is_code else self._value(constant))
-        names, taken = [], _globals_of(code)
+        names, taken = [], names_taken(code)
         for name in code.co_names:
             if name in around and name in taken:
                 names.append(f"{name} = {self._global(around[name], code.co_names)}")
@@ -174,20 +170,6 @@ class _Reader:
             taken = [f"{name} = {self._value(getattr(thing, name))}" for name in names if hasattr(thing, name)]
             return f"module {thing.__name__} {taken}"
         return self._value(thing)
-
-
-def _globals_of(code: CodeType) -> set[str]:
-    """Names that a code takes from its module; an attribute may have the name of something there and be another.
-
-    Read from the bytes, two an instruction: :mod:`dis` describes every instruction, at ten times the cost.
-    """
-    names, high = set(), 0
-    for operation, low in zip(code.co_code[::2], code.co_code[1::2], strict=True):
-        argument = high << 8 | low
-        high = argument if operation == _EXTENDED else 0
-        if operation == _GLOBAL:
-            names.add(code.co_names[argument >> 1])  # its lowest bit says whether a call follows
-    return names
 
 
 def _own(module: str) -> bool:

@@ -16,7 +16,8 @@ from numba.core.runtime import rtsys
 
 from fricmb.integrate.compile.cache_files import CacheFiles, remove, say
 from fricmb.integrate.compile.content import content_digest
-from fricmb.integrate.compile.kernel_library import has_long_loops
+from fricmb.integrate.compile.long_loops import has_long_loops
+from fricmb.integrate.compile.plain import settle
 
 _DIGEST = 32
 #: Called with each function that the cache does not hold, before it is compiled.
@@ -57,6 +58,11 @@ class KernelCache(Cache):  # type: ignore[misc]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The kernel for one signature, or None where there is no sound file of it."""
+        found = self._find(sig, target_context)
+        # before anything is compiled it is seen by which passes: what these have made is kept apart
+        return self._find(sig, target_context) if found is None and settle() else found
+
+    def _find(self, sig: Any, target_context: Any) -> Any:
         # machine code needs numba's run time alone; what compiling needs beside it is loaded when something is compiled
         rtsys.initialize(target_context)
         name = self._file(sig, target_context.codegen())

@@ -5,6 +5,7 @@ what is read.  Of short loops over arrays of a room it knows neither.  A kernel 
 
     x = lanes(a, at)             the numbers a[at], ..., a[at+7] of an array of one axis
     y = x * x + 2.0 * x          sums, differences, products, quotients, with numbers too
+    rounded(x, y) + z * x        of two products in a sum one is rounded before, the other is not
     roots(x)                     square roots
     total(x)                     the sum of all eight
     set_lanes(b, at, y)
@@ -100,6 +101,20 @@ def roots(typingctx: Any, values: Any) -> Any:
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), args)
 
     return lanes_type(lanes_type), codegen
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def rounded(typingctx: Any, one: Any, other: Any) -> Any:
+    """A product that is rounded before it goes into a sum.
+
+    Sums take up products unrounded (:func:`_define`).  Of two products in one sum they can take up one, and LLVM
+    chooses it by what else stands around: the other is marked, so that results depend on nothing but what is written.
+    """
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fmul(*(_spread(builder, kind, value) for kind, value in zip(signature.args, args, strict=True)))
+
+    return lanes_type(one, other), codegen
 
 
 @intrinsic  # type: ignore[untyped-decorator]

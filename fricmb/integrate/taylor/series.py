@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.kernel_library import long_loops
+from fricmb.integrate.compile.long_loops import long_loops
 from fricmb.integrate.problem import SLIP, Floats
 from fricmb.integrate.taylor.curve_check import curve_part
 from fricmb.integrate.taylor.friction_curve import friction_row, slip_law

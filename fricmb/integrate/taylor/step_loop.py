@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel, run_entry
-from fricmb.integrate.compile.kernel_library import long_loops
+from fricmb.integrate.compile.long_loops import long_loops
 from fricmb.integrate.problem import STICK
 from fricmb.integrate.run.outcomes import SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks

@@ -6,7 +6,7 @@ import math
 
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.lanes import LANES, lanes, roots, set_lanes
+from fricmb.integrate.compile.lanes import LANES, lanes, roots, rounded, set_lanes
 from fricmb.integrate.problem import Floats2
 
 
@@ -36,15 +36,15 @@ def turning(run: Run, slot: int) -> None:
     for at in range(0, run.free.shape[1], LANES):
         x, y = lanes(run.direction[0], at), lanes(run.direction[1], at)
         gx, gy = lanes(run.relative[0], at), lanes(run.relative[1], at)
-        set_lanes(J[s], at, x * gy - y * gx)
-        r = x * gx + y * gy
+        set_lanes(J[s], at, x * gy - rounded(y, gx))
+        r = x * gx + rounded(y, gy)
         for l in range(s):
             ux, uy = -muN * run.direction[1, l], muN * run.direction[0, l]
             across, along = uy * lanes(answers[3, l], at), ux * lanes(answers[0, l], at)
             if coupled:
-                across = across + ux * lanes(answers[2, l], at)
-                along = along + uy * lanes(answers[1, l], at)
-            set_lanes(J[l], at, r * lanes(run.unit[l], at) + x * across - y * along)
+                across = across + rounded(ux, lanes(answers[2, l], at))
+                along = along + rounded(uy, lanes(answers[1, l], at))
+            set_lanes(J[l], at, rounded(r, lanes(run.unit[l], at)) + x * across - y * along)
 
 
 @kernel

@@ -6,27 +6,13 @@ optimised and stepped over before it ends.  Where eight numbers at once pay, ker
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 from llvmlite import binding
 from numba.core.codegen import JITCodeLibrary
 
 #: Levels of optimisation, of 3: of each function by itself, of all that is called from a block, with it.
 ALONE, WHOLE = 1, 3
-
-_Function = TypeVar("_Function", bound=Callable[..., Any])
-
-
-def long_loops(function: _Function) -> _Function:
-    """Mark, below ``@entry`` or ``@block``, what walks along all masses of large scenes: its loops are vectorised."""
-    function.long_loops = True  # type: ignore[attr-defined]
-    return function
-
-
-def has_long_loops(function: Any) -> bool:
-    """Whether a function is marked as one with long loops."""
-    return hasattr(function, "long_loops")
 
 
 class MachineLibrary(JITCodeLibrary):  # type: ignore[misc]

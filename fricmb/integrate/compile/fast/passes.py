@@ -11,9 +11,10 @@ from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites, NopythonTypeInference
 from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, MakeFunctionToJitFunction, WithLifting
 
-from fricmb.integrate.compile.kernel_library import LinkedLibrary, MachineLibrary, has_long_loops
-from fricmb.integrate.compile.quick_typing import TypeInference
-from fricmb.integrate.compile.short_lowering import ShortLower
+from fricmb.integrate.compile.fast.kernel_library import LinkedLibrary, MachineLibrary
+from fricmb.integrate.compile.fast.quick_typing import TypeInference
+from fricmb.integrate.compile.fast.short_lowering import ShortLower
+from fricmb.integrate.compile.long_loops import has_long_loops
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)

@@ -16,7 +16,7 @@ from numba.core import cgutils
 from numba.core import ir as numba_ir
 from numba.core.lowering import Lower
 
-from fricmb.integrate.compile.array_view import WORD, View, is_plain, view_of_array, view_of_field
+from fricmb.integrate.compile.fast.array_view import WORD, View, is_plain, view_of_array, view_of_field
 from fricmb.integrate.compile.layout import RoomType
 
 
