@@ -18,12 +18,12 @@ from fricmb.integrate.problem import Floats, Floats2
 _WANTED = 48.5
 
 
-class _Machine(CompilerBase):
+class _Machine(CompilerBase):  # type: ignore[misc]
     def define_pipelines(self) -> list[Any]:
         return lowered_by(LowerShort, self.state)
 
 
-class _Linked(CompilerBase):
+class _Linked(CompilerBase):  # type: ignore[misc]
     def define_pipelines(self) -> list[Any]:
         return lowered_by(LowerForLinking, self.state)
 
@@ -43,11 +43,12 @@ def _inner(row: Floats, k: int) -> float:
     return total
 
 
-def _outer_of(inner: Any) -> Callable[[_Box], float]:
+def _outer_of(inner: Callable[[Floats, int], float]) -> Callable[[_Box], float]:
     def outer(box: _Box) -> float:
         whole = box.x  # of one assignment: used by its items, and as a whole
         row = whole  # of two: an array that has to be built
-        total = whole[1] + inner(whole, 0)
+        total = 0.0
+        total += inner(whole, 0) + whole[1]
         for i in range(box.A.shape[0]):
             box.A[i, 0] = box.h * i
             if i > 0:
