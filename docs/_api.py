@@ -25,7 +25,9 @@ BASES = {
     "Joint": ["local_coordinates", "define_constraint", "define_slip", "define_load"],
     "NormalLaw": ["define_normal", "define_stored", "validate"],
     "FrictionLaw": LAW + WRITTEN,
-    "Scene": ["with_parameters", "replace", "with_units", "equations", "plan", "draw", "dof_names", "parameters"],
+    "Scene": [
+        "with_parameters", "replace", "with_units", "equations", "plan", "graph", "draw", "dof_names", "parameters",
+    ],
 }
 
 

@@ -53,7 +53,8 @@ def _swing(joint: str, t_end: float = 2.0, before: str = _PENDULUM) -> str:
 
 
 EXAMPLES = {
-    "Scene": _BELT + 'print(scene.parameters)\nprint(scene.with_parameters({"spring.stiffness": 2.0}).plan())\n',
+    "Scene": _BELT + 'print(scene.parameters)\nprint(scene.with_parameters({"spring.stiffness": 2.0}).plan())\n'
+             'for a, b, name in scene.graph().edges(keys=True):\n    print(f"{name}: {a} and {b}")\n',
     "Body": 'puck = fm.Body("puck", mass=0.2, axes="xy", velocity={"x": 1.5, "y": 0.5})\n'
             "floor = fm.Contact(\"floor\", puck, law=fm.laws.Coulomb(mu_s=0.2), normal_force=0.2 * 9.81)\n"
             'sol = fm.simulate(fm.Scene("puck", [puck, floor]), t_end=1.0)\n'

@@ -18,6 +18,7 @@ from fricmb.scene._contact import Contact
 from fricmb.scene._element import Element
 from fricmb.scene._family_of import family_of
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._graph import scene_graph
 from fricmb.scene._joint import Joint
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
@@ -29,6 +30,7 @@ from fricmb.values import DIMENSIONS, Units, has_entries, value_of
 from fricmb.values._pause import no_collection
 
 if TYPE_CHECKING:
+    import networkx
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -400,6 +402,32 @@ class Scene:
         Rigid bodies stand as they do at the start, to scale; of other scenes the drawing shows what hangs on what, from
         above where a contact has two tangential directions.  ``ax``: axes to draw into.
         """
+    def graph(self) -> networkx.MultiGraph:
+        """The scene as a graph of networkx: bodies and the ground are nodes, what acts between them edges.
+
+        Nodes are named by their bodies, the ground is "ground"; ``kind`` is "body", "driven" or "ground".  Edges have
+        the name of their part as key; ``kind`` is "element", "contact" or "joint".  ``part`` is the declaration of
+        each.  What acts on one body alone (a force) is tied to the ground; what acts on several (a matrix), and to
+        those whose motion its expressions read (``reads`` is True there), from the first to each of the others.
+
+        Returns
+        -------
+        networkx.MultiGraph
+            A new one at each call, free to be changed.
+
+        Examples
+        --------
+        >>> import fricmb as fm
+        >>> graph = fm.models.brake4dof().graph()
+        >>> sorted(graph)
+        ['ground', 'pad', 'rotor']
+        >>> sorted(graph["pad"]["rotor"])
+        ['lining']
+        >>> graph.edges["pad", "rotor", "lining"]["kind"]
+        'contact'
+        """
+        return scene_graph(self)
+
     @facade
     def plan(self) -> Plan:
         """What will be built and what is left out, with counts; printable."""

@@ -7,14 +7,14 @@ one another within a group only, as long as a joint sees no more than the relati
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
+from fricmb.scene._graph import ground_of
 from fricmb.scene._joint import Joint
 from fricmb.scene._scene import Scene
-
-GROUND = "ground"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,114 +64,73 @@ class Topology:
     groups: tuple[tuple[str, ...], ...] = ()
 
 
-@dataclass(frozen=True)
-class _Edge:
-    a: str
-    b: str
-    joint: Joint
-
-
 def topology(scene: Scene, names: Iterable[str] | None = None) -> Topology:
     """Tree and loops of the joints in a scene (of those with the given names)."""
     held = None if names is None else set(names)
-    joints = [joint for joint in scene.joints if joint.constrains and (held is None or joint.name in held)]
+    joints = {j.name: j for j in scene.joints if j.constrains and (held is None or j.name in held)}
     if not joints:
         return Topology()
-    moving = {body.name for body in scene.bodies if body.dof_names}
-    edges = [_Edge(*_ends(joint, moving), joint) for joint in joints]
-    bodies = [body.name for body in scene.bodies if body.dof_names]
-    order, parent = _span(bodies, edges)
-    tree = tuple(_branch(name, parent[name]) for name in order)
-    used = {edge.joint.name for edge in parent.values() if edge is not None}
-    loops = tuple(
-        Loop(joint=edge.joint.name, along=tuple(e.joint.name for e in _way(edge.a, edge.b, parent)))
-        for edge in edges
-        if edge.joint.name not in used
-    )
-    return Topology(tree=tree, loops=loops, groups=_groups(bodies, edges))
+    # imported here: it takes a tenth of a second, and scenes without joints do not need it
+    import networkx as nx
+
+    moving = [body.name for body in scene.bodies if body.dof_names]
+    ground = ground_of(scene)
+    ends = {name: _ends(joint, {*moving}, ground) for name, joint in joints.items()}
+    graph = nx.MultiGraph()
+    graph.add_nodes_from([ground, *moving])
+    graph.add_edges_from((a, b, name) for name, (a, b) in ends.items())
+    tree = nx.Graph()
+    branches = []
+    for root in graph:
+        if root in tree:
+            continue
+        tree.add_node(root)
+        if root != ground:
+            branches.append(Branch(body=root))
+        for on, body in nx.bfs_edges(graph, root):
+            name = next(iter(graph[on][body]))
+            tree.add_edge(on, body, joint=name)
+            own = tuple(f"{name}.{label}" for label in joints[name].observed())
+            branches.append(Branch(body=body, on=on, joint=name, coordinates=own))
+    used = {branch.joint for branch in branches}
+    loops = tuple(Loop(joint=name, along=_way(tree, *ends[name])) for name in joints if name not in used)
+    return Topology(tree=tuple(branches), loops=loops, groups=_groups(joints, ends, ground))
 
 
-def _ends(joint: Joint, moving: set[str]) -> tuple[str, str]:
-    a, b = (end.owner.name if end.owner.name in moving else GROUND for end in (joint.a, joint.b))
+def _ends(joint: Joint, moving: set[str], ground: str) -> tuple[str, str]:
+    a, b = (end.owner.name if end.owner.name in moving else ground for end in (joint.a, joint.b))
     return a, b
 
 
-def _span(bodies: Sequence[str], edges: Sequence[_Edge]) -> tuple[list[str], dict[str, _Edge | None]]:
-    """Bodies in the order of a breadth-first search, and the edge that each was reached by."""
-    at: dict[str, list[_Edge]] = {GROUND: [], **{name: [] for name in bodies}}
-    for edge in edges:
-        at[edge.a].append(edge)
-        at[edge.b].append(edge)
-    parent: dict[str, _Edge | None] = {}
-    order: list[str] = []
-    for root in (GROUND, *bodies):
-        if root in parent:
-            continue
-        if root != GROUND:
-            parent[root] = None
-            order.append(root)
-        queue = deque([root])
-        while queue:
-            here = queue.popleft()
-            for edge in at[here]:
-                there = edge.b if edge.a == here else edge.a
-                if there != GROUND and there not in parent and there != here:
-                    parent[there] = edge
-                    order.append(there)
-                    queue.append(there)
-    return order, parent
+def _way(tree: Any, a: str, b: str) -> tuple[str, ...]:
+    """Joints of the tree between two bodies."""
+    import networkx as nx
+
+    way = nx.shortest_path(tree, a, b)
+    return tuple(tree[here][there]["joint"] for here, there in pairwise(way))
 
 
-def _branch(name: str, edge: _Edge | None) -> Branch:
-    if edge is None:
-        return Branch(body=name)
-    own = tuple(f"{edge.joint.name}.{label}" for label in edge.joint.observed())
-    return Branch(body=name, on=edge.b if edge.a == name else edge.a, joint=edge.joint.name, coordinates=own)
+def _groups(
+    joints: Mapping[str, Joint], ends: Mapping[str, tuple[str, str]], ground: str
+) -> tuple[tuple[str, ...], ...]:
+    """Joints of loops that share a joint; a joint that sees more than relative motion counts as tied to the ground.
 
+    With each joint as two nodes on a way from body to body, joints of one group are those of one biconnected
+    component, on which every two lie on a loop.
+    """
+    import networkx as nx
 
-def _way(a: str, b: str, parent: dict[str, _Edge | None]) -> list[_Edge]:
-    """Edges of the tree between two bodies."""
-
-    def up(name: str) -> list[tuple[str, _Edge]]:
-        found = []
-        while name != GROUND and (edge := parent[name]) is not None:
-            found.append((name, edge))
-            name = edge.b if edge.a == name else edge.a
-        return found
-
-    left, right = up(a), up(b)
-    while left and right and left[-1][0] == right[-1][0]:
-        left.pop()
-        right.pop()
-    return [edge for _, edge in (*left, *reversed(right))]
-
-
-def _groups(bodies: Sequence[str], edges: Sequence[_Edge]) -> tuple[tuple[str, ...], ...]:
-    """Joints of loops that share a joint; a joint that sees more than relative motion counts as tied to the ground."""
-    seen: list[_Edge] = []
-    for edge in edges:
-        seen.append(edge)
-        if not edge.joint.relative and GROUND not in (edge.a, edge.b):
-            seen.append(_Edge(edge.a, GROUND, edge.joint))
-    _, parent = _span(bodies, seen)
-    lead = {edge.joint.name: edge.joint.name for edge in edges}
-
-    def first(name: str) -> str:
-        while lead[name] != name:
-            lead[name] = lead[lead[name]]
-            name = lead[name]
-        return name
-
-    on_loop: set[str] = set()
-    in_tree = {id(edge) for edge in parent.values() if edge is not None}
-    for edge in seen:
-        if id(edge) in in_tree:
-            continue
-        for other in (edge, *_way(edge.a, edge.b, parent)):
-            on_loop.add(other.joint.name)
-            lead[first(other.joint.name)] = first(edge.joint.name)
-    found: dict[str, list[str]] = {}
-    for edge in edges:
-        if edge.joint.name in on_loop:
-            found.setdefault(first(edge.joint.name), []).append(edge.joint.name)
+    graph = nx.Graph()
+    for name, (a, b) in ends.items():
+        nx.add_path(graph, [("body", a), (name, 0), (name, 1), ("body", b)])
+        if not joints[name].relative and ground not in (a, b):
+            graph.add_edge((name, 0), ("body", ground))
+    group: dict[str, int] = {}
+    for number, part in enumerate(nx.biconnected_components(graph)):
+        if len(part) > 2:
+            group |= {name: number for name, place in part if place == 0}
+    found: dict[int, list[str]] = {}
+    for name in joints:
+        if name in group:
+            found.setdefault(group[name], []).append(name)
     return tuple(tuple(names) for names in found.values())
