@@ -396,6 +396,20 @@ print(fm.analysis.lyapunov(scene, t_end=100.0, intervals=50, progress=False))  #
 found = fm.analysis.poincare_section(sol, ("mass.x.velocity", 0.0), discard=0.3)
 print(found.t, found["mass.x"])
 """,
+    "analysis.frequency_response": """
+import sympy
+
+omega, mass = fm.parameter("omega", 1.0), fm.Body("mass", mass=1.0)
+load = fm.Force("load", mass, axis="x", value=0.5 * sympy.cos(omega * fm.t))
+spring, damper = fm.Spring("spring", mass, axis="x", stiffness=1.0), fm.Damper("damper", mass, axis="x", damping=0.1)
+sole = fm.Contact("sole", mass, law=fm.laws.Coulomb(mu_s=0.2), normal_force=1.0)
+scene = fm.Scene("driven", [mass, spring, damper, load, sole])
+found = fm.analysis.frequency_response(
+    scene, over="omega", values=[0.4, 0.6, 0.8, 1.0, 1.2, 1.5], measure="mass.x", progress=False
+)
+print(found)
+figure = found.plot.amplitude()
+""",
     "analysis.bifurcation_diagram": """
 import numpy as np
 
@@ -430,6 +444,7 @@ SHARED = {
     "analysis.Grazing": "analysis.continue_cycle", "analysis.NeimarkSacker": "analysis.Flip",
     "analysis.Lyapunov": "analysis.lyapunov", "analysis.Poincare": "analysis.poincare_section",
     "analysis.BifurcationDiagram": "analysis.bifurcation_diagram", "Fit": "fit", "plot.FitPlots": "fit",
+    "analysis.FrequencyResponse": "analysis.frequency_response", "plot.ResponsePlots": "analysis.frequency_response",
     "plot.BranchPlots": "analysis.continue_cycle", "plot.DiagramPlots": "analysis.bifurcation_diagram",
     "Parameter": "parameter", "coordinate": "Force", "speed": "Force", "PointDamper": "PointSpring",
     "normal.Spring": "normal.NormalLaw", "normal.Constant": "Contact", "ground_point": "Rod", "Gravity": "RigidBody",

@@ -20,6 +20,7 @@ TARGETS = {
     "fricmb._fit._result:Fit.plot": "fricmb.plot._fits:FitPlots",
     "fricmb._sweep._results:SweepResults.plot": "fricmb.plot._sweep:draw_results",
     "fricmb.analysis._poincare:BifurcationDiagram.plot": "fricmb.plot._branches:DiagramPlots",
+    "fricmb.analysis._response:FrequencyResponse.plot": "fricmb.plot._response:ResponsePlots",
     "fricmb.analysis.cycles._branch:Branch.plot": "fricmb.plot._branches:BranchPlots",
     "fricmb.laws._base:FrictionLaw._repr_html_": "fricmb.plot._html:law_html",
     "fricmb.laws._regimes:Regimes.creep": "fricmb.analysis._creep:creep",

@@ -35,6 +35,8 @@ class SweepResults(list[Any]):
     results : iterable
     values : iterable of dict
         The values of each run by the names of parameters.
+    units : dict of str to str
+        Units of parameters, for labels.
 
     Examples
     --------
@@ -50,12 +52,15 @@ class SweepResults(list[Any]):
     [2.0, 3.0]
     """
 
-    def __init__(self, results: Iterable[Any], *, values: Iterable[Mapping[str, Any]]) -> None:
+    def __init__(
+        self, results: Iterable[Any], *, values: Iterable[Mapping[str, Any]], units: Mapping[str, str] | None = None
+    ) -> None:
         super().__init__(results)
         self.values = tuple(values)
+        self.units = dict(units or {})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _made, (list(self), self.values)
+        return _made, (list(self), self.values, self.units)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -181,7 +186,7 @@ class SweepResults(list[Any]):
         what : callable or str, optional
             As :meth:`measure`.
         over : str or pair of str, optional
-            Parameters along the axes; default: all that the sweep has.
+            Parameters along the axes; default: those that change from run to run.
         label : str, optional
             Of the measure; default: its name.
         ax : matplotlib Axes, optional
@@ -204,8 +209,10 @@ class SweepResults(list[Any]):
         return names[0]
 
 
-def _made(results: list[Any], values: tuple[Mapping[str, Any], ...]) -> SweepResults:
-    return SweepResults(results, values=values)
+def _made(
+    results: list[Any], values: tuple[Mapping[str, Any], ...], units: Mapping[str, str] | None = None
+) -> SweepResults:
+    return SweepResults(results, values=values, units=units)
 
 
 def _is_missing(result: Any) -> bool:

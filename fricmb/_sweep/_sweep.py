@@ -18,6 +18,7 @@ from fricmb._version import installed_version
 from fricmb.errors import IntegrationError, SceneError, unknown_name
 from fricmb.integrate.compile.cache_files import say
 from fricmb.integrate.run.ending_signals import as_interrupts
+from fricmb.scene import parameter_unit
 from fricmb.solution import Solution, owner_of
 
 
@@ -92,7 +93,8 @@ def sweep(
         raise SceneError(f"run_limit: got {run_limit!r}; expected a number of seconds > 0, or None")
     job = Job(scene=scene, reduce=chosen, options={"t_end": t_end, **options})
     kept = None if store is None else Store(store, (installed_version(), scene, chosen, job.options))
-    results = SweepResults([None] * len(values), values=own)
+    units = {name: parameter_unit(scene, name) for run in own for name in run}
+    results = SweepResults([None] * len(values), values=own, units=units)
     try:
         with as_interrupts():
             _run(job, values, results, kept, progress, workers, run_limit)

@@ -10,6 +10,7 @@ from fricmb.analysis._paths import Path, compiled_force, cycle, path, pull, sett
 from fricmb.analysis._peaks import Peaks, spectral_peaks
 from fricmb.analysis._poincare import BifurcationDiagram, Poincare, bifurcation_diagram, poincare_section
 from fricmb.analysis._regimes import Regime, compare_regimes
+from fricmb.analysis._response import FrequencyResponse, frequency_response
 from fricmb.analysis._sampling import Samples, uniform
 from fricmb.analysis._spectrum import maximum_entropy_spectrum
 from fricmb.analysis._steady import SteadySliding, steady_sliding
@@ -41,6 +42,7 @@ __all__ = [
     "EnergyLedger",
     "Flip",
     "Fold",
+    "FrequencyResponse",
     "Grazing",
     "Lyapunov",
     "ModalEnergy",
@@ -65,6 +67,7 @@ __all__ = [
     "continue_cycle",
     "cycle",
     "energy_ledger",
+    "frequency_response",
     "limit_cycle",
     "lyapunov",
     "maximum_entropy_spectrum",

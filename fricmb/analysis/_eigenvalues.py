@@ -15,6 +15,7 @@ from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked
 from fricmb.analysis._steady import SteadySliding, checked_speeds, steady_sliding
 from fricmb.analysis._track import NEUTRAL, Complexes, Pairs, checked_values, follow, refine
 from fricmb.errors import shown
+from fricmb.scene import parameter_unit
 from fricmb.values import DIMENSIONS, Units
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ class Eigenvalues:
         The same modes there.
     units : Units
         Of the scene.
+    over_unit : str
+        Unit of the parameter, "" where it has none or it is not known.
     """
 
     over: str
@@ -58,6 +61,7 @@ class Eigenvalues:
     fine_values: Floats
     fine_eigenvalues: Complexes
     units: Units = DIMENSIONS
+    over_unit: str = ""
 
     @property
     def growth(self) -> Floats:
@@ -165,6 +169,7 @@ def complex_eigenvalues(
         fine_values=fine,
         fine_eigenvalues=between[:, kept],
         units=scene.units,
+        over_unit=parameter_unit(scene, over),
     )
 
 
@@ -189,6 +194,8 @@ class StabilityMap:
         Number of growing modes, an oscillation counting once.
     units : Units
         Of the scene.
+    over_units : (str, str)
+        Units of the parameters, "" where they have none or it is not known.
     """
 
     over: tuple[str, str]
@@ -197,6 +204,7 @@ class StabilityMap:
     frequency: Floats
     unstable: NDArray[np.int64]
     units: Units = DIMENSIONS
+    over_units: tuple[str, str] = ("", "")
 
 
 def stability_map(
@@ -253,6 +261,7 @@ def stability_map(
         frequency=frequency,
         unstable=unstable,
         units=scene.units,
+        over_units=(parameter_unit(scene, over[0]), parameter_unit(scene, over[1])),
     )
 
 

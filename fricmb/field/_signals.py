@@ -25,10 +25,10 @@ def from_scene(sol: Solution, quantity: str, owner: str) -> Floats:
     Parameters
     ----------
     sol : Solution
-    quantity : {"acceleration", "force"}
+    quantity : {"acceleration", "force", "elongation"}
     owner : str
-        For "force" an element; its components (k, n_t) in the order of :func:`element_axes`.  For "acceleration" ""
-        for all degrees of freedom (n, n_t), or a driven motion (n_t,).
+        An element, whose components are (k, n_t) in the order of :func:`element_axes`.  For "acceleration" "" for all
+        degrees of freedom (n, n_t), or a driven motion (n_t,).
 
     Raises
     ------
@@ -70,9 +70,12 @@ def _of_piece(sol: Any, piece: Any, samples: Any, quantity: str, owner: str) -> 
         return _accelerations(sol, piece, samples) if not owner else _driven(sol, piece, samples, owner)
     frame = frame_of(sol.names, piece)
     part: Any = frame.scene[owner]
-    acts = Pushes(part) if isinstance(part, Force) else Acts(part)
-    forces = acts.forces(_moment(frame, samples, sol.names))
-    return np.array([np.broadcast_to(np.asarray(f, dtype=float), samples.t.shape) for f in forces])
+    moment = _moment(frame, samples, sol.names)
+    if quantity == "elongation":
+        found = [moment.form(form)[0] for form in part.local_coordinates()]
+    else:
+        found = (Pushes(part) if isinstance(part, Force) else Acts(part)).forces(moment)
+    return np.array([np.broadcast_to(np.asarray(x, dtype=float), samples.t.shape) for x in found])
 
 
 def _moment(frame: Any, samples: Any, names: Any) -> Moment:

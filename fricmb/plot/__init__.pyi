@@ -4,6 +4,7 @@ from ._figure import show as show
 from ._fits import FitPlots as FitPlots
 from ._law import law as law
 from ._law import law_figure as law_figure
+from ._response import ResponsePlots as ResponsePlots
 from ._solution import SolutionPlots as SolutionPlots
 from ._stability import eigenvalues as eigenvalues
 from ._stability import stability as stability
@@ -28,6 +29,7 @@ __all__ = [
     "BranchPlots",
     "DiagramPlots",
     "FitPlots",
+    "ResponsePlots",
     "SolutionPlots",
     "Units",
     "eigenvalues",

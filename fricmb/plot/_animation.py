@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: How far apart running strokes are.
 STROKES = 0.5
+#: Of more contacts than this the first and the last are named.
+NAMED = 6
 
 
 class Drawing:
@@ -40,7 +42,9 @@ class Drawing:
         self.font = float(np.clip(0.36 * self.points * sketch.letters, 4.0, 8.0))
         self.floor()
         self.marks = [self._mark(mark) for mark in sketch.marks]
-        self.links = [self._line(1.1, zorder=3) for _ in sketch.links]
+        self.links = [
+            self._line(1.1, zorder=3, color=self.paint.quiet if link.idle else self.paint.ink) for link in sketch.links
+        ]
         self.shapes = [self._shape(shape) for shape in sketch.shapes]
         self.touches = [self._touch(touch) for touch in sketch.touches]
         self.clock = ax.set_title("", loc="left", fontsize=9)
@@ -186,7 +190,7 @@ def mark_lines(sketch: Sketch, mark: Mark, i: int) -> list[Floats]:
         foot = at + unit * np.array([[-0.8, -1.1], [0.0, 0.0], [0.8, -1.1], [-0.8, -1.1]])
         return [foot, *(at + unit * np.array([[x, -1.1], [x - 0.3, -1.5]]) for x in (-0.6, 0.0, 0.6))]
     if mark.kind == "wall":
-        strokes = (unit * np.array([x * n, (x - 0.15) * n + 0.2 * e]) for x in (-0.2, 0.05, 0.3))
+        strokes = (unit * np.array([x * n, (x - 0.15) * n + 0.2 * e]) for x in (-0.2, -0.06, 0.08, 0.21, 0.35))
         return [np.array([at - 0.35 * unit * n, at + 0.35 * unit * n]), *(at + stroke for stroke in strokes)]
     if mark.kind == "line":
         return [np.array([at - mark.size * e, at + mark.size * e])]
@@ -246,7 +250,7 @@ def canvas(sketch: Sketch, ax: Axes | None = None) -> tuple[Figure, Axes]:
         assert isinstance(figure, Figure)
         return figure, ax
     left, right, bottom, top = sketch.view
-    width = min(9.0, max(5.0, 0.9 * (right - left) / sketch.unit))
+    width = min(12.0, max(5.0, 0.9 * (right - left) / sketch.unit))
     height = min(8.0, max(2.2, width * (top - bottom) / (right - left) + 0.9))
     figure = new_picture(width, height)
     name_figure(figure, sketch.title)
@@ -264,13 +268,18 @@ def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
     figure, panel = canvas(sketch, ax)
     drawing = Drawing(sketch, panel)
     taken: dict[Any, int] = {}
-    for touch in sketch.touches:
+    for touch in _named(sketch.touches):
         at = tuple(sketch.where(touch.at, 0).tolist())
         k = taken[at] = taken.get(at, -1) + 1  # names at one place stand below one another
         away = drawing.points * sketch.unit * (0.3 if touch.turns else 0.16) + 2.0
         shift = (away, -away - (k + 0.4) * drawing.font)
         panel.annotate(touch.name, at, xytext=shift, textcoords="offset points", fontsize=drawing.font - 1, zorder=11)
     return figure
+
+
+def _named(touches: Sequence[Touch]) -> list[Touch]:
+    """Contacts whose names are written: of many the first and the last."""
+    return list(touches) if len(touches) <= NAMED else [touches[0], touches[-1]]
 
 
 def legend(ax: Axes, colours: Paint, touches: Sequence[Any], *, arrows: bool, cones: bool = False) -> None:

@@ -62,7 +62,7 @@ _OPTIONS: dict[str, tuple[Callable[[Any], bool], str]] = {
         ("highest", "magnify", "seconds", "speed", "fps", "normal_force"), (_is_positive, "a finite number > 0")
     ),
     "frames": (_is_count, "an integer of at least 1"),
-    **dict.fromkeys(("hz", "legend"), (is_flag, "True or False")),
+    **dict.fromkeys(("hz", "legend", "logarithmic"), (is_flag, "True or False")),
     **dict.fromkeys(("name", "contact", "x", "y", "label"), (_is(str), "a name")),
     "names": (_holds(str), "a name or a list of them"),
     "modes": (_holds((int, np.integer)), "a list of numbers of modes"),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.plot._layout import HEIGHT, ROW, Layout, layout, owner
-from fricmb.plot._sketch import GROUND_SHAPE, Floats, Link, Mark, Motion, Shape, Sketch, Spot, Touch, box, disc
+from fricmb.plot._sketch import GROUND_SHAPE, Floats, Link, Mark, Motion, Shape, Sketch, Spot, Touch, box, disc, is_idle
 from fricmb.scene import Contact, ModalBody
 
 #: A body that travels this many times farther than the one that travels least, nearly all in one direction, is drawn
@@ -146,7 +146,7 @@ class _Boxes:
             start, end = self._to_ground(first, along)
         else:
             start, end = self._between(first, second, along)
-        self.sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end))
+        self.sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end, idle=is_idle(part)))
         if second == "ground":
             angle = float(np.arctan2(end[2] - self._world(start)[1], end[1] - self._world(start)[0]))
             self.sketch.marks.append(Mark(kind="wall", at=end, angle=angle))
@@ -218,7 +218,8 @@ class _Boxes:
             return (self.number[first], at, -height / 2), (self.number[second], x - u + at, -high / 2)
         if abs(y - v) < 0.5 * height or (level and abs(x - u) > 0.5 * (width + wide)):
             right = 1.0 if u >= x else -1.0
-            at = self._slot(first, "right" if right > 0 else "left", height)
+            # the gap belongs to the body on its right, whose links to the ground stand in it, too
+            at = self._slot(second if right > 0 else first, "left", height)
             return (self.number[first], right * width / 2, at), (self.number[second], -right * wide / 2, at)
         # one above the other: beside them
         at = width / 2 + 0.15 + 0.3 * self._slots.get((first, "beside"), 0)

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from fricmb.plot._figure import new_picture
 from fricmb.plot._style import drawn, figure_of, finish, paint, panels
 from fricmb.plot._units import unit_of
+from fricmb.scene import parameter_unit
 
 if TYPE_CHECKING:
     from fricmb.analysis import BifurcationDiagram, Branch, Cycle
@@ -64,7 +65,8 @@ class BranchPlots:
         self._mark(panel, name)
         unit = units.time if name == "period" else unit_of(name, units)
         measured = f"period [{unit}]" if name == "period" else f"amplitude of {name} [{unit}]"
-        finish(panel, x=branch.over, y=measured, legend=True)
+        over_unit = parameter_unit(branch.cycles[0].scene, branch.over)
+        finish(panel, x=f"{branch.over} [{over_unit}]", y=measured, legend=True)
         return figure_of([panel])
 
     @drawn

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
-from fricmb.plot._fine import at_once
+from fricmb.plot._fine import at_once, looks, period_of, window_of
 from fricmb.plot._style import THIN, finish, paint, remark
 from fricmb.plot._units import Units
 
@@ -22,6 +22,12 @@ STICK, SLIP, OPEN = 0, 1, 2
 NAMED = 30
 #: Phases shorter than the shortest hundredth of all by this factor are put on the lower edge.
 _SHORT = 1e-3
+#: More swings than this in a panel are a solid block, and how many of them are enlarged.
+SOLID, SWINGS = 40, 8
+#: A plane that is this many times wider than high, or the reverse, has axes of two scales.
+_NARROW = 8.0
+#: Forces that move by less than this share of the largest stand still.
+_STILL = 1e-9
 
 
 def _bars() -> dict[int, dict[str, Any]]:
@@ -44,7 +50,24 @@ def static_limit(sol: Solution, contact: str) -> Floats | None:
     return np.array([law.break_away(load) for load in loads])[where] * normal_force
 
 
-def draw_force_history(sol: Solution, contact: str, ax: Axes, units: Units) -> None:
+def force_window(sol: Solution, contact: str, span: tuple[float, float]) -> tuple[float, float] | None:
+    """A few swings of a force that swings too often to be seen."""
+
+    def signals(seen: Solution) -> list[Floats]:
+        force = seen.force(contact)
+        moves = np.ptp(force, axis=1) > _STILL * np.abs(force).max(initial=0.0)
+        return [np.where(alive, x, x[:1]) for x, alive in zip(force, moves, strict=True)]
+
+    look = looks(sol)
+    period = period_of(sol, signals, *span, look)
+    if period is None or (span[1] - span[0]) / period <= SOLID:
+        return None
+    return window_of(sol, signals, *span, swings=SWINGS, look=look)
+
+
+def draw_force_history(
+    sol: Solution, contact: str, ax: Axes, units: Units, *, legend: bool = True
+) -> None:  # fmt: skip
     """Force over time; in one dimension signed, in two its magnitude; the break-away force as bounds."""
     force, limit = sol.force(contact), static_limit(sol, contact)
     planar = len(force) == 2
@@ -55,7 +78,7 @@ def draw_force_history(sol: Solution, contact: str, ax: Axes, units: Units) -> N
         if not planar:
             ax.plot(sol.t, -limit, color=paint().slip, linestyle="--", linewidth=THIN)
     name = f"|F| of {contact}" if planar else f"F of {contact}"
-    finish(ax, x=f"time [{units.time}]", y=f"{name} [{units.force}]", legend=True)
+    finish(ax, x=f"time [{units.time}]", y=f"{name} [{units.force}]", legend=legend)
 
 
 def draw_cone(sol: Solution, contact: str, ax: Axes, units: Units) -> None:
@@ -65,18 +88,35 @@ def draw_cone(sol: Solution, contact: str, ax: Axes, units: Units) -> None:
 
 
 def zoom(sol: Solution, contact: str, ax: Axes, units: Units) -> None:
-    """The same, enlarged to where the force was; the two axes may differ in scale."""
+    """The same, enlarged to where the force was; a circle stays one unless the force hardly moves along one axis."""
     _draw_plane(sol, contact, ax, units)
-    first, second = sol.force(contact)
-    ax.set_xlim(_with_margin(first))
-    ax.set_ylim(_with_margin(second))
-    remark(ax, "enlarged")
+    force = sol.force(contact)
+    largest = float(np.abs(force).max(initial=0.0))
+    spans = [_with_margin(values, largest) for values in force]
+    ax.set_xlim(spans[0])
+    ax.set_ylim(spans[1])
+    width, height = (high - low for low, high in spans)
+    if 1 / _NARROW < height / width < _NARROW:
+        ax.set_aspect("equal", adjustable="box")
+        remark(ax, "enlarged")
+    else:
+        remark(ax, "enlarged, axes of different scale")
+    ax.locator_params(axis="x", nbins=5)
 
 
-def _with_margin(values: Floats) -> tuple[float, float]:
+def _with_margin(values: Floats, largest: float) -> tuple[float, float]:
+    """Limits around values; what moves by round-off of the largest is drawn as standing still."""
     low, high = float(values.min()), float(values.max())
-    margin = 0.06 * (high - low) or 0.01 * abs(high) or 1.0
+    if high - low <= _STILL * largest:
+        middle = 0.5 * (low + high)
+        return middle - 0.1 * (largest or 1.0), middle + 0.1 * (largest or 1.0)
+    margin = 0.06 * (high - low)
     return low - margin, high + margin
+
+
+def along(axis: str) -> str:
+    """A direction in a label: "along x"; a name like "around" stands for itself."""
+    return f"along {axis}" if len(axis) == 1 else axis
 
 
 def _draw_plane(sol: Solution, contact: str, ax: Axes, units: Units, *, legend: bool = False) -> None:
@@ -89,7 +129,7 @@ def _draw_plane(sol: Solution, contact: str, ax: Axes, units: Units, *, legend: 
         radius = limit.max(initial=0.0)
         ax.plot(radius * np.cos(angle), radius * np.sin(angle), "--", color=paint().slip, linewidth=THIN, label="cone")
     first, second = sol.names.axes(contact)
-    finish(ax, x=f"force along {first} [{units.force}]", y=f"along {second} [{units.force}]", legend=legend)
+    finish(ax, x=f"force {along(first)} [{units.force}]", y=f"force {along(second)} [{units.force}]", legend=legend)
 
 
 def phases(sol: Solution) -> list[tuple[Floats, NDArray[np.int8]]]:
@@ -151,14 +191,17 @@ def draw_phases(sol: Solution, ax: Axes, units: Units, span: tuple[float, float]
     round-off) stand on the lower edge, so that the axis shows the others.
     """
     kinds = {STICK: ("stick", "o", paint().stick), SLIP: ("slip", "x", paint().slip), OPEN: ("open", "s", paint().ink)}
-    begin, length, mode = _spans(sol, span)
+    begin, length, mode, cut = _spans(sol, span)
     floor = _floor(length)
-    short = length < floor
+    short = (length < floor) & ~cut
     for code, (label, marker, colour) in kinds.items():
         style: dict[str, Any] = {"color": colour, "linestyle": "none"}
         if (here := mode == code).any():
-            ax.plot(begin[here & ~short], length[here & ~short], marker, markersize=3, label=label, **style)
+            whole = here & ~short & ~cut
+            ax.plot(begin[whole], length[whole], marker, markersize=3, label=label, **style)
             ax.plot(begin[here & short], np.full((here & short).sum(), floor), 11, markersize=5, **style)
+            ax.plot(begin[here & cut], length[here & cut], "^", markersize=5, markerfacecolor="none", **style)
+    ax.plot([], [], "^", color=paint().ink, markersize=5, markerfacecolor="none", linestyle="none", label="cut: longer")
     ax.set_yscale("log")
     if short.any():
         ax.set_ylim(bottom=floor / 1.5)
@@ -170,14 +213,20 @@ def draw_phases(sol: Solution, ax: Axes, units: Units, span: tuple[float, float]
     finish(ax, x=f"time [{units.time}]", y=f"length of phase [{units.time}]", legend=True)
 
 
-def _spans(sol: Solution, span: tuple[float, float]) -> tuple[Floats, Floats, NDArray[np.int8]]:
-    """Beginning, length and mode of all phases that begin in a stretch of the run, or hold at its start."""
+def _spans(
+    sol: Solution, span: tuple[float, float]
+) -> tuple[Floats, Floats, NDArray[np.int8], NDArray[np.bool_]]:
+    """Beginning, length and mode of all phases that begin in a stretch of the run, or hold at its start.
+
+    Last, which of them the ends of the run cut: they may last longer than what is seen of them.
+    """
     found = []
     for bounds, mode in phases(sol):
         inside = (bounds[1:] > span[0]) & (bounds[:-1] < span[1])
-        found.append((bounds[:-1][inside], np.diff(bounds)[inside], mode[inside]))
-    begin, length, mode = (np.concatenate(column) for column in zip(*found, strict=True))
-    return np.maximum(begin, span[0]), length, mode.astype(np.int8)
+        cut = (bounds[:-1] <= sol.t_start) | (bounds[1:] >= sol.t_end)
+        found.append((bounds[:-1][inside], np.diff(bounds)[inside], mode[inside], cut[inside]))
+    begin, length, mode, ends = (np.concatenate(column) for column in zip(*found, strict=True))
+    return np.maximum(begin, span[0]), length, mode.astype(np.int8), ends.astype(bool)
 
 
 def _floor(length: Floats) -> float:

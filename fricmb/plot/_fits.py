@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._style import drawn, figure_of, finish, paint, panels, remark
+from fricmb.plot._units import bare
 
 if TYPE_CHECKING:
     from fricmb._fit import Fit
@@ -40,7 +41,7 @@ class FitPlots:
             panel.plot(_times(m), residual, ".", color=paint().slip, markersize=4)
             finish(panel, x="", y=f"{m.name}: predicted - measured")
             remark(panel, f"standard deviation {residual.std():.3g}")
-        axes[-1].set_xlabel(f"time [{self.fit.scene.units.time}]")
+        axes[-1].set_xlabel(bare(f"time [{self.fit.scene.units.time}]"))
         return figure_of(axes)
 
     @drawn
@@ -55,7 +56,7 @@ class FitPlots:
             panel.plot(m.t, m.x, ".", color=paint().slip, markersize=4, label="measured")
             panel.plot(t, sol.at(t).scalar(m.name), color=paint().stick, linewidth=1.0, label="fitted")
             finish(panel, x="", y=m.name, legend=True)
-        axes[-1].set_xlabel(f"time [{self.fit.scene.units.time}]")
+        axes[-1].set_xlabel(bare(f"time [{self.fit.scene.units.time}]"))
         return figure_of(axes)
 
 

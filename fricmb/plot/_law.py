@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from fricmb.analysis import cycle, path, pull, settling_distance
 from fricmb.laws import FrictionLaw
 from fricmb.plot._figure import new_picture
-from fricmb.plot._style import drawn, figure_of, finish, line, paint, panels
+from fricmb.plot._style import drawn, few_labels, figure_of, finish, line, paint, panels
 
 Floats = NDArray[np.float64]
 #: A curve whose values differ by less than this share is a straight line.
@@ -117,22 +116,12 @@ def speed_range(law: FrictionLaw, normal_force: float = 1.0) -> Floats:
 def draw_coefficient(law: FrictionLaw, ax: Axes, speeds: Floats, normal_force: float) -> None:
     """Steady coefficient over slip speed, and what holds at rest."""
     ax.semilogx(speeds, law.coefficient(speeds, normal_force), label="slip", **line(0))
-    _label_few(ax, speeds)
+    few_labels(ax.xaxis, float(speeds[0]), float(speeds[-1]))
     if law.kind != "smooth":
         held = law.break_away(normal_force)
         ax.axhline(held, color=paint().slip, linestyle="--", linewidth=0.9, label="break-away")
     ax.set_ylim(bottom=0.0)
     _finish(ax, x="slip speed", y="coefficient in steady slip", legend=law.kind != "smooth", logarithmic=True)
-
-
-def _label_few(ax: Axes, speeds: Floats) -> None:
-    """Labels of a logarithmic axis that stay apart: powers of ten, over few decades also numbers between them."""
-    decades = np.log10(speeds[-1] / speeds[0])
-    subs = (1.0, 2.0, 5.0) if decades < 1.2 else (1.0, 3.0) if decades < 2.0 else (1.0,)
-    ax.xaxis.set_major_locator(LogLocator(subs=subs, numticks=8))
-    if decades < 2.0:
-        ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_loops(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_force: float) -> None:

@@ -103,12 +103,21 @@ def shown_span(sol: Solution, t_start: float | None, t_end: float | None) -> tup
     if t_start is None and t_end is None and names:
         found = window_of(sol, signals, *whole, swings=SWINGS)
         if found is not None:
-            return (*found, SWINGS * PICTURES)
+            return (*_with_event(sol, found), SWINGS * PICTURES)
     from fricmb.plot._fine import period_of
 
     period = period_of(sol, signals, *whole) if names else None
     swings = (whole[1] - whole[0]) / period if period else SWINGS
     return (*whole, int(np.clip(PICTURES * swings, 4 * PICTURES, 20 * PICTURES)))
+
+
+def _with_event(sol: Solution, span: tuple[float, float]) -> tuple[float, float]:
+    """The stretch, or where nothing happens in it one as long about the last transition."""
+    t, length = sol.events.t, span[1] - span[0]
+    if not t.size or ((t >= span[0]) & (t <= span[1])).any():
+        return span
+    begin = float(np.clip(t[-1] - 0.5 * length, sol.t_start, sol.t_end - length))
+    return begin, begin + length
 
 
 def _swinging(sol: Solution) -> list[str]:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
+from fricmb.plot._contact import along
 from fricmb.plot._fine import Floats, looks, period_of, refined, window_of
 from fricmb.plot._style import THIN, finish, paint
 from fricmb.plot._units import Units, unit_of, unit_of_rate
-from fricmb.plot._velocities import SOLID
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 #: A plane that is this many times wider than high, or the reverse, has axes of two scales.
 _NARROW = 8.0
 _LAST = 3
+#: Of more turns than this the last ones stand out.
+TURNS = 20
 #: A curve in a plane: its values (2, n_t) in a run.
 Curve = Callable[["Solution"], Floats]
 
@@ -35,8 +37,8 @@ def draw_phase(sol: Solution, name: str, span: tuple[float, float], ax: Axes, un
         first, second = sol.names.axes(name)
         finish(
             ax,
-            x=f"relative velocity along {first} at {name} [{units.velocity}]",
-            y=f"along {second} [{units.velocity}]",
+            x=f"relative velocity {along(first)} at {name} [{units.velocity}]",
+            y=f"{along(second)} [{units.velocity}]",
             legend=True,
         )
     else:
@@ -80,7 +82,7 @@ def _curve(sol: Solution, curve: Curve, span: tuple[float, float], ax: Axes) -> 
     look = looks(sol)
     period = period_of(sol, signals, *span, look)
     near = None
-    if period is not None and (span[1] - span[0]) / period > SOLID:
+    if period is not None and (span[1] - span[0]) / period > TURNS:
         near = window_of(sol, signals, *span, swings=_LAST, look=look)
     if near is None:
         ax.plot(*values, color=paint().stick, linewidth=0.7)

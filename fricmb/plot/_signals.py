@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from fricmb.plot._arguments import first_contact, looked_at
 from fricmb.plot._fine import span_of
 from fricmb.plot._style import drawn, figure_of, panels
-from fricmb.plot._units import Units
+from fricmb.plot._units import Units, unit_of_signal
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -51,7 +51,8 @@ class SignalPlots:
         from fricmb.plot._spectra import Axis, draw_spectrum
 
         (panel,) = panels(1, ax, title=self._name, height=3.4)
-        draw_spectrum(uniform(self.sol, name, t_start=t_start, t_end=t_end), highest, panel, Axis.of(hz, self.units))
+        signal = uniform(self.sol, name, t_start=t_start, t_end=t_end)
+        draw_spectrum(signal, highest, panel, Axis.of(hz, self.units), self._unit(name))
         return figure_of([panel])
 
     @drawn
@@ -73,7 +74,8 @@ class SignalPlots:
         (panel,) = panels(1, ax, title=self._name, height=3.8)
         signal = uniform(self.sol, name, t_start=t_start, t_end=t_end)
         running = spectrogram(signal.x, signal.dt, t_start=float(signal.t[0]), segment=segment)
-        draw_spectrogram(running, name, highest, panel, Axis.of(hz, self.units), f"time [{self.units.time}]")
+        time, unit = f"time [{self.units.time}]", self._unit(name)
+        draw_spectrogram(running, name, highest, panel, Axis.of(hz, self.units), time, unit)
         return figure_of([panel])
 
     @drawn
@@ -196,6 +198,9 @@ class SignalPlots:
         file = Path(path)
         file.write_text(solution_page(self.sol, t_start=t_start, t_end=t_end), encoding="utf-8")
         return file
+
+    def _unit(self, name: str) -> str:
+        return unit_of_signal(self.sol, name, self.units)[1]
 
     @property
     def _name(self) -> str:

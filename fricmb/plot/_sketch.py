@@ -54,7 +54,10 @@ class Shape:
 
 @dataclass(kw_only=True)
 class Link:
-    """A spring, damper, rod or torsional spring between two spots; ``side``: shifted across, in units."""
+    """A spring, damper, rod or torsional spring between two spots; ``side``: shifted across, in units.
+
+    ``idle``: of value 0, drawn pale: it is declared, and left out of runs.
+    """
 
     kind: str
     name: str
@@ -62,6 +65,13 @@ class Link:
     b: Spot
     side: float = 0.0
     coils: int = 5
+    idle: bool = False
+
+
+def is_idle(part: Any) -> bool:
+    """Whether a spring or damper has the value 0."""
+    values = [getattr(part, name) for name in ("stiffness", "damping", "cubic") if hasattr(part, name)]
+    return bool(values) and not any(is_expression(value) or np.any(value_of(value)) for value in values)
 
 
 @dataclass(kw_only=True)

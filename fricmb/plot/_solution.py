@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fricmb.plot._arguments import first_contact
-from fricmb.plot._contact import draw_cone, draw_force_history, draw_modes, draw_phases, zoom
+from fricmb.plot._arguments import first_contact, refuse
+from fricmb.plot._contact import draw_cone, draw_force_history, draw_modes, draw_phases, force_window, zoom
 from fricmb.plot._figure import new_picture
 from fricmb.plot._fine import refined, span_of
+from fricmb.plot._hysteresis import draw_hysteresis
+from fricmb.plot._measured import draw_measured, measured_signals
+from fricmb.plot._over_time import draw_over_time, panels_of, signal_panels
 from fricmb.plot._planes import draw_path, draw_phase
 from fricmb.plot._signals import SignalPlots
 from fricmb.plot._style import drawn, figure_of, finish, line, name_figure, paint, panels, remark
-from fricmb.plot._velocities import draw_velocities, panels_of
+from fricmb.plot._units import bare
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -67,11 +70,110 @@ class SolutionPlots(SignalPlots):
         ax : Axes, optional
             Takes all of them.
         """
+        found = panels_of(self.sol, names, self.units, rate=True, one=ax is not None)
+        return self._over_time(found, t_start, t_end, zoom, ax)
+
+    @drawn
+    def positions(
+        self,
+        names: Iterable[str] | None = None,
+        *,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        zoom: bool | tuple[float, float] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Positions over time: a panel for each direction, for angles, for the modes of each body.
+
+        Parameters
+        ----------
+        names : iterable of str, optional
+            Dofs, points, driven motions; default: all dofs.
+        t_start, t_end, zoom, ax
+            As :meth:`velocities`.
+        """
+        found = panels_of(self.sol, names, self.units, rate=False, one=ax is not None)
+        return self._over_time(found, t_start, t_end, zoom, ax)
+
+    @drawn
+    def signals(
+        self,
+        names: Iterable[str],
+        *,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        zoom: bool | tuple[float, float] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Any signals over time, by their names in ``sol[name]``: a panel for each kind and unit.
+
+        Parameters
+        ----------
+        names : iterable of str
+            ``["sole.force", "mass.x.acceleration"]``.
+        t_start, t_end, zoom
+            As :meth:`velocities`.
+        ax : Axes, optional
+            For signals of one kind.
+        """
+        found = signal_panels(self.sol, names, self.units)
+        if ax is not None and len(found) > 1:
+            kinds = ", ".join(panel.label for panel in found)
+            refuse("signals", "ax", ax, f"left out for signals of several kinds ({kinds})")
+        return self._over_time(found, t_start, t_end, zoom, ax)
+
+    @drawn
+    def compare(
+        self,
+        data: Any,
+        *,
+        signals: str | Iterable[str] | None = None,
+        t_start: float | None = None,
+        t_end: float | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """The run beside a measurement: measured values as dots, the run as a curve, the difference in words.
+
+        Parameters
+        ----------
+        data : dict, array or pandas.DataFrame
+            As for :func:`fricmb.fit`: ``{"t": t, "mass.x": x}``.  Times outside the run are left out.
+        signals : names, optional
+            Columns to use; for an array the names of its columns.  Default: all.
+        t_start, t_end : float, optional
+            Part of the run.
+        ax : Axes, optional
+            For one signal.
+        """
+        span = span_of(self.sol, t_start, t_end)
+        return draw_measured(self.sol, measured_signals(data, signals), span, ax, self._name, self.units)
+
+    @drawn
+    def hysteresis(
+        self, name: str, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
+    ) -> Figure:
+        """Force over displacement of a contact, a joint with friction or an element: the loop whose area is lost.
+
+        The force is that which resists; displacements of contacts count from the start of what is drawn.
+
+        Parameters
+        ----------
+        name : str
+        t_start, t_end : float, optional
+            Part of the run.
+        ax : Axes, optional
+            With two directions, for the first one.
+        """
+        return draw_hysteresis(self.sol, name, span_of(self.sol, t_start, t_end), ax, self._name, self.units)
+
+    def _over_time(
+        self, found: Any, t_start: float | None, t_end: float | None, zoom: bool | tuple[float, float] | None,
+        ax: Axes | None,
+    ) -> Figure:  # fmt: skip
         span = span_of(self.sol, t_start, t_end)
         if isinstance(zoom, tuple):
             zoom = span_of(self.sol, *zoom)
-        found = panels_of(self.sol, names, self.units, one=ax is not None)
-        return draw_velocities(self.sol, found, span, zoom, ax, self._name, self._time)
+        return draw_over_time(self.sol, found, span, zoom, ax, self._name, self._time)
 
     @drawn
     def phase(
@@ -118,21 +220,30 @@ class SolutionPlots(SignalPlots):
 
         The plane is drawn twice: the whole cone, and enlarged where the force was.  With ``ax`` the whole cone alone.
         """
-        sol = refined(self.sol, *span_of(self.sol, t_start, t_end))
+        span = span_of(self.sol, t_start, t_end)
+        sol = refined(self.sol, *span)
         planar = len(sol.force(contact)) == 2
         if ax is not None:
             (draw_cone if planar else draw_force_history)(sol, contact, ax, self.units)
             return figure_of([ax])
-        if not planar:
+        close = force_window(self.sol, contact, span)
+        if not planar and close is None:
             axes = panels(1, None, title=self._name, height=3.2)
             draw_force_history(sol, contact, axes[0], self.units)
             return figure_of(axes)
-        figure = new_picture(7.0, 6.0)
-        named = figure.subplot_mosaic([["time", "time"], ["plane", "close"]], height_ratios=[1, 1.3])
+        figure = new_picture(7.0, 6.0 if planar else 3.2)
+        top = ["time", "time"] if close is None else ["time", "near"]
+        rows: list[Any] = [top, ["plane", "close"]] if planar else [top]
+        named = figure.subplot_mosaic(rows, height_ratios=[1, 1.3][: len(rows)])
         name_figure(figure, self._name)
         draw_force_history(sol, contact, named["time"], self.units)
-        draw_cone(sol, contact, named["plane"], self.units)
-        zoom(sol, contact, named["close"], self.units)
+        if close is not None:
+            named["time"].axvspan(*close, color=paint().quiet, alpha=0.35, linewidth=0)
+            draw_force_history(refined(self.sol, *close), contact, named["near"], self.units, legend=False)
+            remark(named["near"], "enlarged")
+        if planar:
+            draw_cone(sol, contact, named["plane"], self.units)
+            zoom(sol, contact, named["close"], self.units)
         return figure
 
     @drawn
@@ -150,7 +261,7 @@ class SolutionPlots(SignalPlots):
         draw_modes(self.sol, axes[0], span)
         if ax is None:
             draw_phases(self.sol, axes[1], self.units, span)
-        axes[-1].set_xlabel(self._time)
+        axes[-1].set_xlabel(bare(self._time))
         return figure_of(axes)
 
     @drawn
@@ -180,7 +291,7 @@ class SolutionPlots(SignalPlots):
             axes[1].plot(t, energy.residual, color=paint().ink, linewidth=0.7)
             finish(axes[1], x="", y="residual, relative")
             remark(axes[1], _residuals(self.sol, energy.residual, span))
-        axes[-1].set_xlabel(self._time)
+        axes[-1].set_xlabel(bare(self._time))
         return figure_of(axes)
 
     @property

@@ -19,7 +19,7 @@ from fricmb.analysis import (
     spectral_peaks,
 )
 from fricmb.plot._style import THIN, finish, paint, remark
-from fricmb.plot._units import Units
+from fricmb.plot._units import Units, bare
 
 #: Decades of power that a map shows.
 _DECADES = 8
@@ -35,16 +35,26 @@ class Axis:
 
     divisor: float
     label: str
+    unit: str
 
     @classmethod
     def of(cls, hz: bool, units: Units) -> Axis:
         """Frequency in turns, or angular frequency."""
         if hz:
-            return cls(divisor=2.0 * np.pi, label=f"frequency [{units.frequency}]")
-        return cls(divisor=1.0, label=f"angular frequency [{units.angular_frequency}]")
+            return cls(divisor=2.0 * np.pi, label=f"frequency [{units.frequency}]", unit=units.frequency)
+        return cls(divisor=1.0, label=f"angular frequency [{units.angular_frequency}]", unit=units.angular_frequency)
 
 
-def draw_spectrum(signal: Samples, highest: float | None, ax: Axes, axis: Axis) -> Peaks:
+def density_label(name: str, unit: str, axis: str) -> str:
+    """What a power density is, with its unit where the signal has one; ``axis``: unit of what it is over."""
+    if not bare(f"[{unit}]") or not bare(f"[{axis}]"):
+        return f"power density of {name}"
+    squared = f"({unit})²" if "/" in unit or " " in unit else f"{unit}²"
+    below = f"({axis})" if "/" in axis else axis
+    return f"power density of {name} [{squared}/{below}]"
+
+
+def draw_spectrum(signal: Samples, highest: float | None, ax: Axes, axis: Axis, unit: str = "") -> Peaks:
     """Maximum-entropy density up to a frequency; peaks marked, with their standard errors as bars.
 
     ``highest`` is a frequency of that axis.
@@ -65,18 +75,20 @@ def draw_spectrum(signal: Samples, highest: float | None, ax: Axes, axis: Axis) 
             continue
         told.append(x)
         ax.annotate(f"{x:.4g}", (x, y), xytext=(4, 3), textcoords="offset points", fontsize="x-small")
-    finish(ax, x=axis.label, y=f"power density of {signal.name}", legend=bool(named.size))
+    finish(ax, x=axis.label, y=density_label(signal.name, unit, axis.unit), legend=bool(named.size))
     ax.margins(y=0.08)
     return peaks
 
 
-def draw_spectrogram(running: Spectrogram, name: str, highest: float | None, ax: Axes, axis: Axis, time: str) -> None:
+def draw_spectrogram(
+    running: Spectrogram, name: str, highest: float | None, ax: Axes, axis: Axis, time: str, unit: str = ""
+) -> None:
     """Density over time and frequency; ``highest`` is a frequency of that axis."""
     shown = running.omega <= (running.omega[-1] if highest is None else highest * axis.divisor)
     power = running.power[shown] * axis.divisor
-    _map(ax, running.t, running.omega[shown] / axis.divisor, power, f"power density of {name}")
-    ax.set_xlabel(time)
-    ax.set_ylabel(axis.label)
+    _map(ax, running.t, running.omega[shown] / axis.divisor, power, density_label(name, unit, axis.unit))
+    ax.set_xlabel(bare(time))
+    ax.set_ylabel(bare(axis.label))
 
 
 def draw_orders(found: OrderMap, name: str, ax: Axes, units: Units, hz: bool) -> None:
@@ -88,10 +100,10 @@ def draw_orders(found: OrderMap, name: str, ax: Axes, units: Units, hz: bool) ->
             "expected one in which the contact slides, or a smaller highest="
         )
     _map(ax, found.t, found.order / divisor, found.power * divisor, f"power density of {name}")
-    ax.set_xlabel(f"time [{units.time}]")
+    ax.set_xlabel(bare(f"time [{units.time}]"))
     per = "1" if units.dimensionless else f"1/{units.length}"
     radians = "1" if per == "1" else f"rad{per[1:]}"
-    ax.set_ylabel(f"order: swings per length slid [{per}]" if hz else f"order [{radians}]")
+    ax.set_ylabel(bare(f"order: swings per length slid [{per}]" if hz else f"order [{radians}]"))
     remark(ax, ("order = frequency / sliding speed" if hz else "order = angular frequency / sliding speed"))
 
 

@@ -10,13 +10,15 @@ from matplotlib.figure import Figure
 
 from fricmb.plot._arguments import refuse
 from fricmb.plot._style import DASHES, NAMED_CURVES, THIN, drawn, figure_of, finish, line, paint, panels
-from fricmb.plot._units import Units
+from fricmb.plot._units import Units, bare
 
 if TYPE_CHECKING:
     from fricmb.analysis import Eigenvalues, StabilityMap
 
 #: More modes than this have no names in the legend but those that become unstable.
 _LISTED = 30
+#: What tells curves apart beside colours and dashes.
+_SIGNS = ("o", "s", "^", "D", "v", "x", "*", "P", "<", ">")
 
 
 @drawn
@@ -68,17 +70,28 @@ def eigenvalues(
             **style,
         )
         bottom.plot(found.fine_values, found.fine_eigenvalues[:, k].real, **style)
+        if named:
+            _tell_apart(i, len(chosen), top.get_lines()[-1], bottom.get_lines()[-1])
     for panel in (top, bottom):
         for crossing in found.critical:
             panel.axvline(crossing.value, color=paint().ink, linewidth=0.7, linestyle=":")
     bottom.axhline(0.0, color=paint().ink, linewidth=0.7)
     label = f"frequency [{units.frequency}]" if hz else f"angular frequency [{units.angular_frequency}]"
     finish(top, x="", y=label, legend=0 < len(chosen) <= NAMED_CURVES)
-    finish(bottom, x=found.over, y=f"growth rate [{units.rate}]")
+    finish(bottom, x=f"{found.over} [{found.over_unit}]", y=f"growth rate [{units.rate}]")
     figure = figure_of([top, bottom])
     if len(chosen) > NAMED_CURVES:
         figure.legend(*top.get_legend_handles_labels(), loc="outside right upper", fontsize="x-small", title="mode")
     return figure
+
+
+def _tell_apart(i: int, count: int, *curves: Any) -> None:
+    """A sign on a curve here and there, another for each: curves that lie on one another are seen, too."""
+    for curve in curves:
+        curve.set_marker(_SIGNS[i % len(_SIGNS)])
+        curve.set_markersize(4.0)
+        curve.set_markerfacecolor("none")
+        curve.set_markevery(((i + 0.5) / (5 * max(count, 1)), 0.2))
 
 
 def _style(i: int) -> dict[str, Any]:
@@ -119,8 +132,8 @@ def stability(found: StabilityMap, *, ax: Axes | None = None, units: Units | Non
     if found.growth.min() < 0.0 < found.growth.max():
         panel.contour(x, y, found.growth, levels=[0.0], colors=["#404040"], linewidths=1.4)
     panel.grid(False)
-    label = f"largest growth rate [{units.rate}] (hatched: unstable)"
+    label = bare(f"largest growth rate [{units.rate}]") + " (hatched: unstable)"
     figure_of([panel]).colorbar(filled, ax=panel, label=label)
-    panel.set_xlabel(found.over[1])
-    panel.set_ylabel(found.over[0])
+    panel.set_xlabel(bare(f"{found.over[1]} [{found.over_units[1]}]"))
+    panel.set_ylabel(bare(f"{found.over[0]} [{found.over_units[0]}]"))
     return figure_of([panel])

@@ -15,13 +15,17 @@ from typing import Any, Literal, ParamSpec, TypeVar
 
 import matplotlib as mpl
 import matplotlib.style
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fricmb.errors import unknown_name
 from fricmb.plot._arguments import looked_at
 from fricmb.plot._figure import Picture, new_picture, offer
+from fricmb.plot._units import bare
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -203,9 +207,12 @@ def remark(ax: Axes, text: str, *, loc: Literal["left", "right"] = "right") -> N
 
 @looked_at
 def finish(ax: Axes, *, x: str, y: str, legend: bool = False, columns: int = 4) -> None:
-    """Labels, a quiet grid, and a legend above the panel, where no curve is."""
-    ax.set_xlabel(x)
-    ax.set_ylabel(y)
+    """Labels, a quiet grid, and a legend above the panel, where no curve is.
+
+    Units in brackets that say nothing are left out: "velocity [1]" is "velocity".
+    """
+    ax.set_xlabel(bare(x))
+    ax.set_ylabel(bare(y))
     ax.grid(True, linewidth=0.4, alpha=0.5)
     ax.margins(x=0.01)
     if legend:
@@ -218,6 +225,16 @@ def finish(ax: Axes, *, x: str, y: str, legend: bool = False, columns: int = 4) 
             borderaxespad=0.1,
             columnspacing=1.2,
         )
+
+
+def few_labels(axis: Axis, low: float, high: float) -> None:
+    """Labels of a logarithmic axis that stay apart: powers of ten, over few decades also numbers between them."""
+    decades = np.log10(high / low)
+    subs = (1.0, 2.0, 5.0) if decades < 1.2 else (1.0, 3.0) if decades < 2.0 else (1.0,)
+    axis.set_major_locator(LogLocator(subs=subs, numticks=8))
+    if decades < 2.0:
+        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def figure_of(axes: list[Axes]) -> Figure:

@@ -13,12 +13,11 @@ from fricmb.plot._fine import Floats
 from fricmb.plot._html import block, resource, rounded, short
 from fricmb.plot._make_sketch import DRAWN, PICTURES, in_space, is_drawn, shown_span, sketch_of_run
 from fricmb.plot._sketch import Sketch, Touch
-from fricmb.plot._units import unit_of, unit_of_rate
+from fricmb.plot._units import bare, unit_of_signal
 from fricmb.solution._stored import Stored
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
-    from fricmb.values import Units
 
 #: Times of a view at most, numbers in it altogether, and signals that are offered at most.
 _TIMES, _NUMBERS, _SIGNALS = 4000, 250_000, 200
@@ -42,10 +41,11 @@ def solution_html(
         "t": rounded(times, 9),
         "span": [begin, end],
         "seconds": max(2.0, _SWING * pictures / PICTURES),
-        "time": sol.units.time,
+        "time": "" if sol.units.time in ("1", "time") else sol.units.time,
         "signals": {name: rounded(every[name]) for name in names},
-        "labels": {name: _unit(name, sol.units) for name in names},
+        "labels": {name: _unit(sol, name) for name in names},
         "stick": _stuck(sol),
+        "touching": _touching(sol),
         "bounds": _bounds(sol, names) if (end - begin) < 0.5 * (sol.t_end - sol.t_start) else None,
         "sketch": _sketch(sketch_of_run(sol, times, magnify)) if drawn and not spatial else None,
         "space": _in_space(sol, times) if spatial else None,
@@ -115,18 +115,11 @@ def _times(sol: Solution, begin: float, end: float, signals: int) -> Floats:
     return np.unique(np.concatenate((whole, np.linspace(begin, end, count - len(whole) or 2))))
 
 
-def _unit(name: str, units: Units) -> str:
-    """What stands in brackets behind a column."""
-    words = name.split(".")
-    if words[-1] == "mode":
+def _unit(sol: Solution, name: str) -> str:
+    """What stands in brackets behind a column; nothing where a unit would say nothing."""
+    if name.endswith(".mode"):
         return "0 stick, 1 slip, 2 open"
-    if "normal_force" in words or "force" in words:
-        return units.force
-    rate = "velocity" in words or "relative_velocity" in words
-    if words[-1 - rate][:4] == "mode" or "state" in words:
-        return ""
-    motion = ".".join(words[:-1] if rate and "velocity" in words else words)
-    return unit_of_rate(motion, units) if rate else unit_of(motion, units)
+    return bare(f"[{unit_of_signal(sol, name, sol.units)[1]}]").strip("[]")
 
 
 def _first(sol: Solution, names: list[str]) -> dict[str, Any]:
@@ -155,6 +148,17 @@ def _stuck(sol: Solution) -> dict[str, list[list[float]]]:
     for name, (bounds, mode) in zip(sol.contact_names, phases(sol), strict=True):
         found[name] = [[float(bounds[i]), float(bounds[i + 1])] for i in np.flatnonzero(mode == STICK)]
     return found
+
+
+def _touching(sol: Solution) -> dict[str, str]:
+    """The contact, or joint with friction, of each body that has just one: whose stick its signals show."""
+    found: dict[str, list[str]] = {}
+    for name in sol.contact_names:
+        part = sol.scene[name]
+        for end in (part.a, part.b):
+            if hasattr(end.owner, "name"):
+                found.setdefault(end.owner.name, []).append(name)
+    return {body: contacts[0] for body, contacts in found.items() if len(contacts) == 1}
 
 
 def _in_space(sol: Solution, times: Floats) -> dict[str, Any]:

@@ -90,7 +90,9 @@
   function shown() {  // places of the times of the span, one beyond each end
     return [Math.max(0, place(span[0])), Math.min(data.t.length - 1, place(span[1]) + 1)];
   }
-  const coarse = () => data.bounds && span[1] - span[0] > 3 * (data.span[1] - data.span[0]);
+  // times are close enough for swings in the stretch shown first; beyond it bounds stand in for them
+  const beyond = 0.02 * (data.span[1] - data.span[0]);
+  const coarse = () => data.bounds && (span[0] < data.span[0] - beyond || span[1] > data.span[1] + beyond);
   const timeBox = (w, h) => [70, 10, w - 12, h - 44];
   function drawTime() {
     const [p, w, h] = pen(time), box = timeBox(w, h), [from, to] = shown();
@@ -101,12 +103,12 @@
       else for (let i = from; i <= to; i++) { low = Math.min(low, data.signals[n][i]); high = Math.max(high, data.signals[n][i]); }
     }
     const y = limits(low, high), owner = names[0].split(".")[0];
-    const stuck = data.stick[owner] || data.stick[Object.keys(data.stick)[0]] || [];
+    const contact = data.stick[owner] ? owner : data.touching[owner], stuck = data.stick[contact] || [];
     const across = t => box[0] + (t - span[0]) / (span[1] - span[0]) * (box[2] - box[0]);
     p.fillStyle = colour.shade;
     for (const [a, b] of stuck) if (b > span[0] && a < span[1])
       p.fillRect(across(Math.max(a, span[0])), box[1], Math.max(1, across(Math.min(b, span[1])) - across(Math.max(a, span[0]))), box[3] - box[1]);
-    const [px, py] = axes(p, box, span, y, "time [" + data.time + "]", names.length > 1 ? "" : label(names[0]));
+    const [px, py] = axes(p, box, span, y, data.time ? "time [" + data.time + "]" : "time", names.length > 1 ? "" : label(names[0]));
     clip(p, box, () => names.forEach((n, k) => {
       p.strokeStyle = p.fillStyle = k ? colour.second : colour.stick; p.lineWidth = 1.5; p.setLineDash(k ? [7, 4] : []);
       if (coarse()) {
@@ -128,7 +130,7 @@
       p.arc(px(now), py(between(data.signals[n], i, share)), 4, 0, TAU); p.fill();
     });
     told.textContent = names.map(n => label(n) + " = " + between(data.signals[n], i, share).toPrecision(5)).join("   ")
-      + (stuck.length ? "   (shaded: " + (data.stick[owner] ? owner : Object.keys(data.stick)[0]) + " sticks)" : "");
+      + (stuck.length ? "   (shaded: " + contact + " sticks)" : "");
   }
 
   // ---- one signal over another
@@ -205,6 +207,7 @@
     });
     p.strokeStyle = colour.line; p.lineWidth = 1.3;
     for (const l of sketch.links) {
+      p.strokeStyle = l.idle ? colour.quiet : colour.line;
       const a = spot(l.a), b = spot(l.b), d = [a[0] - b[0], a[1] - b[1]], long = Math.hypot(...d) || 1e-12;
       const e = [d[0] / long, d[1] / long], n = [-e[1], e[0]];
       const go = (s, c) => [b[0] + s * d[0] + (c + l.side * unit) * n[0], b[1] + s * d[1] + (c + l.side * unit) * n[1]];
@@ -219,6 +222,7 @@
         stroke([go(0.5, 0.75 * wide), go(0.5, -0.75 * wide)]);
       } else stroke([a, b]);
     }
+    p.strokeStyle = colour.line;
     for (const m of sketch.marks) {
       const q = spot(m.at), g = turn(m.at) + m.angle, e = [Math.cos(g), Math.sin(g)], n = [-e[1], e[0]];
       const by = (x, y) => [q[0] + unit * x, q[1] + unit * y], along = (s, c) => [q[0] + unit * (s * e[0] + c * n[0]), q[1] + unit * (s * e[1] + c * n[1])];
@@ -227,7 +231,7 @@
         for (const x of [-0.6, 0, 0.6]) stroke([by(x, -1.1), by(x - 0.3, -1.5)]);
       } else if (m.kind === "wall") {
         stroke([along(0, -0.35), along(0, 0.35)]);
-        for (const x of [-0.2, 0.05, 0.3]) stroke([along(0, x), along(0.2, x - 0.15)]);
+        for (const x of [-0.2, -0.06, 0.08, 0.21, 0.35]) stroke([along(0, x), along(0.2, x - 0.15)]);
       } else if (m.kind === "pin") round(q, 0.32 * unit, colour.paper);
       else if (m.kind === "weld") round(q, 0.3 * unit, colour.line);
       else if (m.kind === "spiral") stroke(Array.from({ length: 61 }, (_, k) => { const a = 5 * Math.PI * k / 60, r = unit * (0.3 + 0.9 * k / 60); return [q[0] + r * Math.cos(a), q[1] + r * Math.sin(a)]; }));
@@ -287,7 +291,7 @@
   // ---- time goes on
   function draw() {
     slider.value = String(Math.round(1000 * (now - span[0]) / (span[1] - span[0])));
-    clock.textContent = "t = " + now.toPrecision(6) + (data.time === "1" || data.time === "time" ? "" : " " + data.time);
+    clock.textContent = "t = " + now.toPrecision(6) + (data.time ? " " + data.time : "");
     drawScene(); drawTime(); drawPlane();
   }
   function step(stamp) {

@@ -17,6 +17,7 @@ from fricmb.scene._joints import Fixed, Gear, Prismatic, Revolute, Rod
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._modal_from import modal_matrices
+from fricmb.scene._parameter_units import parameter_unit
 from fricmb.scene._part import GROUND, End, Ground, Part
 from fricmb.scene._point import PointDamper, PointSpring
 from fricmb.scene._rigid import GroundPoint, RigidBody, RigidPoint, ground_point
@@ -82,6 +83,7 @@ __all__ = [
     "ground_point",
     "modal_matrices",
     "parameter",
+    "parameter_unit",
     "speed",
     "t",
     "topology",

@@ -15,7 +15,7 @@ from fricmb.solution._differentiated import Differentiated
 #: What stands behind the name of a motion; of a contact; of an element or a joint.
 OF_MOTIONS = ("velocity", "acceleration")
 OF_CONTACTS = ("force", "relative_velocity", "normal_force", "mode", "state")
-OF_PARTS = ("force", "reaction")
+OF_PARTS = ("force", "elongation", "reaction")
 _QUANTITIES = frozenset((*OF_MOTIONS, *OF_CONTACTS, *OF_PARTS))
 
 
@@ -41,6 +41,7 @@ class Signals(ContactSignals, Differentiated):
         "sole.normal_force", "sole.mode"        normal force; 0 stick, 1 slip, 2 open
         "sole.state", "sole.state.z"            states of the law
         "spring.force", "spring.force.x"        force of an element on its first end; with components (k, n_t)
+        "spring.elongation"                     what its force follows from, alike
         "pin.reaction"                          reaction of a joint (rows, n_t)
         "rod.rotation", "rod.omega"             of bodies in space (3, 3, n_t), (3, n_t); "axle.axis" (3, n_t)
         ======================================  ===============================================================
@@ -79,12 +80,22 @@ class Signals(ContactSignals, Differentiated):
         for contact in self.names.contacts:
             found += self._of_contact(contact)
         for element, axes in self._known_elements().items():
-            found += _components(f"{element}.force", axes)
+            found += self._of_element(element, axes)
         return found
+
+    def components(self, name: str) -> tuple[str, ...]:
+        """What the components of a signal of a contact or an element are called: ("x", "y")."""
+        owner = owner_of(name) or name
+        if owner in self.names.contact_index:
+            return self.names.directions[self.names.contact(owner)]
+        axes = self._element_axes().get(owner)
+        if axes is None:
+            raise self._unknown(name)
+        return axes
 
     @facade
     def _from_scene(self, quantity: str, owner: str) -> Floats:
-        """What the scene states and the run does not hold: "acceleration" of motions, "force" of elements."""
+        """What the scene states and the run does not hold: "acceleration" of motions, others of elements."""
 
     @facade
     def _element_axes(self) -> dict[str, tuple[str, ...]]:
@@ -101,9 +112,9 @@ class Signals(ContactSignals, Differentiated):
             return self._contact_signal(owner, quantity, component)
         if quantity in OF_MOTIONS and not component and self._moves(owner):
             return self._motion(owner, 1) if quantity == "velocity" else self._acceleration(owner)
-        if quantity == "force":
+        if quantity in ("force", "elongation"):
             axes = self._element_axes().get(owner)
-            return None if axes is None else _component(self._from_scene("force", owner), axes, component)
+            return None if axes is None else _component(self._from_scene(quantity, owner), axes, component)
         if quantity == "reaction" and not component:
             return self.reaction(owner)
         return None
@@ -154,6 +165,10 @@ class Signals(ContactSignals, Differentiated):
         found += [f"{contact}.normal_force", f"{contact}.mode"]
         return found + (_components(f"{contact}.state", states) if states else [])
 
+    @staticmethod
+    def _of_element(element: str, axes: tuple[str, ...]) -> list[str]:
+        return [*_components(f"{element}.force", axes), *_components(f"{element}.elongation", axes)]
+
     def _known_elements(self) -> dict[str, tuple[str, ...]]:
         """Elements with a force; none where the scene of a file cannot be opened."""
         try:
@@ -168,7 +183,7 @@ class Signals(ContactSignals, Differentiated):
             return self._of_contact(head)
         elements = self._known_elements()
         if head in elements:
-            return _components(f"{head}.force", elements[head])
+            return self._of_element(head, elements[head])
         motions = [x for x in self.names.known_motions() if x == name or name.startswith(f"{x}.")]
         return self._of_motion(motions[0]) if motions else self.signal_names()
 

@@ -15,6 +15,8 @@ from fricmb.plot._figure import new_picture, offer
 
 #: Long signals are drawn from this many points.
 POINTS = 20_000
+#: Frequencies that are written lie at least this share of the axis apart.
+APART = 0.02
 
 
 def page(rows: int, columns: int = 1, *, height: float = 2.6) -> tuple[Figure, list[Axes]]:
@@ -55,9 +57,12 @@ def spectrum(ax: Axes, found: Spikes, *, named: dict[str, float], low: float = 0
 
 
 def write_places(ax: Axes, found: Spikes, low: float, high: float) -> None:
-    """The frequency beside each peak."""
-    for omega, height in zip(found.peaks.omega, found.peaks.height, strict=True):
-        if low <= omega <= high:
+    """The frequency beside each peak; of peaks whose frequencies would stand on one another beside the highest."""
+    told: list[float] = []
+    for i in np.argsort(-found.peaks.height):
+        omega, height = float(found.peaks.omega[i]), float(found.peaks.height[i])
+        if low <= omega <= high and min((abs(omega - other) for other in told), default=np.inf) > APART * (high - low):
+            told.append(omega)
             ax.annotate(
                 f"{omega:.2f}",
                 (omega, height),

@@ -98,7 +98,7 @@ def test_contacts_stand_beside_modes():
     sol = fm.simulate(scene, t_end=1e-3, rtol=1e-5)
     axes = sol.plot.velocities().axes
     labels = [ax.get_ylabel() for ax in axes]
-    assert labels[:2] == ["modal velocity of pad", "modal velocity of rotor"]
+    assert labels[:2] == ["modal velocity of pad [m/s]", "modal velocity of rotor [m/s]"]
     assert labels[2:] == ["relative velocity [m/s]"] * 2
     assert (axes[2].lines[0].get_ydata()[0]) == pytest.approx(sol.relative_velocity("c1")[0, 0])
 
