@@ -216,7 +216,7 @@ def _alone(scene: Any, part: Any) -> Any:
         if part.C is None:
             return None
         owners = {name.partition(".")[0] for name in part.dofs}
-        bare = MatrixElement(part.name, part.dofs, C=part.C)
+        bare = MatrixElement(part.name, part.dofs, C=part.C, scale=part.scale)
         return _with_ends(scene, owners, bare)
     forms = part.local_coordinates()
     owners = {motion.partition(".")[0] for form in forms for motion in form.motions}

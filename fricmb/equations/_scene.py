@@ -200,9 +200,11 @@ def _add_body(collector: Collector, body: Any, index: Mapping[str, int], M: Any,
 
 
 def _add_matrix(collector: Collector, part: MatrixElement, index: Mapping[str, int], M: Any, rhs: Any) -> None:
+    one = not is_expression(part.scale) and value_of(part.scale) == 1.0
+    scale = sympy.S.One if one else collector.number(part, "scale", part.scale)
     for target in ("M", "C", "K"):
         value = getattr(part, target)
-        if value is None:
+        if value is None or scale == 0:
             continue
         numbers = value_of(value)
         dense = numbers if isinstance(numbers, np.ndarray) else numbers.toarray()
@@ -212,9 +214,9 @@ def _add_matrix(collector: Collector, part: MatrixElement, index: Mapping[str, i
             row, column = index[part.dofs[i]], index[part.dofs[j]]
             position, velocity, _ = coordinate_symbols(part.dofs[j])
             if target == "M":
-                M[row, column] += symbol
+                M[row, column] += scale * symbol
             else:
-                rhs[row] -= symbol * (position if target == "K" else velocity)
+                rhs[row] -= scale * symbol * (position if target == "K" else velocity)
 
 
 def _add_element(collector: Collector, element: Any, rhs: Any) -> None:

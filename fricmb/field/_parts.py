@@ -174,7 +174,7 @@ def masses(scene: Any, parts: set[str], index: dict[str, int]) -> tuple[Floats, 
         elif isinstance(part, ModalBody):
             held = dict(zip(part.dof_names, modal_matrices(part)[0].tolist(), strict=True))
         elif isinstance(part, MatrixElement) and part.M is not None and part.name in parts:
-            matrices.append((np.array([index[name] for name in part.dofs]), value_of(part.M)))
+            matrices.append((np.array([index[name] for name in part.dofs]), part.scaled("M")))
             continue
         else:
             continue
@@ -211,7 +211,7 @@ def acting(scene: Any, part: Any, index: dict[str, int], contact: int | None, ow
         rows = [index[part.dof_names[i]] for i in built]
         return Vibrates(rows, stiffness[built], damping[np.ix_(built, built)] if damping.ndim == 2 else damping[built])
     if isinstance(part, MatrixElement):
-        K, C = (None if m is None else value_of(m) for m in (part.K, part.C))
+        K, C = part.scaled("K"), part.scaled("C")
         return None if K is None and C is None else Vibrates([index[name] for name in part.dofs], K, C)
     return Acts(part) if hasattr(part, "local_coordinates") else None
 

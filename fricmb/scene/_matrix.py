@@ -16,7 +16,7 @@ from fricmb.values import is_sparse, value_of
 
 @dataclass(frozen=True, eq=False)
 class MatrixElement(Part):
-    """Force ``-K q - C v`` and inertia ``M`` over a list of degrees of freedom.
+    """Force ``-scale (K q + C v)`` and inertia ``scale M`` over a list of degrees of freedom.
 
     Parameters
     ----------
@@ -26,6 +26,9 @@ class MatrixElement(Part):
         Names of degrees of freedom, "pad.x".
     M, C, K : array_like or scipy sparse, (n, n), optional
         ``M`` symmetric; ``K`` may be non-symmetric (follower forces).
+    scale : float, parameter or expression of parameters
+        Number by which all of them are multiplied; default 1.  Entries stay numbers, so that a large matrix with one
+        parameter in front costs no more than one without.
 
     Raises
     ------
@@ -40,6 +43,7 @@ class MatrixElement(Part):
     M: Any = None
     C: Any = None
     K: Any = None
+    scale: Any = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -47,6 +51,7 @@ class MatrixElement(Part):
         if not dofs or not all(isinstance(name, str) for name in dofs) or len(set(dofs)) < len(dofs):
             self._refuse("dofs", self.dofs, "a list of different names of dofs, such as ['pad.x', 'pad.y']")
         self._set("dofs", dofs)
+        self._set("scale", self._number("scale", self.scale))
         given = [name for name in ("M", "C", "K") if getattr(self, name) is not None]
         if not given:
             raise SceneError(f"{self._label()}: give at least one of M, C, K")
@@ -57,6 +62,13 @@ class MatrixElement(Part):
             scale = abs(mass).max()
             if abs(mass - mass.T).max() > 1e-10 * scale:
                 self._refuse("M", self.M, "symmetric")
+
+    def scaled(self, target: str) -> Any:
+        """The numbers of ``M``, ``C`` or ``K`` (n, n) times ``scale``; None where it is not given."""
+        matrix, scale = getattr(self, target), float(value_of(self.scale))
+        if matrix is None:
+            return None
+        return value_of(matrix) if scale == 1.0 else scale * value_of(matrix)
 
     def _matrix(self, name: str, value: Any) -> Any:
         n = len(self.dofs)

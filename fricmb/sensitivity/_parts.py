@@ -114,7 +114,7 @@ def _dense(matrix: Any, size: int) -> Floats:
 def _vibrating(part: Any) -> Floats:
     """Stiffness and damping (2, k, k) of a part."""
     size = len(part.dof_names if isinstance(part, ModalBody) else part.dofs)
-    K, C = modal_matrices(part)[1:] if isinstance(part, ModalBody) else (part.K, part.C)
+    K, C = modal_matrices(part)[1:] if isinstance(part, ModalBody) else (part.scaled("K"), part.scaled("C"))
     return np.stack([_dense(K, size), _dense(C, size)])
 
 
@@ -122,7 +122,7 @@ def _inertia(part: Any) -> Floats:
     """Masses (k, k) of a part that is given by modes, matrices, or in space."""
     if isinstance(part, SpaceBody):
         return np.diag(np.asarray(part.masses(), dtype=float))
-    return np.diag(modal_matrices(part)[0]) if isinstance(part, ModalBody) else _dense(part.M, len(part.dofs))
+    return np.diag(modal_matrices(part)[0]) if isinstance(part, ModalBody) else _dense(part.scaled("M"), len(part.dofs))
 
 
 def _slopes(part: Any, seeds: Seeds, values: Callable[[Any], Floats]) -> dict[int, Floats]:

@@ -132,10 +132,9 @@ class Structure:
         """Matrices over named dofs."""
         places = np.array([self.motions.dofs[name] for name in part.dofs])
         for target in ("M", "C", "K"):
-            value = getattr(part, target)
-            if value is None:
+            matrix = part.scaled(target)
+            if matrix is None:
                 continue
-            matrix = value_of(value)
             sparse = not isinstance(matrix, np.ndarray)
             coo = matrix.tocoo() if sparse else None
             rows, columns = (coo.row, coo.col) if coo is not None else np.nonzero(matrix)
