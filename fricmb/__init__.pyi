@@ -1,5 +1,6 @@
 from . import analysis as analysis
 from . import bench as bench
+from . import fe as fe
 from . import laws as laws
 from . import models as models
 from . import normal as normal

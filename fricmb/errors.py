@@ -19,6 +19,22 @@ class ArgumentError(FricmbError, ValueError):
     """An argument of a solver that cannot be: names it, its value and what is accepted."""
 
 
+class FileError(FricmbError, ValueError):
+    """A file that cannot be read: names the file, the record and what was expected."""
+
+
+class MissingExtraError(FricmbError, ImportError):
+    """A library that is not installed; the message names the extra that brings it."""
+
+    def __init__(self, what: str, library: str, extra: str) -> None:
+        super().__init__(f'{what} needs {library}: pip install "fricmb[{extra}]"')
+        self.library, self.extra = library, extra
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        what = str(self).partition(" needs ")[0]
+        return MissingExtraError, (what, self.library, self.extra)
+
+
 class LawError(FricmbError, ValueError):
     """A friction or normal-force law that cannot be."""
 

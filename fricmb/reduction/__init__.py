@@ -3,12 +3,14 @@
 from fricmb.reduction._matrices import reduce_matrices
 from fricmb.reduction._mesh import mesh_matrices
 from fricmb.reduction._modes import Reduced
+from fricmb.reduction._pencil import lowest_modes
 from fricmb.reduction._residual import Residual, flexibility, modal_residual, modes_to_keep
 
 __all__ = [
     "Reduced",
     "Residual",
     "flexibility",
+    "lowest_modes",
     "mesh_matrices",
     "modal_residual",
     "modes_to_keep",

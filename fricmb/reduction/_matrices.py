@@ -8,18 +8,16 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 import scipy.sparse
-from scipy.sparse.linalg import eigsh, splu
+from scipy.sparse.linalg import splu
 
 from fricmb.errors import SceneError, shown
+from fricmb.reduction._factor import factor
 from fricmb.reduction._modes import Floats, Reduced, ritz, split_damping
+from fricmb.reduction._pencil import DENSE, SHIFT, lowest_modes, sparse
 from fricmb.values import is_sparse
 
-#: Up to this size, or where more than a third of the modes are wanted, all are computed by the dense solver.
-DENSE = 600
 #: Relative asymmetry that counts as round-off.
 SYMMETRIC = 1e-9
-#: Inertia that is added to the stiffness to make it regular, relative to K/M: rigid modes are found beside it.
-SHIFT = 1e-7
 
 
 def reduce_matrices(
@@ -61,7 +59,8 @@ def reduce_matrices(
             f"{label}: n_modes must be an integer from 1 to {n} (rows of M), or None;"
             f" got {shown(n_modes)}"
         )
-    omega, modes = _modes(label, M, K, n if n_modes is None else n_modes)
+    found = lowest_modes(label, M, K, count=n if n_modes is None else n_modes)
+    omega, modes = np.sqrt(found.omega2), found.shapes
     neglected, extra = 0.0, 0
     if residual and omega.size < n:
         added, more, neglected = _residual(M, K, omega, modes, np.vstack(list(rows.values())))
@@ -72,28 +71,6 @@ def reduce_matrices(
     return Reduced(
         frequencies=omega, damping_ratios=ratios, damping=damping, shapes=shapes, residual=extra, neglected=neglected
     )
-
-
-def _modes(label: str, M: Any, K: Any, count: int) -> tuple[Floats, Floats]:
-    """The lowest frequencies and modes of unit modal mass; frequencies of rigid modes exactly 0."""
-    n = M.shape[0]
-    if n <= DENSE or 3 * count > n:
-        w2, modes = scipy.linalg.eigh(_dense(K), _dense(M), subset_by_index=[0, count - 1])
-    else:
-        shift = SHIFT * float(K.diagonal().sum()) / float(M.diagonal().sum())
-        w2, modes = eigsh(_sparse(K), k=count, M=_sparse(M), sigma=-max(shift, 1e-300), which="LM")
-        order = np.argsort(w2)
-        w2, modes = w2[order], modes[:, order]
-    size = _norm(K)
-    round_off = 1e3 * np.finfo(float).eps * size * np.sum(modes**2, axis=0)
-    low = int(np.argmin(w2))
-    if w2[low] < -round_off[low]:
-        raise SceneError(
-            f"{label}: K must be positive semidefinite; it has a mode of omega^2 = {w2[low]:.3g} (a structure that"
-            " is unstable at rest cannot be given by modes: use MatrixElement)"
-        )
-    omega: Floats = np.sqrt(np.where(np.abs(w2) <= round_off, 0.0, w2))
-    return omega, np.asarray(modes)
 
 
 def _residual(M: Any, K: Any, omega: Floats, modes: Floats, rows: Floats) -> tuple[Floats, Floats, float]:
@@ -117,10 +94,9 @@ def _residual(M: Any, K: Any, omega: Floats, modes: Floats, rows: Floats) -> tup
 def _solver(K: Any, M: Any, shift: float) -> Callable[[Floats], Floats]:
     """Solves with K + shift M."""
     if is_sparse(K) or is_sparse(M):
-        factors: Any = splu((_sparse(K) + shift * _sparse(M)).tocsc())
-        return lambda b: factors.solve(b)
-    factor = scipy.linalg.cho_factor(_dense(K) + shift * _dense(M))
-    return lambda b: np.asarray(scipy.linalg.cho_solve(factor, b))
+        return factor((sparse(K) + shift * sparse(M)).tocsc())
+    held = scipy.linalg.cho_factor(K + shift * M)
+    return lambda b: np.asarray(scipy.linalg.cho_solve(held, b))
 
 
 # ---- checks
@@ -182,7 +158,10 @@ def _positive_definite(label: str, M: Any) -> None:
     else:
         good = bool(np.linalg.eigvalsh(M * scale[:, None] * scale)[0] > n * np.finfo(float).eps)
     if not good:
-        raise SceneError(f"{label}: M must be positive definite; it is singular or indefinite")
+        raise SceneError(
+            f"{label}: M must be positive definite; it is singular or indefinite (massless degrees of freedom:"
+            " fm.fe.FEModel and ModalBody.from_fe)"
+        )
 
 
 def _rows(label: str, name: str, value: Any, n_axes: int, n: int) -> Floats:
@@ -208,18 +187,7 @@ def _unit_rows(places: Sequence[int] | Any, n: int) -> Floats:
     return rows
 
 
-def _dense(A: Any) -> Floats:
-    return np.asarray(A.toarray() if is_sparse(A) else A)
-
-
-def _sparse(A: Any) -> Any:
-    return A.tocsc() if is_sparse(A) else scipy.sparse.csc_array(A)
-
-
 def _scaled(A: Any, scale: Floats) -> Any:
     side = scipy.sparse.diags(scale)
     return side @ A @ side
 
-
-def _norm(A: Any) -> float:
-    return float(abs(A).sum(axis=1).max())

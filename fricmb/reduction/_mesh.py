@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.errors import SceneError, shown
+from fricmb.errors import MissingExtraError, SceneError, shown
 from fricmb.reduction._modes import Floats
 
 #: Vector element of second order for each kind of mesh that is taken.
@@ -72,7 +72,7 @@ def _library() -> Any:
         import skfem
         import skfem.models.elasticity
     except ImportError as error:
-        raise ImportError('ModalBody.from_mesh needs scikit-fem: pip install "fricmb[fem]"') from error
+        raise MissingExtraError("ModalBody.from_mesh", "scikit-fem", "fem") from error
     return skfem
 
 
