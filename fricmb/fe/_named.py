@@ -110,7 +110,8 @@ def _fields(path: Path, found: dict[str, Any]) -> dict[str, Any]:
             there = ", ".join(sorted(found)) or "no matrix"
             raise FileError(f"{path}: expected M and K, found {there}; say which is which by names={{'{key}': ...}}")
     own = {key: found.pop(key) for key in ("M", "K", "C", "H") if key in found}
-    return {**own, "parts": found}
+    fields: dict[str, Any] = {**own, "parts": found}
+    return fields
 
 
 def _matrices(path: Path, arrays: dict[str, Any]) -> dict[str, Any]:
@@ -130,7 +131,7 @@ def _matrices(path: Path, arrays: dict[str, Any]) -> dict[str, Any]:
         for ends in TRIPLES:
             held = [f"{stem}{mark}{end}" for end in ends]
             if all(name in arrays for name in held):
-                entries[stem] = tuple(arrays[name] for name in held)  # type: ignore[assignment]
+                entries[stem] = tuple(arrays[name] for name in held)
         held = [f"{stem}{mark}{end}" for end in COMPRESSED]
         if all(name in arrays for name in held):
             data, indices, starts = (arrays[name] for name in held)

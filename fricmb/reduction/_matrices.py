@@ -52,7 +52,7 @@ def reduce_matrices(
     if C is not None:
         C = _checked(label, "C", C)
         _same_shape(label, "C", C, n)
-    rows = {name: _rows(label, name, value, n_axes, n) for name, value in points.items()}
+    rows = {name: displacement_rows(label, name, value, n_axes, n) for name, value in points.items()}
     whole = isinstance(n_modes, int | np.integer) and not isinstance(n_modes, bool)
     if n_modes is not None and not (whole and 1 <= n_modes <= n):
         raise SceneError(
@@ -63,7 +63,7 @@ def reduce_matrices(
     omega, modes = np.sqrt(found.omega2), found.shapes
     neglected, extra = 0.0, 0
     if residual and omega.size < n:
-        added, more, neglected = _residual(M, K, omega, modes, np.vstack(list(rows.values())))
+        added, more, neglected = residual_vectors(M, K, omega, modes, np.vstack(list(rows.values())))
         omega, modes, extra = np.concatenate([omega, added]), np.hstack([modes, more]), added.size
     full = np.zeros((omega.size, omega.size)) if C is None else modes.T @ (C @ modes)
     ratios, damping = split_damping(full, omega)
@@ -73,7 +73,7 @@ def reduce_matrices(
     )
 
 
-def _residual(M: Any, K: Any, omega: Floats, modes: Floats, rows: Floats) -> tuple[Floats, Floats, float]:
+def residual_vectors(M: Any, K: Any, omega: Floats, modes: Floats, rows: Floats) -> tuple[Floats, Floats, float]:
     """Frequencies and modes of the residual vectors of loads along ``rows``; the share of flexibility they carry."""
     loads = rows.T - M @ (modes @ (modes.T @ rows.T))
     shift = SHIFT * float(K.diagonal().sum()) / float(M.diagonal().sum())
@@ -164,7 +164,7 @@ def _positive_definite(label: str, M: Any) -> None:
         )
 
 
-def _rows(label: str, name: str, value: Any, n_axes: int, n: int) -> Floats:
+def displacement_rows(label: str, name: str, value: Any, n_axes: int, n: int) -> Floats:
     """Rows (n_axes, n) that give the displacement of a point."""
     accepted = f"{n_axes} degree(s) of freedom (0 to {n - 1}), or a matrix of shape ({n_axes}, {n})"
     given = value.toarray() if is_sparse(value) else np.asarray(value)

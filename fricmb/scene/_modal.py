@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar
@@ -14,6 +14,7 @@ from fricmb.errors import unknown_name
 from fricmb.scene._arrays import check_array, check_vector
 from fricmb.scene._bodies import check_keys, check_letters
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._part import End, Part, PointEnd
 from fricmb.values import depth_of, value_of
 
@@ -48,6 +49,11 @@ class ModalBody(Part):
         How many of the last modes are such residual ones already.
     neglected : float
         Share of the static flexibility that those carry: from :meth:`from_matrices` and :meth:`from_mesh`.
+    parts : dict of str to (n, n)
+        Matrices in the coordinates of the body, such as friction and gyroscopic terms, which :meth:`matrix` puts into a
+        scene: from :meth:`from_fe`.
+    errors : sequence of float
+        Relative error of eigenvalues, estimated, at the samples of :meth:`from_fe`.
 
     Raises
     ------
@@ -56,10 +62,10 @@ class ModalBody(Part):
 
     See Also
     --------
-    from_matrices, from_mesh
+    from_fe, from_matrices, from_mesh
     """
 
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "axes", "truncation", "residual", "neglected")
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "axes", "truncation", "residual", "neglected", "parts", "errors")
 
     _: KW_ONLY
     frequencies: Any
@@ -73,6 +79,8 @@ class ModalBody(Part):
     truncation: float | None = None
     residual: int = 0
     neglected: float = 0.0
+    parts: Mapping[str, Any] = field(default_factory=dict)
+    errors: Sequence[float] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -126,6 +134,14 @@ class ModalBody(Part):
         if isinstance(self.residual, bool) or not isinstance(self.residual, int) or not 0 <= self.residual <= n:
             self._refuse("residual", self.residual, f"an integer from 0 to {n}, the number of modes")
         self._set("neglected", self._number("neglected", self.neglected, minimum=0.0))
+        self._set("errors", tuple(self._number("errors", value, minimum=0.0) for value in self.errors))
+        if not isinstance(self.parts, Mapping):
+            self._refuse("parts", self.parts, "a dict of name to matrix")
+        parts = {str(key): check_array(self, f"parts[{key!r}]", value) for key, value in self.parts.items()}
+        for key, value in parts.items():
+            if value.shape != (n, n):
+                self._refuse(f"parts[{key!r}]", value.shape, f"a matrix of shape ({n}, {n})")
+        self._set("parts", MappingProxyType(parts))
 
     @classmethod
     def from_matrices(
@@ -232,6 +248,106 @@ class ModalBody(Part):
 
         solid = {"young": young, "poisson": poisson, "density": density, "thickness": thickness}
         return from_mesh(cls, name, mesh, solid, plane, fixed, points, n_modes, damping_ratios, residual, fields)
+
+    @classmethod
+    def from_fe(
+        cls,
+        name: str,
+        fe: Any,
+        *,
+        points: Mapping[str, Any],
+        axes: str = "xyz",
+        normals: Any = None,
+        up_to: float | None = None,
+        n_modes: int | None = None,
+        residual: bool = True,
+        enrich: Sequence[Mapping[str, float]] = (),
+        scales: Mapping[str, Any] | None = None,
+        structural_at: float | None = None,
+        tolerance: float = 1e-6,
+        damping_ratios: Any = None,
+        **fields: Any,
+    ) -> ModalBody:
+        """A body from matrices of a finite element program.
+
+        Parameters
+        ----------
+        name : str
+        fe : FEModel
+            From ``fm.fe.read``, ``fm.fe.join`` or ``fm.fe.FEModel``.
+        points : dict of str to int, ints, or (len(axes), n)
+            The number of a node; numbers of nodes, which give one point each, ``"pad_1012"``; or rows that give the
+            displacement.  Of a model without labels a degree of freedom along each axis, or rows.
+        axes : str
+        normals : "surface" or dict of str to (3,), optional
+            Turns the axes of points: z along the normal, out of the body, of the plane that fits the point's nodes
+            best, or as given; x as near to global x as it can be.
+        up_to : float, optional
+            Frequency, in cycles for each unit of time, up to which modes are kept.
+        n_modes : int, optional
+            How many at most.
+        residual : bool
+            Whether residual vectors keep the static flexibility at the points.
+        enrich : sequence of dict of str to float
+            Samples of parameters, or of factors of the model's parts, at which complex modes are added to the basis:
+            growth rates need them.  Eigenvalues up to ``up_to`` are right to some ``tolerance`` there; ``errors`` says
+            how far.
+        scales : dict of str to expression, optional
+            Of parts: the number in front as an expression of the parameters in ``enrich``.  Names of parts begin with K
+            (stiffness), C, D or G (damping), or M.
+        structural_at : float, optional
+            Frequency, in cycles, at which structural damping becomes viscous; by default that of each mode.
+        tolerance : float
+            Of eigenvalues at the samples, relative.
+        damping_ratios : float or array_like, optional
+            For a model without damping of its own.
+        **fields
+            Of :class:`ModalBody`: position, velocity.
+
+        Returns
+        -------
+        ModalBody
+
+        Raises
+        ------
+        SceneError
+        """
+        from fricmb.scene._modal_from_fe import from_fe
+
+        return from_fe(
+            cls, name, fe, points, axes, normals, up_to, n_modes, residual, enrich, scales, structural_at, tolerance,
+            damping_ratios, fields,
+        )  # fmt: skip
+
+    def matrix(self, name: str, *, M: Any = None, C: Any = None, K: Any = None, scale: Any = 1.0) -> MatrixElement:
+        """One of the body's ``parts`` as an element of a scene.
+
+        Parameters
+        ----------
+        name : str
+            Of the element.
+        M, C, K : str or (n, n) array, optional
+            Name of a part, or a matrix in the coordinates of the body.
+        scale : float, parameter or expression of parameters
+
+        Returns
+        -------
+        MatrixElement
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such part.
+        """
+
+        def held(value: Any) -> Any:
+            if not isinstance(value, str):
+                return value
+            if value not in self.parts:
+                raise unknown_name(f"part of {self._label()}", value, self.parts)
+            return self.parts[value]
+
+        return MatrixElement(name, self.dof_names, M=held(M), C=held(C), K=held(K), scale=scale)
 
     @property
     def n_modes(self) -> int:

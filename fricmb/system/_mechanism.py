@@ -70,9 +70,9 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     mechanism = Mechanism(
         n=n,
         n_places=n_y - n,
-        M=Entries.of(structure.M),
-        K=Entries.of(structure.K),
-        C=Entries.of(structure.C),
+        M=Entries.of(structure.triples("M")),
+        K=Entries.of(structure.triples("K")),
+        C=Entries.of(structure.triples("C")),
         B=Entries.of(structure.B),
         f=_vector(structure.f, n_y + n_u),
         places=_places(scene, points, index),

@@ -34,7 +34,7 @@ from fricmb.scene import (
 )
 from fricmb.system._bends import Bend
 from fricmb.system._lined import Entries
-from fricmb.system._matrices import DENSE, dense_of, is_sparse, matrix_of
+from fricmb.system._matrices import DENSE, FEW, dense_of, is_sparse, matrix_of
 from fricmb.system._motions import Motions
 from fricmb.system._tables import TIME_ARGUMENT, Argument, Row, TableBuilder
 from fricmb.values import value_of
@@ -61,7 +61,10 @@ class Store:
 
 @dataclass(frozen=True, kw_only=True)
 class Structure:
-    """Arrays under construction; places in [dofs, signals].  ``made``: what came of them, by the number of signals."""
+    """Arrays under construction; places in [dofs, signals].  ``made``: what came of them, by the number of signals.
+
+    ``wide``: entries of matrices over many degrees of freedom, as arrays: the matrix, rows, columns, values.
+    """
 
     motions: Motions
     M: list[tuple[int, int, float]] = field(default_factory=list)
@@ -71,6 +74,7 @@ class Structure:
     B: list[tuple[int, int, float]] = field(default_factory=list)
     stores: list[Store] = field(default_factory=list)
     lined: Entries = field(default_factory=Entries)
+    wide: list[tuple[str, Any, Any, Floats]] = field(default_factory=list)
     table: TableBuilder = field(default_factory=TableBuilder)
     spread: list[list[Row]] = field(default_factory=list)
     bends: list[Bend] = field(default_factory=list)
@@ -85,7 +89,7 @@ class Structure:
 
     def lists(self) -> tuple[list[Any], ...]:
         """See :class:`Growing`."""
-        return self.M, self.K, self.C, self.f, self.stores
+        return self.M, self.K, self.C, self.f, self.stores, self.wide
 
     def marks(self) -> tuple[int, ...]:
         """See :class:`Growing`: signals and nonlinear elements are told by their numbers."""
@@ -95,6 +99,8 @@ class Structure:
     def has_plain_masses(self) -> bool:
         """Whether each degree of freedom has a mass > 0 and nothing else: the matrix needs no look."""
         masses = self.M
+        if any(target == "M" for target, *_ in self.wide):
+            return False
         one_each = len(masses) == len({i for i, _, _ in masses}) == self.n
         return one_each and all(i == j and mass > 0.0 for i, j, mass in masses)
 
@@ -116,8 +122,7 @@ class Structure:
         m, stiffness = m[built], stiffness[built]
         if damping.ndim == 2:
             damping = damping[np.ix_(built, built)]
-            pairs = np.argwhere(damping).tolist()
-            self.C.extend((places[i], places[j], float(damping[i, j])) for i, j in pairs)
+            self._add_entries("C", np.array(places), *np.nonzero(damping), damping[damping != 0.0])
             damping = np.zeros(len(built))
         else:
             damping = damping[built]
@@ -139,11 +144,19 @@ class Structure:
             coo = matrix.tocoo() if sparse else None
             rows, columns = (coo.row, coo.col) if coo is not None else np.nonzero(matrix)
             entries = coo.data if coo is not None else matrix[rows, columns]
-            local = list(zip(rows.tolist(), columns.tolist(), entries.tolist(), strict=True))
-            getattr(self, target).extend((int(places[i]), int(places[j]), v) for i, j, v in local)
+            self._add_entries(target, places, rows, columns, entries)
             if target == "K":
+                local = list(zip(rows.tolist(), columns.tolist(), entries.tolist(), strict=True))
                 held = tuple(Row(((int(i), 1.0),)) for i in places)
                 self.stores.append(Store(name=part.name, rows=held, K=local, f=()))
+
+    def _add_entries(self, target: str, places: Any, rows: Any, columns: Any, values: Floats) -> None:
+        """Entries over local rows and columns, which stand at ``places``: one by one, or many as arrays."""
+        if values.size > FEW:
+            self.wide.append((target, places[rows], places[columns], values))
+            return
+        held = zip(places[rows].tolist(), places[columns].tolist(), values.tolist(), strict=True)
+        getattr(self, target).extend(held)
 
     # -- elements -----------------------------------------------------------------------------------------------
     def add_element(self, element: Element) -> None:
@@ -246,7 +259,9 @@ class Structure:
         both = (n + n_u, n + n_u)
         fx = self._constant_force(n + n_u)
         given: Any = {
-            "M": (self.M, (n, n)), "Kx": (self.K, both, self.lined.K), "Cx": (self.C, both, self.lined.C),
+            "M": (self.M, (n, n), self._many("M")),
+            "Kx": (self.K, both, [*self.lined.K, *self._many("K")]),
+            "Cx": (self.C, both, [*self.lined.C, *self._many("C")]),
             "B": (self.B, (n, n_u)),
         }  # fmt: skip
         if n > DENSE:
@@ -254,6 +269,14 @@ class Structure:
             if is_sparse(n, sum(len(found[name].value) for name in ("M", "Kx", "Cx"))):
                 return SparseLinear(**found, fx=fx)
         return Linear(**{name: dense_of(*entries) for name, entries in given.items()}, fx=fx)
+
+    def triples(self, target: str) -> list[tuple[int, int, float]]:
+        """All entries of "M", "K" or "C" one by one."""
+        held = [zip(i.tolist(), j.tolist(), values.tolist(), strict=True) for i, j, values in self._many(target)]
+        return [*getattr(self, target), *(entry for entries in held for entry in entries)]
+
+    def _many(self, target: str) -> list[tuple[Any, Any, Floats]]:
+        return [entries for name, *entries in self.wide if name == target]  # type: ignore[misc]
 
     def _constant_force(self, length: int) -> Floats:
         if not self.lined.f:

@@ -63,3 +63,24 @@ def test_refused():
         scene("x", K=K)
     with pytest.raises(fm.SceneError, match=r"scale must be.*expression of parameters"):
         scene(fm.t, K=K)
+
+
+@pytest.mark.parametrize("mechanism", [False, True])
+def test_matrices_over_many_degrees_of_freedom(mechanism):
+    n = 12
+    rng = np.random.default_rng(3)
+    A = rng.standard_normal((n, n))
+    M, K, C = 0.1 * A @ A.T, A.T @ A + np.eye(n), 0.05 * rng.standard_normal((n, n))
+    bodies = [fm.Body(f"b{i}", mass=1.0, velocity={"x": float(i == 3)}) for i in range(n)]
+    names = [f"b{i}.x" for i in range(n)]
+    parts = [*bodies, fm.MatrixElement("tie", names, M=M, C=C, K=K, scale=fm.parameter("s", 0.5))]
+    if mechanism:
+        arm = fm.RigidBody("arm", mass=1.0, inertia=1.0, points={"end": (-1.0, 0.0)}, position=(1.0, 0.0))
+        parts += [arm, fm.Revolute("pin", arm.point("end"), fm.ground_point(0.0, 0.0))]
+    sol = fm.simulate(fm.Scene("many", parts), t_end=0.7, rtol=1e-9)
+    whole = np.eye(n) + 0.5 * M
+    inverse = np.linalg.inv(whole)
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-0.5 * inverse @ K, -0.5 * inverse @ C]])
+    expected = (scipy.linalg.expm(0.7 * state) @ np.r_[np.zeros(n), np.eye(n)[3]])[:n]
+    assert [sol[name][-1] for name in names] == pytest.approx(expected, rel=1e-7, abs=1e-9)
+    assert sol.audit().ok
