@@ -3,6 +3,7 @@
 What an example leaves in ``figure`` is its picture.  Names that belong together share one.
 """
 
+import _examples_fe
 import _examples_space
 
 import fricmb as fm
@@ -436,7 +437,7 @@ print(found)
 figure = found.plot.residuals()
 """,
     "analysis.modal_energy": _BRAKE + "print(fm.analysis.modal_energy(sol).omega)\n",
-} | _examples_space.EXAMPLES
+} | _examples_space.EXAMPLES | _examples_fe.EXAMPLES
 SHARED = {
     "analysis.Cycle": "analysis.limit_cycle", "analysis.Branch": "analysis.continue_cycle",
     "analysis.Special": "analysis.continue_cycle", "analysis.Fold": "analysis.continue_cycle",
@@ -458,7 +459,7 @@ SHARED = {
     "analysis.Eigenvalues": "analysis.complex_eigenvalues", "analysis.Crossing": "analysis.complex_eigenvalues",
     "analysis.StabilityMap": "analysis.stability_map", "analysis.EnergyLedger": "analysis.energy_ledger",
     "analysis.Phase": "analysis.energy_ledger", "analysis.ModalEnergy": "analysis.modal_energy",
-} | _examples_space.SHARED  # fmt: skip
+} | _examples_fe.SHARED | _examples_space.SHARED  # fmt: skip
 
 
 def example(name: str) -> str | None:

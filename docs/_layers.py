@@ -10,7 +10,7 @@ import fricmb
 
 # Floors from below, as the page names them; a package that is new stands out until it is given a place.
 PACKAGE = (
-    ("errors", "values", "integrate", "reduction", "solution", "dae", "facade", "version"),
+    ("errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "version"),
     ("laws", "normal"),
     ("scene", "space"),
     ("equations",),
