@@ -94,5 +94,5 @@ def test_references_are_given_back():
 
 
 def test_rows_of_another_length_are_refused():
-    with pytest.raises(ValueError, match="another shape|cannot assign slice of shape"):  # the second: by numba's own
+    with pytest.raises(ValueError, match=r"another shape|cannot assign slice of shape"):  # the second: by numba's own
         copy_row(np.zeros((2, 3)), np.zeros(2))
