@@ -1,7 +1,7 @@
 """A name for a computation by its content, the same in every process and on every day.
 
-Functions and classes count by their code and by all that it refers to: helpers, globals, constants of classes, what
-closures hold, each once.  Those of Python itself, of fricmb and of installed packages count by name and version.
+Functions and classes count by their code and by all that it refers to (:mod:`fricmb.integrate.compile.code_reader`).
+Those of Python itself, of fricmb and of installed packages count by name and version.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ import hashlib
 import pickle
 import sys
 import types
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.code_reader import CodeReader
 from fricmb.scene import Scene
 from fricmb.solution import Solution
 from fricmb.values import DIMENSIONS, parameters_in
@@ -30,7 +31,7 @@ def fingerprint(*values: Any) -> str:
     return Fingerprint().of(*values)
 
 
-class Fingerprint:
+class Fingerprint(CodeReader):
     """Makes digests.
 
     Attributes
@@ -40,182 +41,105 @@ class Fingerprint:
     """
 
     def __init__(self) -> None:
+        super().__init__()
         self.unseen: list[str] = []
-        self._numbers: dict[int, int] = {}
-        self._alive: list[Any] = []
 
     def of(self, *values: Any) -> str:
         """Digest of values."""
-        digest = hashlib.sha256()
-        for token in self._tokens(values):
-            digest.update(len(token).to_bytes(8, "little"))
-            digest.update(token)
-        return digest.hexdigest()
+        self.lines.clear()
+        self.read(values)
+        return hashlib.sha256("\n".join(self.lines).encode()).hexdigest()
 
-    def _tokens(self, value: Any) -> Iterator[bytes]:
-        if value is None or isinstance(value, bool | int | str | bytes | complex):
-            yield repr(value).encode()
-        elif isinstance(value, float):
-            yield value.hex().encode()
-        elif isinstance(value, np.ndarray | np.generic):
-            yield from self._array(np.asarray(value))
-        elif isinstance(value, Mapping):
-            yield b"mapping"
-            for key in sorted(value, key=repr):
-                yield from self._tokens(key)
-                yield from self._tokens(value[key])
-        elif isinstance(value, tuple | list):
-            yield f"sequence of {len(value)}".encode()
-            for item in value:
-                yield from self._tokens(item)
-        elif isinstance(value, set | frozenset):
-            yield f"set {sorted(fingerprint(item) for item in value)}".encode()
-        else:
-            yield from self._once(value)
+    def _follows(self, module: str) -> bool:
+        return not _is_library(module)
 
-    def _once(self, value: Any) -> Iterator[bytes]:
-        """Functions, classes, modules and objects; what was met before counts by its place."""
-        number = self._numbers.get(id(value))
-        if number is not None:
-            yield f"see {number}".encode()
-            return
-        self._numbers[id(value)] = len(self._numbers)
-        self._alive.append(value)
-        if isinstance(value, type):
-            yield from self._class(value)
-        elif isinstance(value, types.ModuleType):
-            yield from _named(value.__name__)
-        elif isinstance(value, types.FunctionType | functools.partial | types.MethodType):
-            yield from self._function(value)
-        elif isinstance(value, types.BuiltinFunctionType | np.ufunc):
-            yield from _named(getattr(value, "__module__", None) or "builtins", value.__name__)
-        elif isinstance(inner := getattr(value, "py_func", getattr(value, "__wrapped__", None)), types.FunctionType):
-            yield type(value).__qualname__.encode()
-            yield from self._tokens(inner)
-        else:
-            yield from self._object(value)
+    def _named(self, module: str, name: str) -> str:
+        """Of a library with the version; that of fricmb is said once, by who asks."""
+        top = sys.modules.get(module.partition(".")[0])
+        version = "" if module.startswith("fricmb") else getattr(top, "__version__", "")
+        return f"{module}.{name} {version if isinstance(version, str) else ''}"
 
-    def _array(self, array: np.ndarray[Any, Any]) -> Iterator[bytes]:
-        yield f"{array.dtype.str} {array.shape}".encode()
-        if array.dtype == object:
-            yield from self._tokens(array.ravel().tolist())
-        else:
-            yield np.ascontiguousarray(array).tobytes()
+    def _value(self, thing: Any) -> str:
+        if isinstance(thing, Mapping):  # in whatever order
+            held = sorted(thing.items(), key=lambda item: repr(item[0]))
+            return f"mapping {super()._value([entry for item in held for entry in item])}"
+        if isinstance(thing, set | frozenset):
+            return f"set {sorted(fingerprint(item) for item in thing)}"
+        if isinstance(thing, np.ndarray) and thing.dtype == object:
+            return f"array {thing.shape} {self._value(thing.ravel().tolist())}"
+        return super()._value(thing)
 
-    def _object(self, value: Any) -> Iterator[bytes]:
-        module = type(value).__module__.partition(".")[0]
-        if isinstance(value, Solution):
-            yield from self._tokens((value.end, value.scene))
-        elif isinstance(value, Scene):
-            named = () if value.units == DIMENSIONS else (value.units,)
-            yield from self._tokens(("scene", value.name, value.parts, *named))
-        elif module == "sympy" or _is_expression(value):
-            yield from self._expression(value)
-        elif module == "scipy" and hasattr(value, "tocoo"):
-            matrix = value.tocoo()
-            yield from self._tokens((matrix.shape, matrix.row, matrix.col, matrix.data))
-        elif dataclasses.is_dataclass(value):
-            yield from self._tokens(type(value))
-            for field in dataclasses.fields(value):
-                yield field.name.encode()
-                yield from self._tokens(getattr(value, field.name))
-        else:
-            yield from self._tokens(type(value))
-            yield from self._pickled(value)
+    def _inside(self, thing: Any) -> str:
+        if isinstance(thing, functools.partial):
+            return f"partial {self._value((thing.func, thing.args, thing.keywords))}"
+        if isinstance(thing, types.MethodType):
+            return f"method {self._value((thing.__self__, thing.__func__))}"
+        inner = getattr(thing, "py_func", getattr(thing, "__wrapped__", None))
+        if isinstance(inner, types.FunctionType) and not isinstance(thing, type | types.FunctionType):
+            return f"{type(thing).__qualname__} of {self._value(inner)}"
+        return super()._inside(thing)
 
-    def _pickled(self, value: Any) -> Iterator[bytes]:
+    def _function(self, function: types.FunctionType) -> str:
+        return f"{function.__module__}.{function.__qualname__} {super()._function(function)}"
+
+    def _other(self, thing: Any) -> str:
+        if isinstance(thing, Solution):
+            return f"solution {self._value((thing.end, thing.scene))}"
+        if isinstance(thing, Scene):
+            named = () if thing.units == DIMENSIONS else (thing.units,)
+            return f"scene {self._value((thing.name, thing.parts, *named))}"
+        module = type(thing).__module__.partition(".")[0]
+        if module == "sympy" or _is_expression(thing):
+            import sympy
+
+            values = sorted((p.name, p.value) for p in parameters_in(thing))
+            return f"expression {sympy.srepr(thing)} {self._value(values)}"
+        if module == "scipy" and hasattr(thing, "tocoo"):
+            matrix = thing.tocoo()
+            return f"matrix {self._value((matrix.shape, matrix.row, matrix.col, matrix.data))}"
+        if dataclasses.is_dataclass(thing):
+            held = [(field.name, getattr(thing, field.name)) for field in dataclasses.fields(thing)]
+            return f"{self._value(type(thing))} {self._value(held)}"
+        return f"{self._value(type(thing))} {self._pickled(thing)}"
+
+    def _pickled(self, thing: Any) -> str:
         try:
-            yield pickle.dumps(value, protocol=4)
+            return hashlib.sha256(pickle.dumps(thing, protocol=4)).hexdigest()
         except Exception:  # whatever an object has against being pickled
-            self.unseen.append(f"a {type(value).__module__}.{type(value).__qualname__}")
+            self.unseen.append(f"a {type(thing).__module__}.{type(thing).__qualname__}")
+            return ""
 
-    def _expression(self, value: Any) -> Iterator[bytes]:
-        import sympy
-
-        yield sympy.srepr(value).encode()
-        yield from self._tokens(sorted((p.name, p.value) for p in parameters_in(value)))
-
-    def _class(self, cls: type) -> Iterator[bytes]:
-        yield from _named(cls.__module__, cls.__qualname__)
-        if _is_library(cls.__module__):
-            return
-        for base in cls.__mro__:
+    def _class(self, kind: type) -> str:
+        name = super()._class(kind)
+        if _is_library(kind.__module__):
+            return name
+        held = []
+        for base in kind.__mro__:
             if _is_library(base.__module__):
-                yield from _named(base.__module__, base.__qualname__)
-                continue
-            for name, member in sorted(vars(base).items()):
-                yield from self._member(name, member)
-
-    def _member(self, name: str, member: Any) -> Iterator[bytes]:
-        """A method, a property, or a constant of a class."""
-        if name.startswith("__") and name not in _SPECIAL:
-            return
-        if isinstance(member, staticmethod | classmethod):
-            member = member.__func__
-        if isinstance(member, property):
-            member = member.fget
-        if isinstance(member, functools.cached_property):
-            member = member.func
-        if isinstance(member, types.MemberDescriptorType | types.GetSetDescriptorType) or name.startswith("_abc_"):
-            return
-        yield name.encode()
-        yield from self._tokens(member)
-
-    def _function(self, function: Any) -> Iterator[bytes]:
-        if isinstance(function, functools.partial):
-            yield from self._tokens(("partial", function.func, function.args, function.keywords))
-        elif isinstance(function, types.MethodType):
-            yield from self._tokens(("method", function.__self__, function.__func__))
-        elif _is_library(function.__module__ or ""):
-            yield from _named(function.__module__ or "", function.__qualname__)
-        else:
-            yield f"{function.__module__}.{function.__qualname__}".encode()
-            names: set[str] = set()
-            yield from self._code(function.__code__, names)
-            yield from self._tokens((function.__defaults__, function.__kwdefaults__))
-            yield from self._tokens([_content(cell) for cell in function.__closure__ or ()])
-            yield from self._globals(names, function.__globals__)
-
-    def _globals(self, names: set[str], around: Mapping[str, Any]) -> Iterator[bytes]:
-        """What the names of a function stand for; of a module of the user's, what may be taken from it."""
-        for name in sorted(names & around.keys()):
-            value = around[name]
-            yield name.encode()
-            yield from self._tokens(value)
-            if isinstance(value, types.ModuleType) and not _is_library(value.__name__):
-                held = vars(value)
-                for taken in sorted(names & held.keys()):
-                    yield taken.encode()
-                    yield from self._tokens(held[taken])
-
-    def _code(self, code: types.CodeType, names: set[str]) -> Iterator[bytes]:
-        names.update(code.co_names)
-        yield code.co_code
-        yield repr((code.co_names, code.co_varnames, code.co_freevars)).encode()
-        for constant in code.co_consts:
-            if isinstance(constant, types.CodeType):
-                yield from self._code(constant, names)
+                held.append(self._named(base.__module__, base.__qualname__))
             else:
-                yield from self._tokens(constant)
+                members = ((key, _inner(member)) for key, member in sorted(vars(base).items()) if _counts(key, member))
+                held += [f"{key}: {self._value(member)}" for key, member in members]
+        return f"{name} {held}"
 
 
-def _content(cell: Any) -> Any:
-    try:
-        return cell.cell_contents
-    except ValueError:  # not filled yet
-        return None
+def _counts(name: str, member: Any) -> bool:
+    """Whether something in a class is a method, a property or a constant that its author wrote."""
+    made = isinstance(member, types.MemberDescriptorType | types.GetSetDescriptorType) or name.startswith("_abc_")
+    return not made and (not name.startswith("__") or name in _SPECIAL)
+
+
+def _inner(member: Any) -> Any:
+    """The function of a method or property."""
+    if isinstance(member, staticmethod | classmethod):
+        member = member.__func__
+    if isinstance(member, property):
+        member = member.fget
+    return member.func if isinstance(member, functools.cached_property) else member
 
 
 def _is_expression(value: Any) -> bool:
     return any(base.__module__.partition(".")[0] == "sympy" for base in type(value).__mro__)
-
-
-def _named(module: str, name: str = "") -> Iterator[bytes]:
-    """A thing by its name; of a library with the version."""
-    top = sys.modules.get(module.partition(".")[0])
-    # the version of fricmb is said once, by who asks
-    version = "" if module.startswith("fricmb") else getattr(top, "__version__", "")
-    yield f"{module}.{name} {version if isinstance(version, str) else ''}".encode()
 
 
 @functools.cache

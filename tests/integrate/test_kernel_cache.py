@@ -91,13 +91,13 @@ def test_a_folder_that_cannot_be_made_falls_back(run):
 
 def test_an_attribute_is_no_global_of_the_same_name():
     """What the module keeps under that name while it runs is not in the kernel, and does not make it a new one."""
-    from fricmb.integrate.compile.content import _Reader
+    from fricmb.integrate.compile.content import KernelReader
 
     def lines(kept):
         around = {"kept": kept, "factor": 3.0}
         exec("def sum_up(room):\n    return factor * room.kept\n", around)
         around["sum_up"].__module__ = "fricmb.made_up"
-        reader = _Reader()
+        reader = KernelReader()
         reader.read(around["sum_up"])
         return reader.lines
 
@@ -107,14 +107,14 @@ def test_an_attribute_is_no_global_of_the_same_name():
 
 def test_a_kernel_that_moved_to_another_module_is_another_one():
     """What is kept names modules: a version that has other ones could not read it."""
-    from fricmb.integrate.compile.content import _Reader
+    from fricmb.integrate.compile.content import KernelReader
     from fricmb.integrate.compile.kernel import kernel
 
     def lines(module):
         around = {}
         exec("def double(x):\n    return 2.0 * x\n", around)
         around["double"].__module__ = module
-        reader = _Reader()
+        reader = KernelReader()
         reader.read(kernel(around["double"]))
         return reader.lines
 

@@ -153,3 +153,32 @@ def test_what_cannot_be_followed_is_told():
     found = Fingerprint()
     found.of(reduce)
     assert found.unseen == ["a _thread.lock"]
+
+
+def test_defaults_count_and_docstrings_do_not():
+    def made(default, named, doc):
+        space = {"__name__": "mine"}
+        exec(f"def reduce(sol, a={default}, *, b={named}):\n    '''{doc}'''\n    return a + b", space)
+        return fingerprint(space["reduce"])
+
+    assert made(1, 2, "Some.") == made(1, 2, "Other.")
+    assert len({made(1, 2, ""), made(2, 2, ""), made(1, 3, "")}) == 3
+
+
+def test_runs_of_a_store_from_another_process_are_found(tmp_path):
+    """Keys of what a sweep is given, a function and its helper among it, are those of yesterday's process."""
+    (tmp_path / "study.py").write_text(
+        "import sys\nimport fricmb as fm\n"
+        "def peak(sol):\n    calls.append(1)\n    return float(abs(sol['mass.x']).max())\n"
+        "calls = []\n"
+        "def reduce(sol):\n    return peak(sol)\n"
+        "if __name__ == '__main__':\n"
+        "    runs = [{'spring.stiffness': k} for k in (1.0, 2.0)]\n"
+        "    found = fm.sweep(fm.models.belt_oscillator(), runs, t_end=1.0, reduce=reduce, store='kept', workers=1,"
+        " progress=False)\n"
+        "    print(list(found), len(calls))\n"
+    )
+    run = [sys.executable, "study.py"]
+    first, second = (subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True).stdout for _ in "12")
+    assert first.rsplit(maxsplit=1)[1] == "2"
+    assert second.rsplit(maxsplit=1) == [first.rsplit(maxsplit=1)[0], "0"]

@@ -13,12 +13,10 @@ import inspect
 import sys
 from functools import lru_cache
 from pathlib import Path
-from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any
 
-import numpy as np
-
-from fricmb.integrate.compile.plain import is_plain, names_taken
+from fricmb.integrate.compile.code_reader import CodeReader
+from fricmb.integrate.compile.plain import is_plain
 
 #: Sources whose content goes into every stamp: how rooms and calls are put into machine code.
 _COMPILER = ("layout", "room", "lanes", "block", "template", "kernel", "compilers")
@@ -40,7 +38,7 @@ def _toolchain(plain: bool) -> str:
 
 def content_digest(function: Any, options: str, signature: Any, machine: Any) -> str:
     """Digest of a kernel for one signature on one processor; equal exactly where the machine code may be shared."""
-    reader = _Reader()
+    reader = KernelReader()
     reader.read(function)
     text = "\n".join([_toolchain(is_plain()), options, describe_signature(signature), repr(machine), *reader.lines])
     return hashlib.sha256(text.encode()).hexdigest()[:32]
@@ -59,7 +57,7 @@ def describe_signature(signature: Any) -> str:
         if isinstance(kind, types.BaseTuple):
             return f"({', '.join(describe(inside) for inside in kind)})"
         if isinstance(kind, types.Dispatcher):
-            reader = _Reader()
+            reader = KernelReader()
             reader.read(kind.dispatcher)
             return "\n".join(reader.lines)
         return str(kind)
@@ -69,43 +67,15 @@ def describe_signature(signature: Any) -> str:
     return f"({', '.join(map(describe, signature.args))}) -> {describe(signature.return_type)}"
 
 
-class _Reader:
-    """Lines that say what a function is made of, each thing once, in the order in which they are met."""
+class KernelReader(CodeReader):
+    """Reads kernels, and what is compiled into them."""
 
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self._numbers: dict[int, int] = {}
-        self._kept: list[Any] = []  # identities stay valid while what they belong to is alive
+    def _follows(self, module: str) -> bool:
+        """Not those of which the stamp names the version."""
+        return module.partition(".")[0] not in ("numba", "llvmlite", "numpy", "math", "scipy", "typing")
 
-    def read(self, thing: Any) -> None:
-        """Add the lines of one thing and of all that it refers to."""
-        self.lines.append(self._value(thing))
-
-    def _value(self, thing: Any) -> str:
-        if thing is None or isinstance(thing, bool | int | float | complex | str | bytes):
-            return f"{type(thing).__name__} {thing!r}"
-        if isinstance(thing, np.ndarray):
-            values = hashlib.sha256(np.ascontiguousarray(thing).tobytes()).hexdigest()
-            return f"array {thing.dtype} {thing.shape} {values}"
-        if isinstance(thing, np.generic):
-            return f"{thing.dtype} {thing!r}"
-        if isinstance(thing, frozenset | set):
-            return f"set {sorted(map(self._value, thing))}"
-        if isinstance(thing, tuple | list):
-            fields = getattr(thing, "_fields", "")
-            return f"{type(thing).__qualname__} {fields} [{', '.join(map(self._value, thing))}]"
-        if isinstance(thing, dict):
-            inside = (f"{self._value(name)}: {self._value(value)}" for name, value in thing.items())
-            return f"dict {{{', '.join(inside)}}}"
-        return self._once(thing)
-
-    def _once(self, thing: Any) -> str:
-        number = self._numbers.get(id(thing))
-        if number is None:
-            number = self._numbers[id(thing)] = len(self._numbers)
-            self._kept.append(thing)
-            self.lines.append(f"{number}: {self._inside(thing)}")
-        return f"see {number}"
+    def _opens(self, module: str) -> bool:
+        return _own(module)
 
     def _inside(self, thing: Any) -> str:
         called = getattr(thing, "called_by_address", None)
@@ -119,63 +89,17 @@ class _Reader:
         defined = getattr(thing, "_defn", None)
         if defined is not None:
             return f"intrinsic {self._value(defined)}"
-        if isinstance(thing, FunctionType):
-            return self._function(thing)
-        if isinstance(thing, CodeType):
-            return self._code(thing, {})
-        module = getattr(thing, "__module__", None) or ""
-        if isinstance(thing, ModuleType):
-            return f"module {thing.__name__}"
-        if isinstance(thing, type):
-            return self._class(thing)
-        if isinstance(thing, BuiltinFunctionType | np.ufunc):
-            return f"builtin {module}.{thing.__name__}"
-        name = getattr(thing, "__qualname__", None) or getattr(thing, "__name__", None)
-        return f"{type(thing).__module__}.{type(thing).__qualname__} {name or str(thing)}"
+        return super()._inside(thing)
 
     def _class(self, kind: type) -> str:
         """A class of this package by its fields or source, any other by name."""
         fields = getattr(kind, "_fields", None)
         if fields is not None:
             return f"named tuple {kind.__qualname__} {fields}"
-        if kind.__module__.partition(".")[0] == __name__.partition(".")[0]:
+        if _own(kind.__module__):
             return f"class {kind.__qualname__} {inspect.getsource(kind)}"
-        return f"class {kind.__module__}.{kind.__qualname__}"
-
-    def _function(self, function: FunctionType) -> str:
-        if not _is_followed(function):
-            return f"function {function.__module__}.{function.__qualname__}"
-        cells = [cell.cell_contents for cell in function.__closure__ or ()]
-        inside = self._code(function.__code__, function.__globals__, function.__doc__)
-        return f"function {inside} cells {self._value(cells)} defaults {self._value(function.__defaults__)}"
-
-    def _code(self, code: CodeType, around: dict[str, Any], doc: str | None = None) -> str:
-        constants = []
-        for constant in code.co_consts:
-            if isinstance(constant, str) and constant == doc:
-                continue
-            is_code = isinstance(constant, CodeType)
-            constants.append(self._code(constant, around) if is_code else self._value(constant))
-        names, taken = [], names_taken(code)
-        for name in code.co_names:
-            if name in around and name in taken:
-                names.append(f"{name} = {self._global(around[name], code.co_names)}")
-            else:
-                names.append(name)
-        return f"{code.co_code.hex()} {code.co_varnames} {code.co_freevars} {constants} {names}"
-
-    def _global(self, thing: Any, names: tuple[str, ...]) -> str:
-        """A global; of a module of this package, what the function may take from it."""
-        if isinstance(thing, ModuleType) and _own(thing.__name__):
-            taken = [f"{name} = {self._value(getattr(thing, name))}" for name in names if hasattr(thing, name)]
-            return f"module {thing.__name__} {taken}"
-        return self._value(thing)
+        return super()._class(kind)
 
 
 def _own(module: str) -> bool:
     return module.partition(".")[0] == __name__.partition(".")[0]
-
-
-def _is_followed(function: FunctionType) -> bool:
-    """Whether a function's code can change without a version that the stamp names: not that of numba and numpy."""
-    return function.__module__.partition(".")[0] not in ("numba", "llvmlite", "numpy", "math", "scipy", "typing")
