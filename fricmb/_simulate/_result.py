@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._blame import blame, blame_end, jumping_rate, undefined
+from fricmb._simulate._cannot_lock import lock_notes
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._digits import digit_notes
 from fricmb._simulate._joined import JoinedRun, island_stats
@@ -89,7 +90,7 @@ def find_notes(sol: Solution) -> tuple[str, ...]:
         notes = ledger_note(sol, rtol)
     except IntegrationError as error:
         notes = (f"energies are beyond what numbers hold: {error.reason}",)
-    return (*notes, *digit_notes(piece.trajectory, rtol), *miss_notes(sol, piece.trajectory, rtol))
+    return (*notes, *lock_notes(sol), *digit_notes(piece.trajectory, rtol), *miss_notes(sol, piece.trajectory, rtol))
 
 
 def _sound_part(

@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.output.step_energies import integrate_between, integrate_powers
-from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
@@ -86,7 +86,9 @@ class StepTrajectory(Trajectory):
         step, values = self._inside(t)
         motion, stored, _ = self._complete(t, values, step, project=True)
         said, before = values[:, -self._width :], self._values[step, 0, -self._width :]
-        own = integrate_between(self._powers, t, step, said, self._span[step, 0], before, self._rtol, self._scale)
+        own = said - before
+        if not self._is_smooth:
+            own = integrate_between(self._powers, t, step, said, self._span[step, 0], before, self._rtol, self._scale)
         return self._with_work(motion, stored, self._spent[step, 0] + own)
 
     def motion(self, t: Floats) -> MotionSamples:
@@ -118,6 +120,11 @@ class StepTrajectory(Trajectory):
         """Number of energies: lost by each port, by damping, and brought in."""
         return self.problem.n_c + 2
 
+    @property
+    def _is_smooth(self) -> bool:
+        """Whether a law may be so steep that it makes any force of what velocities between stages err by."""
+        return bool((self.problem.contacts.law == LAW_SMOOTH).any())
+
     @cached_property
     def _said(self) -> Floats:
         """Energies of every step as its stages say (k, w)."""
@@ -134,7 +141,9 @@ class StepTrajectory(Trajectory):
         """Energies at the start and at the end of every step (k, 2, w); impulses come between two."""
         steps = np.arange(len(self._span))
         start, end = self._span[:, 0], np.append(self._span[1:, 0], self.end.t)
-        found = integrate_powers(self._powers, start, end, steps, self._said, self._rtol, self._scale)
+        found = self._said
+        if not self._is_smooth:
+            found = integrate_powers(self._powers, start, end, steps, found, self._rtol, self._scale)
         leaps = self._values[:, 0, -self._width :].copy()
         leaps[1:] -= self._values[:-1, -1, -self._width :]
         parts = np.stack([leaps, found], axis=1)

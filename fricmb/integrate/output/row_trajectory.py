@@ -17,7 +17,7 @@ from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
 from fricmb.integrate.output.step_energies import integrate_between, integrate_powers
-from fricmb.integrate.problem import Codes, Codes2, Floats, Floats2, Ints, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 #: Rows as they were collected: values (n_r, width) as in Rows, kind (n_r,), mode (n_r, n_c).
@@ -115,8 +115,13 @@ class RowTrajectory(Trajectory):
     # -- energies -----------------------------------------------------------------------------------------------
     @cached_property
     def _integrates(self) -> bool:
-        """Whether powers are integrated anew; where damped contacts open, what they store knows more than powers."""
-        return self.integrates and not damped_normals(self.problem).any()
+        """Whether powers are integrated anew.
+
+        Where damped contacts open, what they store knows more than powers; and steep smooth laws make any force of what
+        velocities between steps err by.
+        """
+        smooth = bool((self.problem.contacts.law == LAW_SMOOTH).any())
+        return self.integrates and not smooth and not damped_normals(self.problem).any()
 
     @cached_property
     def _recorded(self) -> Floats:

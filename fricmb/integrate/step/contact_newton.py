@@ -18,6 +18,9 @@ from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Float
 from fricmb.integrate.step.contact_convergence import creep, force_change, smooth_miss, speed_change
 from fricmb.integrate.step.contact_unknowns import PortState, evaluate_ports
 
+#: Iterations after which corrections of slip under smooth laws are limited, and the part of its speed at which slip may
+#: turn round in one of them.
+PLAIN_CORRECTIONS, TURNED = 3, 0.1
 #: Angle to which directions of slip are found: close to landing they decide, and no velocity shows their error.
 DIRECTION = 1e-9
 
@@ -142,8 +145,31 @@ def fill_row(
 
 
 @kernel
-def update_ports(ports: Ports, w: PortState, mode: Codes) -> float:
-    """Add the Newton correction in rhs to the unknowns; returns the largest turn of a direction (limited to 0.5)."""
+def limit_turn(ports: Ports, w: PortState, i: int, k: int, at: int) -> None:
+    """Let slip under a smooth law that a correction turns round go on slowly.
+
+    Under friction that goes with the logarithm of slip speed Newton overshoots from above the solution to far on the
+    other side, and back, without end; from below it comes near from one side.
+    """
+    along = size = new = 0.0
+    for a in range(ports.row[k + 1] - ports.row[k]):
+        g, to = w.g[i, ports.row[k] + a], w.g[i, ports.row[k] + a] + w.rhs[at + a]
+        along += g * to
+        size += g * g
+        new += to * to
+    if along < 0.0 and new > TURNED * TURNED * size:
+        part = TURNED * np.sqrt(size / new)
+        for a in range(ports.row[k + 1] - ports.row[k]):
+            g = w.g[i, ports.row[k] + a]
+            w.rhs[at + a] = part * (g + w.rhs[at + a]) - g
+
+
+@kernel
+def update_ports(ports: Ports, w: PortState, mode: Codes, limited: bool) -> float:
+    """Add the Newton correction in rhs to the unknowns; returns the largest turn of a direction (limited to 0.5).
+
+    ``limited``: slip under smooth laws does not turn round at once (:func:`limit_turn`).
+    """
     m = w.F.shape[1]
     nz = w.z.shape[1]
     u1 = nz + w.Fin.shape[1]
@@ -154,6 +180,8 @@ def update_ports(ports: Ports, w: PortState, mode: Codes) -> float:
             d = ports.row[k + 1] - row0
             at = i * u1 + row0
             if ports.law[k] == LAW_SMOOTH:
+                if limited:
+                    limit_turn(ports, w, i, k, at)
                 for a in range(d):
                     w.g[i, row0 + a] += w.rhs[at + a]
                 for a in range(ports.z_start[k], ports.z_start[k + 1]):
@@ -212,7 +240,7 @@ def general_ports(ports: Ports, laws: Table, s: Scratch, w: PortState, hA: Float
                 return -1
         lu_solve(w.J, w.rhs, w.sizes, w.pivots)
         change = speed_change(ports, w, mode, tol)
-        turn = update_ports(ports, w, mode)
+        turn = update_ports(ports, w, mode, iteration >= PLAIN_CORRECTIONS)
         for i in range(w.F.shape[0]):
             for c in range(w.Fin.shape[1]):
                 w.gbuf[i, c] = w.Fin[i, c]

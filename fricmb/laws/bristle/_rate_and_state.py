@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Self
 
 from fricmb.laws._base import FrictionLaw
 from fricmb.laws._curves import norm
+from fricmb.values import value_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,7 +21,8 @@ class RateAndState(FrictionLaw):
 
     The form with asinh goes through v = 0 within the speed v_0 exp(-(mu_0 + b psi)/a), 1e-32 for rock: no difference
     of two speeds in double precision shows that.  In the force |v| is therefore sqrt(v^2 + v_rest^2): a contact that
-    is loaded below its strength creeps at less than v_rest.
+    is loaded below its strength creeps at less than v_rest.  A contact whose drive is not far faster than that cannot
+    lock, and has no stick-slip; a run that comes near it says so in ``sol.stats.notes``.
 
     Parameters
     ----------
@@ -33,7 +35,7 @@ class RateAndState(FrictionLaw):
     v_0 : float
         Reference speed, > 0.
     v_rest : float or None
-        Speed below which the force falls to 0 in proportion to the speed, > 0; None: a thousandth of v_0.
+        Speed below which the force falls to 0 in proportion to the speed, > 0; None: 1e-8 v_0.
     evolution : str
         "aging" or "slip".
     viscous : float
@@ -77,12 +79,18 @@ class RateAndState(FrictionLaw):
         x = sympy.log(r / (2 * self.v_0)) + (self.mu_0 + self.b * psi) / self.a
         return self.a * sympy.Piecewise((sympy.asinh(sympy.exp(x)), x < 30), (x + sympy.log(2), True))
 
+    def _rest(self) -> Any:
+        return self.v_0 * 1e-8 if self.v_rest is None else self.v_rest
+
+    def slowest(self) -> float:
+        """Speed near which, and below, the contact has no strength: v_rest."""
+        return float(value_of(self._rest()))
+
     def _slow(self, v: Any) -> Any:
         """The slip speed, not below v_rest."""
         import sympy
 
-        rest = self.v_0 / 1000 if self.v_rest is None else self.v_rest
-        return sympy.sqrt(sum(c**2 for c in v) + rest**2)
+        return sympy.sqrt(sum(c**2 for c in v) + self._rest() ** 2)
 
     def define_coefficient(self, r: Any) -> Any:
         """Steady sliding, where psi = -log(r/v_0)."""
