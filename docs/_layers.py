@@ -10,7 +10,7 @@ import fricmb
 
 # Floors from below, as the page names them; a package that is new stands out until it is given a place.
 PACKAGE = (
-    ("errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "version"),
+    ("calls", "errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "version"),
     ("laws", "normal"),
     ("scene", "space"),
     ("equations",),
@@ -36,7 +36,7 @@ ENGINE = (
     ("select",),
 )
 #: What everybody imports: no lines.
-EVERYWHERE = ("errors", "facade", "values", "version", "problem")
+EVERYWHERE = ("calls", "errors", "facade", "values", "version", "problem")
 ROOT = Path(fricmb.__file__).parent
 
 

@@ -12,6 +12,8 @@ from importlib import import_module
 from operator import attrgetter
 from typing import Any, ParamSpec, TypeVar
 
+from fricmb._calls import answers
+
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 
@@ -56,11 +58,11 @@ def facade(method: Callable[_P, _R]) -> Callable[_P, _R]:
     The method has a signature and a docstring, which users, type checkers and completion see, and no body; what does
     its work is the entry of :data:`TARGETS` by its name.
     """
-    target = TARGETS[f"{method.__module__}:{method.__qualname__}"]
+    target, checked = TARGETS[f"{method.__module__}:{method.__qualname__}"], answers(method)
 
     @wraps(method)
     def reach_up(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-        method(*args, **kwargs)  # does nothing, but refuses arguments that it does not have by its own name
+        checked(*args, **kwargs)  # does nothing, but refuses arguments that it does not have by its own name
         result: _R = find(target)(*args, **kwargs)
         return result
 

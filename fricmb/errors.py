@@ -46,6 +46,10 @@ class UnknownNameError(SceneError, KeyError):
         return str(self.args[0]) if self.args else ""
 
 
+class CallError(SceneError, TypeError):
+    """A call with an argument that is unknown, missing, or without its name; says which was meant."""
+
+
 class _Stopped(BaseException):
     """A run that has not reached its end: ``partial`` is put together when it is first asked for, by ``later``."""
 
@@ -115,10 +119,15 @@ def shown(value: object) -> str:
     return text if len(text) <= 120 else text[:117] + "..."
 
 
+def near_names(name: str, known: Iterable[str]) -> list[str]:
+    """Names that may be meant, the nearest first."""
+    return difflib.get_close_matches(name, list(known), n=6, cutoff=0.5)
+
+
 def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownNameError:
     """An error that names what was asked for and lists the names near it (all of them, if they are few)."""
     names = list(known)
-    near = difflib.get_close_matches(str(name), names, n=6, cutoff=0.5)
+    near = near_names(str(name), names)
     if near:
         hint = "did you mean " + ", ".join(repr(n) for n in near) + "?"
     elif names:

@@ -11,6 +11,7 @@ from typing import Any, ParamSpec, TypeAlias
 import numpy as np
 
 import fricmb as fm
+from fricmb._calls import answers
 from fricmb.errors import shown
 from fricmb.values import Parameter, as_float, is_expression, is_plain
 
@@ -28,6 +29,7 @@ def checked(build: Callable[P, fm.Scene]) -> Callable[P, fm.Scene]:
     signature = inspect.signature(build)
     kinds = {name: str(held.annotation).split(" | ") for name, held in signature.parameters.items()}
 
+    @answers
     @functools.wraps(build)
     def model(*args: P.args, **kwargs: P.kwargs) -> fm.Scene:
         given = signature.bind(*args, **kwargs)

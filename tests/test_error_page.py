@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import fricmb as fm
-from fricmb import errors
+from fricmb import _calls, errors
 from fricmb._simulate._blame import _formula_without_value, _law_without_value, blame
 from fricmb._simulate._result import not_there
 from fricmb.analysis import AnalysisError
@@ -59,7 +59,8 @@ def reasons():
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
     mechanisms = failure_text.failure_text, failure_text._none_found
-    for function in (*mechanisms, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
+    calls = _calls._said, _calls._unknown, _calls._unnamed
+    for function in (*calls, *mechanisms, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
             text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
             if text and text.strip("."):

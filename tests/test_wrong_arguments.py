@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from fricmb.analysis import AnalysisError
@@ -9,6 +10,13 @@ from fricmb.errors import ArgumentError, UnknownNameError
 
 WRONG = (None, -1.0, "x", [], {}, np.nan, 1j, np.zeros((2, 3)), object(), [None], {"x": 1}, 10**400)
 analysis = fm.analysis
+
+
+def driven_scene():
+    omega, mass = fm.parameter("omega", 1.0), fm.Body("mass", mass=1.0)
+    load = fm.Force("load", mass, axis="x", value=0.5 * sympy.cos(omega * fm.t))
+    spring, damper = fm.Spring("spring", mass, axis="x", stiffness=1.0), fm.Damper("c", mass, axis="x", damping=0.2)
+    return fm.Scene("driven", [mass, load, spring, damper])
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +45,10 @@ def given():
         "bifurcation_diagram": (
             analysis.bifurcation_diagram, {"scene": scene, "over": "belt.velocity.x", "values": [0.1], **diagram}
         ),
+        "frequency_response": (analysis.frequency_response, {
+            "scene": driven_scene(), "over": "omega", "values": [1.0], "measure": "mass.x", "periods": 6,
+            "progress": False,
+        }),
         "steady_sliding": (analysis.steady_sliding, {"scene": scene}),
         "complex_eigenvalues": (
             analysis.complex_eigenvalues, {"scene": scene, "over": "belt.velocity.x", "values": [0.1, 0.2]}
@@ -71,7 +83,8 @@ def given():
 
 NAMES = (
     "limit_cycle", "lyapunov", "continue_cycle", "poincare_section", "poincare_section by time", "bifurcation_diagram",
-    "steady_sliding", "complex_eigenvalues", "stability_map", "energy_ledger", "modal_energy", "compare_regimes",
+    "frequency_response", "steady_sliding", "complex_eigenvalues", "stability_map", "energy_ledger", "modal_energy",
+    "compare_regimes",
     "path", "pull", "cycle", "settling_distance", "compiled_force", "uniform", "maximum_entropy_spectrum",
     "welch_spectrum", "spectrogram", "spectral_peaks", "order_map", "sliding_speed", "coefficient", "force", "rate",
     "sweep", "fit", "solve_dae",

@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb._fit._data import Measured, numbers, read
 from fricmb._fit._model import Model
 from fricmb._fit._result import Fit
@@ -29,6 +30,7 @@ _EXACT = 1e-4
 _DEVIATIONS = 3.5
 
 
+@answers
 def fit(
     scene: Scene,
     data: Any,

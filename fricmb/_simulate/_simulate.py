@@ -6,6 +6,8 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from fricmb._calls import answers
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from fricmb.solution import Solution
 
 
+@answers
 def simulate(
     scene: Scene,
     *,

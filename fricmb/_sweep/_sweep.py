@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
+from fricmb._calls import answers
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options, check_scene
 from fricmb._simulate._progress import bar
@@ -22,6 +23,7 @@ from fricmb.scene import parameter_unit
 from fricmb.solution import Solution, owner_of
 
 
+@answers
 def sweep(
     scene: Any,
     runs: Iterable[Mapping[str, Any]],

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fricmb._calls import answers
 from fricmb.analysis._crossings import Crossing, crossings
 from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_scene
 from fricmb.analysis._steady import SteadySliding, checked_speeds, steady_sliding
@@ -95,6 +96,7 @@ class Eigenvalues:
         return "\n".join(lines)
 
 
+@answers
 def complex_eigenvalues(
     scene: Scene, *, over: str, values: ArrayLike, speeds: Mapping[str, float] | None = None
 ) -> Eigenvalues:
@@ -207,6 +209,7 @@ class StabilityMap:
     over_units: tuple[str, str] = ("", "")
 
 
+@answers
 def stability_map(
     scene: Scene,
     *,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import AnalysisError, Floats, checked_solution
 from fricmb.analysis._quadrature import cumulated, grid, nodes, refined
 from fricmb.errors import unknown_name
@@ -97,6 +98,7 @@ class EnergyLedger:
         return "\n".join(lines)
 
 
+@answers
 def energy_ledger(sol: Solution) -> EnergyLedger:
     """Who lost how much, where.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import eigh
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import AnalysisError, Floats, checked_kind
 from fricmb.analysis._linearise import stiffness_without_friction
 from fricmb.analysis._losses import motion_of, one_scene, whole_system
@@ -76,6 +77,7 @@ class ModalEnergy:
         return "\n".join(lines)
 
 
+@answers
 def modal_energy(sol: Solution, *, around: SteadySliding | None = None) -> ModalEnergy:
     """Energy of each mode of the structure, and the energy that friction brings to it.
 

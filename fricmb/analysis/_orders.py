@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_numbers, checked_solution
 from fricmb.analysis._welch import Spectrogram
 
@@ -36,12 +37,14 @@ class OrderMap:
     power: np.ma.MaskedArray
 
 
+@answers
 def sliding_speed(sol: Solution, contact: str, t: ArrayLike) -> Floats:
     """Slip speed (n_t,) of a contact, the length of its relative velocity."""
     checked_solution("sliding_speed", sol)
     return np.asarray(np.linalg.norm(sol.at(t).relative_velocity(contact), axis=0))
 
 
+@answers
 def order_map(running: Spectrogram, speed: ArrayLike, order: ArrayLike) -> OrderMap:
     """A spectrogram over orders, omega = order times speed, in place of frequencies.
 

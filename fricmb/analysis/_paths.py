@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import (
     AnalysisError,
     checked_growth,
@@ -50,6 +51,7 @@ class Path:
         return float(0.5 * np.ptp(self.displacement))
 
 
+@answers
 def path(
     law: FrictionLaw,
     velocity: Callable[[Any], Any],
@@ -133,6 +135,7 @@ def _start(state: Any, n_z: int) -> Floats:
     return z
 
 
+@answers
 def compiled_force(law: FrictionLaw, d: int) -> tuple[Callable[[Floats], tuple[Floats, Floats]], int]:
     """The compiled force: x = [v, N, z] -> values [F, z'] and Jacobian; and the number of states."""
     known = checked_law("compiled_force", law).dimensions
@@ -173,6 +176,7 @@ def _states(
     return np.asarray(found.y)
 
 
+@answers
 def cycle(
     law: FrictionLaw, *, amplitude: float, period: float, normal_force: float = 1.0, cycles: int = 3, points: int = 400,
     rtol: float = 1e-7,
@@ -210,6 +214,7 @@ def cycle(
     )  # fmt: skip
 
 
+@answers
 def settling_distance(law: FrictionLaw, normal_force: float = 1.0) -> float:
     """Distance of slip over which friction comes to its steady value (to a factor), by sliding from rest."""
     normal_force = _load("settling_distance", normal_force)
@@ -229,6 +234,7 @@ def settling_distance(law: FrictionLaw, normal_force: float = 1.0) -> float:
     return 1e-3
 
 
+@answers
 def pull(
     law: FrictionLaw, *, normal_force: float = 1.0, speed: float = 1e-6, points: int = 800, rtol: float = 1e-7
 ) -> Path:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import (
     AnalysisError,
     Floats,
@@ -78,6 +79,7 @@ class Peaks:
         return int(np.argmin(np.abs(self.omega - omega)))
 
 
+@answers
 def spectral_peaks(
     x: ArrayLike,
     dt: float,

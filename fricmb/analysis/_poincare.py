@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._calls import answers
 from fricmb._facade import facade
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options
@@ -69,6 +70,7 @@ class Poincare:
         return self.solution.scalar(name)
 
 
+@answers
 def poincare_section(
     sol: Solution,
     section: tuple[str, float] | None = None,
@@ -191,6 +193,7 @@ class _Reduce:
         return section[self.signal]
 
 
+@answers
 def bifurcation_diagram(
     scene: Scene,
     over: str,

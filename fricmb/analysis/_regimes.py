@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options
 from fricmb.analysis._errors import checked_integer, checked_scene, positive
@@ -53,6 +54,7 @@ class Regime:
         )
 
 
+@answers
 def compare_regimes(
     scene: Scene, contact: str, *, v_reg: float, stiffness: float, t_end: float, v_s: float | None = None,
     damping: float = 0.0, points: int = 4001, **options: Any,

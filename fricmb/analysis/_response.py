@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._calls import answers
 from fricmb._facade import facade
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options
@@ -94,6 +95,7 @@ class FrequencyResponse:
         return "\n".join(lines)
 
 
+@answers
 def frequency_response(
     scene: Scene,
     *,
@@ -143,9 +145,10 @@ def frequency_response(
     checked_kind(_WHO, "over", over, str, "a name out of scene.parameters")
     if over not in scene.parameters:
         raise unknown_name("parameter", over, scene.parameters)
-    grid = np.sort(checked_numbers(_WHO, "values", values, "(n,) and finite"))
+    grid = checked_numbers(_WHO, "values", values, "(n,) and finite")
     if grid.ndim != 1 or not grid.size or not np.isfinite(grid).all():
         raise AnalysisError(f"{_WHO}: values must be (n,) and finite; got shape {grid.shape}")
+    grid = np.sort(grid)
     if not isinstance(measure, str) and not callable(measure):
         raise AnalysisError(f"{_WHO}: measure must be the name of a signal or a function of a Solution")
     if cycles and not isinstance(measure, str):

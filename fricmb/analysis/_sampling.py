@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import (
     AliasingWarning,
     AnalysisError,
@@ -52,6 +53,7 @@ class Samples:
     short: float
 
 
+@answers
 def uniform(
     sol: Solution, name: str, dt: float | None = None, *, t_start: float | None = None, t_end: float | None = None
 ) -> Samples:
@@ -152,12 +154,12 @@ def _warn(found: Samples, of_contact: bool) -> None:
             f"{found.name}: {100 * found.folded:.2g} % of its power lies above pi/dt = {np.pi / found.dt:.4g} and"
             " appears at frequencies where it is not; take a smaller dt",
             AliasingWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
     elif of_contact and found.short > 0.5:
         warnings.warn(
             f"{found.name}: {100 * found.short:.0f} % of the phases between transitions are shorter than two samples"
             f" (dt = {found.dt:.4g}); take a smaller dt",
             AliasingWarning,
-            stacklevel=3,
+            stacklevel=4,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._calls import answers
 from fricmb.analysis._burg import CRITERIA, Autoregression, burg
 from fricmb.analysis._errors import Floats, checked_frequencies, checked_integer, checked_samples
 from fricmb.errors import unknown_name
@@ -14,6 +15,7 @@ DEFAULT_ORDER = 300
 _WHO = "maximum_entropy_spectrum"
 
 
+@answers
 def maximum_entropy_spectrum(
     x: ArrayLike, dt: float, *, order: int | str | None = None, omega: ArrayLike | None = None
 ) -> tuple[Floats, Floats]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import AnalysisError, Floats, checked_number, checked_scene, refuse
 from fricmb.analysis._linearise import Linearised, linearise
 from fricmb.analysis._track import Pairs, eigenpairs
@@ -129,6 +130,7 @@ class SteadySliding:
         return slice(int(row[k]), int(row[k + 1]))
 
 
+@answers
 def steady_sliding(scene: Scene, *, speeds: Mapping[str, float] | None = None) -> SteadySliding:
     """The equilibrium of a scene while all of its contacts slide.
 

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fricmb._calls import answers
 from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_number, checked_samples, refuse
 from fricmb.errors import shown
 from fricmb.values import as_float
 
 
+@answers
 def welch_spectrum(
     x: ArrayLike, dt: float, *, segment: int | None = None, overlap: float = 0.5, window: str = "hann"
 ) -> tuple[Floats, Floats]:
@@ -77,6 +79,7 @@ class Spectrogram:
     power: Floats
 
 
+@answers
 def spectrogram(
     x: ArrayLike,
     dt: float,

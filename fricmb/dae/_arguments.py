@@ -69,7 +69,7 @@ def tolerances(rtol: Any, atol: Any, n: int) -> tuple[Floats, Floats]:
         found.append(np.array(np.broadcast_to(array, (n,))))
     floor = 100.0 * float(np.finfo(float).eps)
     if np.any((found[0] < floor) & (found[0] != 0.0)) or np.any(found[0] + found[1] == 0.0):
-        warnings.warn(f"`rtol` is too small; it is set to {floor:.3g}.", stacklevel=3)
+        warnings.warn(f"`rtol` is too small; it is set to {floor:.3g}.", stacklevel=4)
         found[0] = np.maximum(found[0], floor)
     return found[0], np.maximum(found[1], 1e-300)
 

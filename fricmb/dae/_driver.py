@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.dae import _arguments as arguments
 from fricmb.dae import _layout as L
 from fricmb.dae._chattering import Chattering
@@ -28,6 +29,7 @@ _FINISHED = "The solver successfully reached the end of the integration interval
 _STOPPED = "A termination event occurred."
 
 
+@answers
 def solve_dae(
     fun: Callable[..., Any],
     t_span: Sequence[float],

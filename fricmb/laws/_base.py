@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Literal, Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fricmb._calls import answers
 from fricmb._facade import facade
 from fricmb.errors import FricmbError, LawError
 from fricmb.laws._check import (
@@ -191,6 +192,7 @@ class FrictionLaw(Regimes, Declaration):
         """Limit of the coefficient for r -> 0 in slip."""
         return float(self.coefficient(0.0, normal_force))
 
+    @answers
     def break_away(self, normal_force: float = 1.0) -> float:
         """Coefficient up to which the contact sticks."""
         path = self.static_path
@@ -202,6 +204,7 @@ class FrictionLaw(Regimes, Declaration):
         return "mu_s" if getattr(self, "mu_s", None) is not None and "mu_s" in self.slots() else None
 
     # -- numbers ------------------------------------------------------------------------------------------------
+    @answers
     def coefficient(self, r: ArrayLike, normal_force: ArrayLike = 1.0) -> Any:
         """Friction coefficient at slip speeds ``r`` >= 0 (of a force law: in steady sliding).
 
@@ -221,12 +224,14 @@ class FrictionLaw(Regimes, Declaration):
 
         return coefficient(self, r, normal_force)
 
+    @answers
     def derivative(self, r: ArrayLike, normal_force: ArrayLike = 1.0) -> Any:
         """Derivative of the coefficient with respect to the slip speed; arguments as in :meth:`coefficient`."""
         from fricmb.laws._numeric import derivative
 
         return derivative(self, r, normal_force)
 
+    @answers
     def force(self, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLike | None = None) -> Any:
         """Force on the contact's a while slipping at the relative velocity ``v_rel`` (a's velocity less b's).
 
@@ -247,6 +252,7 @@ class FrictionLaw(Regimes, Declaration):
 
         return force(self, v_rel, normal_force, state)
 
+    @answers
     def rate(self, v_rel: ArrayLike, normal_force: ArrayLike, state: ArrayLike | None = None) -> Any:
         """Time derivative of the internal states; arguments as in :meth:`force`, shape like ``state``."""
         from fricmb.laws._numeric import rate

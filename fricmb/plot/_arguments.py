@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 import numpy as np
 from matplotlib.axes import Axes
 
+from fricmb._calls import answers
 from fricmb.errors import FricmbError, SceneError, shown
 from fricmb.laws import FrictionLaw
 from fricmb.values import Units, as_float, has_entries, is_flag
@@ -89,6 +90,7 @@ def looked_at(method: Callable[_P, _R]) -> Callable[_P, _R]:
     optional = {name for name, held in signature.parameters.items() if "None" in str(held.annotation)}
     who = method.__name__
 
+    @answers
     @functools.wraps(method)
     def draws(*args: _P.args, **kwargs: _P.kwargs) -> _R:
         given = signature.bind(*args, **kwargs).arguments

@@ -8,6 +8,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar
 
+from fricmb._calls import answers
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene._bodies import Body, check_keys
 from fricmb.scene._forms import LinearForm
@@ -224,6 +225,7 @@ class GroundPoint(End):
         return self
 
 
+@answers
 def ground_point(x: float, y: float) -> GroundPoint:
     """A fixed point of the plane, an end for joints and elements."""
     for argument, value in (("x", x), ("y", y)):

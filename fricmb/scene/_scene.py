@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb._calls import answers
 from fricmb._facade import facade
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene import _parameters
@@ -84,6 +85,7 @@ class Scene:
     #: that look so (``_family_of``).
     _shared: dict[Any, Any]
 
+    @answers
     def __init__(self, name: str, parts: Iterable[Part], *, units: Units = DIMENSIONS) -> None:
         self._fill(name, parts, units, None)
 
@@ -325,6 +327,7 @@ class Scene:
         """Numbers by name: ``"k1x.stiffness"``, ``"lining.law.mu_k"``; named parameters once, under their own name."""
         return _parameters.collect(self)
 
+    @answers
     def with_parameters(self, values: Mapping[str, Any]) -> Scene:
         """A new scene with other values.
 
@@ -342,6 +345,7 @@ class Scene:
         """
         return self._with_parts(_parameters.apply(self, values))
 
+    @answers
     def replace(self, part: str, /, **changes: Any) -> Scene:
         """A new scene in which one part has other fields: ``scene.replace("lining", law=other)``.
 
@@ -380,6 +384,7 @@ class Scene:
         lasting = {"mechanism": other.is_mechanism, "referring": other._cache.get("referring")}
         put(self, "_cache", lasting)
 
+    @answers
     def with_units(self, units: Units) -> Scene:
         """The same scene with other names for the units of its numbers, which stay as they are."""
         scene = object.__new__(type(self))

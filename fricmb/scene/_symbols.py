@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
 
 
+@answers
 def coordinate(name: str) -> Any:
     """SymPy symbol of a coordinate, for expressions of forces and normal forces.
 
@@ -20,6 +22,7 @@ def coordinate(name: str) -> Any:
     return _symbols.coordinate(_motion(name, "coordinate"))
 
 
+@answers
 def speed(name: str) -> Any:
     """SymPy symbol of the velocity of a dof, point or driven body; names as in :func:`coordinate`."""
     from fricmb.values import _symbols

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from fricmb._calls import answers
 from fricmb._facade import facade
 from fricmb.integrate import Samples
 from fricmb.integrate.problem import Codes, Floats
@@ -43,6 +44,7 @@ class Solution(Signals):
         Times of the solution; default: the accepted steps, a transition's time twice (before and after).
     """
 
+    @answers
     def at(self, t: Any) -> Solution:
         """The same run seen at other times (in the order given); the right-hand value at a transition.
 
@@ -90,6 +92,7 @@ class Solution(Signals):
         fricmb.audit.Audit
             ``.ok``, ``.checks``, ``.table()``; printed, three lines.
         """
+    @answers
     def columns(self, names: Iterable[str] | None = None) -> dict[str, Floats | Codes]:
         """Signals (n_t,) by name, as in :meth:`to_pandas`.
 
@@ -102,12 +105,14 @@ class Solution(Signals):
 
         return columns(self, names)
 
+    @answers
     def to_pandas(self, names: Iterable[str] | None = None) -> pandas.DataFrame:
         """Signals as a table over time; needs pandas.  ``names``: as :meth:`columns`."""
         from fricmb.solution._table import table
 
         return table(self, names)
 
+    @answers
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything to an npz file, ".npz" being added if there is no suffix."""
         from fricmb.solution._files import save

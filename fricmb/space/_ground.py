@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End, Part
@@ -48,6 +49,7 @@ class SpaceGroundPoint(End):
         return self
 
 
+@answers
 def ground_point(x: float, y: float, z: float) -> SpaceGroundPoint:
     """A fixed point of space, an end for joints and elements.
 

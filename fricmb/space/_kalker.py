@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
 from fricmb.values import as_float
 
@@ -64,6 +65,7 @@ class KalkerCoefficients:
     f33: float
 
 
+@answers
 def kalker(*, a: float, b: float, shear_modulus: float, poisson: float) -> KalkerCoefficients:
     """Kalker's coefficients of an ellipse of contact, both bodies of one material.
 

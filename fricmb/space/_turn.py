@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
 from fricmb.integrate.problem import Floats
 from fricmb.values import as_float
@@ -55,6 +56,7 @@ def triad(e: Floats) -> tuple[Floats, Floats]:
     return u, np.cross(e, u)
 
 
+@answers
 def turned(*, axis: Any, angle: float) -> tuple[tuple[float, ...], ...]:
     """The orientation after a turn from the axes of space: a rotation matrix, by rows.
 

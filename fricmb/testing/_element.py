@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.scene import GROUND, Element, LinearForm, Part, Scene, parameter
 from fricmb.testing._base import ConformanceError, Rule, findings, pickles
 from fricmb.testing._element_forces import Trial, force_findings
 from fricmb.testing._refusal import refuses
 
 
+@answers
 def check_element(
     element: Element,
     *,

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.errors import FricmbError, shown
 from fricmb.integrate import Integrator
 from fricmb.laws import Coulomb
@@ -30,6 +31,7 @@ class _Case:
     transitions: tuple[float, ...] = ()
 
 
+@answers
 def check_integrator(
     integrator: Integrator, *, rtol: float = 1e-6, step: float | None = None, bound: float | None = None
 ) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.analysis import compiled_force
 from fricmb.errors import shown
 from fricmb.laws import FrictionLaw
@@ -17,6 +18,7 @@ from fricmb.testing._trial import AT_REST, SPEEDS, random_state, velocities
 __all__ = ["ConformanceError", "check_law"]
 
 
+@answers
 def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
     """Try the rules that a run relies on.
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.errors import FricmbError, shown
 from fricmb.integrate import Integrator
 from fricmb.scene import Scene
@@ -16,6 +17,7 @@ from fricmb.testing._model_run import Trip, run_findings
 Model = Callable[..., Scene]
 
 
+@answers
 def check_model(
     model: Model,
     *,

@@ -12,6 +12,7 @@ from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
 
+from fricmb._calls import SignatureOfInit, answering
 from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 from fricmb.values._numbers import (
     Number,
@@ -25,6 +26,7 @@ from fricmb.values._numbers import (
 )
 from fricmb.values._parameter import Parameter
 
+_answering: set[type] = set()
 _fields: dict[type, tuple[str, ...]] = {}
 _slot_fields: dict[type, tuple[str, ...]] = {}
 
@@ -65,6 +67,14 @@ class Declaration:
     inside a field ("law.mu_k").  Its value is a float, a :class:`Parameter`, a SymPy expression, a tuple of such, an
     array or a sparse matrix.
     """
+
+    __signature__: ClassVar[Any] = SignatureOfInit()
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> Self:
+        if cls not in _answering:  # a dataclass has its constructor only now
+            _answering.add(cls)
+            answering(cls)
+        return object.__new__(cls)
 
     #: Error that a wrong value raises.
     _error: ClassVar[type[FricmbError]] = SceneError

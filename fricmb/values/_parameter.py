@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
 
 
@@ -93,6 +94,7 @@ def _fits(value: Any) -> bool:
         return False
 
 
+@answers
 def parameter(name: str, value: float) -> Parameter:
     """A named number that stands wherever a number does, in any number of parts.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb._simulate._progress import bar
 from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, checked_kind, positive
 from fricmb.analysis.cycles._border import beyond, on_border, solve_border
@@ -28,6 +29,7 @@ _TURN = 0.35
 _REST = 1e-3
 
 
+@answers
 def continue_cycle(
     cycle: Cycle, over: str, *, to: float, points: int = 200, largest_step: float = _LARGEST, progress: bool = True
 ) -> Branch:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fricmb._calls import answers
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options
 from fricmb.analysis._errors import AnalysisError, Floats, checked_integer, positive, refuse
@@ -121,6 +122,7 @@ class Cycle:
         return f"{kind} cycle, period {self.period:.12g}, {shown}; largest multiplier {largest:.6g}"
 
 
+@answers
 def limit_cycle(
     scene: Scene,
     *,

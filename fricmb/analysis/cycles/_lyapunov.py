@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fricmb._calls import answers
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options
 from fricmb._simulate._progress import bar
@@ -60,6 +61,7 @@ class Lyapunov:
         return f"Lyapunov exponents {shown}; dimension {self.dimension:.4g}"
 
 
+@answers
 def lyapunov(
     scene: Scene,
     *,
