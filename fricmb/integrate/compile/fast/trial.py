@@ -47,8 +47,7 @@ def _outer_of(inner: Callable[[Floats, int], float]) -> Callable[[_Box], float]:
     def outer(box: _Box) -> float:
         whole = box.x  # of one assignment: used by its items, and as a whole
         row = whole  # of two: an array that has to be built
-        total = 0.0
-        total += inner(whole, 0) + whole[1]
+        total = inner(whole, 0) + whole[1]
         for i in range(box.A.shape[0]):
             box.A[i, 0] = box.h * i
             if i > 0:
@@ -57,7 +56,7 @@ def _outer_of(inner: Callable[[Floats, int], float]) -> Callable[[_Box], float]:
         box.A[0] = box.x
         made = np.sqrt(box.x) + row  # arrays that the kernel owns
         box.h = made.sum()
-        return total
+        return float(total)
 
     return outer
 
