@@ -17,7 +17,7 @@ from setuptools.command.build_py import build_py
 #: What kernels need to be compiled: what runs need, but for pictures, and for what is done in Python before a run.
 #: Models' equations are derived at their first run, in less time than it takes to install SymPy for the build alone.
 PROJECT = tomllib.loads(Path(__file__).with_name("pyproject.toml").read_text())["project"]
-NEEDED = [need for need in PROJECT["dependencies"] if not need.startswith(("matplotlib", "scipy", "sympy"))]
+NEEDED = [need for need in PROJECT["dependencies"] if not need.startswith(("matplotlib", "networkx", "scipy", "sympy"))]
 #: Seconds after which compiling is given up.
 LIMIT = 1800
 #: Otherwise each kernel is compiled at its first use.

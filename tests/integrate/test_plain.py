@@ -192,3 +192,18 @@ def test_runs_are_the_same_to_the_digit(tmp_path):
         found.append(run.stdout)
     assert found[1] == found[0]
     assert found[2] == found[0]
+
+
+def test_insides_are_named_behind_the_door_alone():
+    """So that a numba with other ones concerns one folder; numba's compiler alone is asked for its own passes."""
+    names = [getattr(name, "values", (name,))[0] for name in INSIDES] + ["_dynfunc", "PassManager", "JITCodeLibrary"]
+    top = Path(plain.__file__).parents[2]
+    found = {
+        f"{path.relative_to(top)}: {name}"
+        for path in top.rglob("*.py")
+        if path.parent.name != "fast"
+        for name in names
+        if re.search(rf"\b{name}\b", path.read_text())
+    }
+    assert not found
+    assert all((top / "integrate" / "compile" / "fast" / f"{name}.py").exists() for name in ("passes", "trial"))
