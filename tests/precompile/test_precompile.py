@@ -179,7 +179,7 @@ def test_annotations_of_entries_are_the_types_of_their_calls():
 
 KERNELS_ALONE = """
 import sys
-for name in ("scipy", "sympy", "mpmath", "matplotlib"):
+for name in ("scipy", "sympy", "mpmath", "matplotlib", "networkx"):
     sys.modules[name] = None  # importing them fails
 from importlib import util
 found = util.find_spec
