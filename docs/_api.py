@@ -19,7 +19,10 @@ LAW = [
     "example", "from_backbone",
 ]  # fmt: skip
 WRITTEN = ["states", "validate", "define_coefficient", "define_force", "define_rate", "copies"]
-PART = ["point", "from_matrices", "from_mesh", "from_fe", "matrix", "complex_modes", "dof_names", "define_joint"]
+PART = [
+    "point", "from_matrices", "from_mesh", "from_fe", "from_test", "matrix", "frf", "compare", "complex_modes",
+    "dof_names", "define_joint",
+]  # fmt: skip
 BASES = {
     "Element": ["local_coordinates", "define_potential", "define_dissipation", "define_force"],
     "Joint": ["local_coordinates", "define_constraint", "define_slip", "define_load"],

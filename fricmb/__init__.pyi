@@ -2,6 +2,7 @@ from . import analysis as analysis
 from . import bench as bench
 from . import fe as fe
 from . import laws as laws
+from . import measure as measure
 from . import models as models
 from . import normal as normal
 from . import plot as plot

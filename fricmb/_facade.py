@@ -26,6 +26,7 @@ TARGETS = {
     "fricmb.analysis.cycles._branch:Branch.plot": "fricmb.plot._branches:BranchPlots",
     "fricmb.laws._base:FrictionLaw._repr_html_": "fricmb.plot._html:law_html",
     "fricmb.laws._regimes:Regimes.creep": "fricmb.analysis._creep:creep",
+    "fricmb.measure._compare:Comparison.plot": "fricmb.plot._comparison:ComparisonPlots",
     "fricmb.plan._plan:Plan._repr_html_": "fricmb.plot._html:plan_html",
     "fricmb.scene._scene:Scene._repr_html_": "fricmb.plot._html:scene_html",
     "fricmb.scene._scene:Scene.draw": "fricmb.plot._animation:draw_scene",

@@ -113,7 +113,7 @@ def test_reference_names_all_that_is_public():
     text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
     listed = set(re.findall(r"^   ([\w.]+)$", text, re.MULTILINE))
     missing = []
-    for package in ("", "analysis.", "testing.", "plot.", "normal.", "laws.", "space.", "fe."):
+    for package in ("", "analysis.", "testing.", "plot.", "normal.", "laws.", "space.", "fe.", "measure."):
         held = getattr(fm, package[:-1]) if package else fm
         for public in held.__all__:
             thing = getattr(held, public)

@@ -20,7 +20,7 @@ from fricmb.integrate.taylor import integrator as _taylor
 
 BLAME = (blame, _formula_without_value, _law_without_value, fm.space.OnPlane.undefined)
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md")]
+PAGES = [ROOT / "docs" / "reference" / name for name in ("errors.md", "errors_results.md", "errors_fe.md")]
 PAGE = "\n".join(path.read_text(encoding="utf-8") for path in PAGES)
 #: What is raised with a message of its own.
 RAISED = {

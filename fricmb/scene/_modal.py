@@ -319,6 +319,91 @@ class ModalBody(Part):
             damping_ratios, fields,
         )  # fmt: skip
 
+    @classmethod
+    def from_test(
+        cls, name: str, modes: Any, *, points: Mapping[str, int], scale: Any = None, axes: str = "xyz", **fields: Any
+    ) -> ModalBody:
+        """A body from modes of a test.
+
+        Parameters
+        ----------
+        name : str
+        modes : Modes or Measured
+            From ``fm.measure.read`` or ``fm.measure.identify``.
+        points : dict of str to int
+            Node of each point.
+        scale : Frf, optional
+            The frequency response of a driving point: gives modal masses where the file has none.
+        axes : str
+        **fields
+            Of :class:`ModalBody`: position, velocity, damping_ratios.
+
+        Returns
+        -------
+        ModalBody
+
+        Raises
+        ------
+        SceneError
+            If modal masses are missing, a shape is complex, or ``scale`` is no driving point: its residues are above 0
+            for every mode.
+        """
+        from fricmb.scene._modal_test import from_test
+
+        return from_test(cls, name, modes, points, scale, axes, fields)
+
+    def frf(
+        self, a: str, b: str, f: Any, kind: str = "accelerance", *, residual: bool = True
+    ) -> NDArray[np.complex128]:
+        """Frequency response of the body alone, motion of ``a`` over a force at ``b``.
+
+        Parameters
+        ----------
+        a, b : str
+            Point and axis, ``"tip.x"``.
+        f : (n,) array_like
+            Frequencies in cycles for each unit of time.
+        kind : {"accelerance", "mobility", "receptance"}
+        residual : bool
+            Whether the residual modes, which stand for those left out, are counted.
+
+        Returns
+        -------
+        (n,) complex
+
+        Raises
+        ------
+        UnknownNameError
+            For a point or an axis that is not there.
+        SceneError
+        """
+        from fricmb.scene._modal_test import frf
+
+        return frf(self, a, b, f, kind, residual)
+
+    def compare(self, test: Any, *, points: Mapping[str, int] | None = None) -> Any:
+        """How like a test the body is.
+
+        Parameters
+        ----------
+        test : Measured, Modes, Frf or list of Frf
+        points : dict of str to int, optional
+            Node of the test for each point of the body; by default the number that the point's name ends with,
+            ``"pad_1012"``.
+
+        Returns
+        -------
+        Comparison
+            Modal assurance criterion, differences of frequencies and damping, R^2 of responses; ``.plot``.
+
+        Raises
+        ------
+        SceneError
+        """
+        from fricmb.scene._modal_test import compare
+
+        return compare(self, test, points)
+
     def matrix(self, name: str, *, M: Any = None, C: Any = None, K: Any = None, scale: Any = 1.0) -> MatrixElement:
         """One of the body's ``parts`` as an element of a scene.
 

@@ -1,0 +1,193 @@
+"""Columns of numbers: text, sound, and the containers of MATLAB, numpy, HDF5 and LabVIEW."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.io
+
+from fricmb.errors import FileError, MissingExtraError
+from fricmb.measure._types import Frf, Measured, TimeSeries
+
+#: Names of columns that hold times and frequencies.
+TIMES = re.compile(r"^(t|time|zeit|x_time)\b", re.IGNORECASE)
+FREQUENCIES = re.compile(r"^(f|freq|frequency|frequenz|hz)\b", re.IGNORECASE)
+_UNIT = re.compile(r"^(.*?)\s*[\[(]\s*([^\])]*)\s*[\])]\s*$")
+
+
+def read_csv(path: Path, spacing: tuple[float, float] | None) -> Measured:
+    """Text in columns, with or without a line of names; complex numbers as ``(1+2j)``."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise FileError(f"{path}: expected a text file of numbers in columns") from None
+    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith(("#", "%"))]
+    if not lines:
+        raise FileError(f"{path}: expected numbers in columns, found nothing")
+    mark = _delimiter(lines)
+    decimal_comma = mark != "," and any("," in line for line in lines[:50])
+    rows = [line.split() for line in lines]
+    if mark != " ":
+        rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True))
+    names, first = _names(rows, decimal_comma)
+    width = len(rows[first]) - (not rows[first][-1].strip()) if first < len(rows) else 0
+    values = np.empty((len(rows) - first, width), dtype=complex)
+    for i, row in enumerate(rows[first:]):
+        cells = row[:-1] if len(row) == width + 1 and not row[-1].strip() else row
+        if len(cells) != width:
+            raise FileError(f"{path}: line {first + i + 1}: expected {width} columns, got {len(cells)}")
+        for j, cell in enumerate(cells):
+            number = _number(cell, decimal_comma)
+            if number is None:
+                raise FileError(f"{path}: line {first + i + 1}: expected a number in column {j + 1}, got {cell[:40]!r}")
+            values[i, j] = number
+    if len(values) < 2:
+        raise FileError(f"{path}: expected at least two lines of numbers")
+    columns = {
+        name: values[:, j] if values[:, j].imag.any() else values[:, j].real for j, name in enumerate(names[:width])
+    }
+    return _measured(path, columns, spacing)
+
+
+def _delimiter(lines: list[str]) -> str:
+    for mark in (";", "\t", ","):
+        if all(mark in line for line in lines[:20]):
+            return mark
+    return " "
+
+
+def _number(cell: str, decimal_comma: bool) -> complex | None:
+    plain = cell.strip().strip('"')
+    plain = plain.replace(",", ".") if decimal_comma else plain
+    try:
+        return complex(plain.replace(" ", "").replace("i", "j") if "nan" not in plain.lower() else plain)
+    except ValueError:
+        return None
+
+
+def _names(rows: list[list[str]], decimal_comma: bool) -> tuple[list[str], int]:
+    """Names of columns, and the first row of numbers."""
+    for first, row in enumerate(rows[:20]):
+        if all(_number(cell, decimal_comma) is not None for cell in row if cell.strip()):
+            head = rows[first - 1] if first else []
+            names = [cell.strip().strip('"') for cell in head] if len(head) >= len(row) else []
+            return [*names, *(f"column {j + 1}" for j in range(len(names), len(row)))], first
+    return [], len(rows)
+
+
+def read_wav(path: Path, spacing: tuple[float, float] | None) -> Measured:
+    """Sound, integers over their full scale."""
+    try:
+        rate, data = scipy.io.wavfile.read(path)
+    except Exception as error:
+        raise FileError(f"{path}: expected a sound file, WAV ({error})") from error
+    size = float(np.iinfo(data.dtype).max) + 1.0 if data.dtype.kind in "iu" else 1.0
+    values = np.atleast_2d(data.T).astype(float)
+    values = (values - 128.0) / 128.0 if data.dtype == np.uint8 else values / size
+    t = np.arange(values.shape[1]) / rate
+    return Measured(signals=tuple(TimeSeries(t=t, y=y, name=f"channel {i + 1}") for i, y in enumerate(values)))
+
+
+def read_npz(path: Path, spacing: tuple[float, float] | None) -> Measured:
+    """Vectors of numpy."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return _measured(path, {key: file[key] for key in file.files}, spacing)
+    except (ValueError, OSError, EOFError) as error:
+        raise FileError(f"{path}: expected an npz file of numbers ({error})") from error
+
+
+def read_mat(path: Path, spacing: tuple[float, float] | None) -> Measured:
+    """Vectors of MATLAB."""
+    with path.open("rb") as file:
+        head = file.read(128)
+    if head[:8] == b"\x89HDF\r\n\x1a\n" or b"MATLAB 7.3" in head:
+        return read_hdf5(path, spacing)
+    try:
+        found = scipy.io.loadmat(path, squeeze_me=True)
+    except Exception as error:
+        raise FileError(f"{path}: expected a MAT-file of MATLAB ({error})") from error
+    return _measured(path, {key: value for key, value in found.items() if not key.startswith("__")}, spacing)
+
+
+def read_hdf5(path: Path, spacing: tuple[float, float] | None) -> Measured:
+    """Datasets of one dimension."""
+    try:
+        import h5py
+    except ImportError:
+        raise MissingExtraError(f"measure.read of {path.name}", "h5py", "hdf5") from None
+    found: dict[str, Any] = {}
+    try:
+        with h5py.File(path, "r") as file:
+            file.visititems(lambda key, item: found.update({key: item[()]}) if isinstance(item, h5py.Dataset) else None)
+    except OSError as error:
+        raise FileError(f"{path}: expected an HDF5 file ({error})") from error
+    return _measured(path, {key: np.squeeze(value) for key, value in found.items()}, spacing)
+
+
+def read_tdms(path: Path, spacing: tuple[float, float] | None) -> Measured:
+    """Channels of LabVIEW, each with its own times."""
+    try:
+        from nptdms import TdmsFile
+    except ImportError:
+        raise MissingExtraError(f"measure.read of {path.name}", "npTDMS", "tdms") from None
+    try:
+        channels = [channel for group in TdmsFile.read(str(path)).groups() for channel in group.channels()]
+    except Exception as error:
+        raise FileError(f"{path}: expected a TDMS file ({type(error).__name__}: {error})") from error
+    signals = []
+    for channel in channels:
+        y = np.asarray(channel[:])
+        if y.dtype.kind not in "iuf" or y.size < 2:
+            continue
+        if "wf_increment" in channel.properties:
+            t = channel.time_track()
+        elif spacing is not None:
+            t = spacing[0] + spacing[1] * np.arange(y.size)
+        else:
+            raise FileError(f"{path}: channel {channel.name!r} has no times; give step=")
+        unit = str(channel.properties.get("unit_string", ""))
+        signals.append(TimeSeries(t=np.asarray(t, dtype=float), y=y.astype(float), name=channel.name, unit=unit))
+    return Measured(signals=tuple(signals))
+
+
+def _measured(path: Path, columns: Mapping[str, Any], spacing: tuple[float, float] | None) -> Measured:
+    """Signals, and frequency responses of complex columns, over a column of times or frequencies."""
+    vectors = {key: np.asarray(v) for key, v in columns.items() if np.ndim(v) == 1 and np.size(v) > 1}
+    vectors = {key: v for key, v in vectors.items() if v.dtype.kind in "iufc"}
+    if not vectors:
+        raise FileError(f"{path}: expected columns of numbers, found none")
+    over = None
+    if spacing is None:
+        over = next((key for key in vectors if TIMES.match(key)), None)
+        over = over or next((key for key in vectors if FREQUENCIES.match(key)), None)
+        if over is None and len(vectors) > 1 and next(iter(vectors)).startswith("column"):
+            over = next(iter(vectors))  # of a table without names the first
+        if over is None:
+            there = ", ".join(list(vectors)[:8])
+            raise FileError(f"{path}: expected a column of times or frequencies among {there}; or give step=")
+    signals, frfs = [], []
+    for key, values in vectors.items():
+        if key == over:
+            continue
+        x = vectors[over].real if over is not None else spacing[0] + spacing[1] * np.arange(values.size)  # type: ignore[index]
+        if x.shape != values.shape:
+            raise FileError(f"{path}: {key}: expected {x.size} values, as many as of {over}, got {values.size}")
+        if not (np.diff(x) > 0.0).all():
+            raise FileError(f"{path}: {over}: expected rising values; they do not rise at place {_falls(x)}")
+        match = _UNIT.match(key)
+        name, unit = (match[1], match[2]) if match else (key, "")
+        if np.iscomplexobj(values):
+            frfs.append(Frf(f=x.astype(float), values=values, name=name, unit=unit))
+        else:
+            signals.append(TimeSeries(t=x.astype(float), y=values.astype(float), name=name, unit=unit))
+    return Measured(signals=tuple(signals), frfs=tuple(frfs))
+
+
+def _falls(x: Any) -> int:
+    return int(np.argmin(np.diff(x) > 0.0)) + 2
