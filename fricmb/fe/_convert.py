@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse
@@ -31,7 +31,7 @@ def convert(fe: FEModel, units: str) -> FEModel:
     side = scipy.sparse.diags_array(1.0 / size, format="csr")
     energy = mass * length**2 / time**2
 
-    def scaled(matrix: object, power: int) -> object:
+    def scaled(matrix: Any, power: int) -> Any:
         return None if matrix is None else energy * time**power * (side @ matrix @ side)
 
     power = {key: (1 if part_target(key) == "C" else 2 if part_target(key) == "M" else 0) for key in fe.parts}

@@ -107,7 +107,10 @@ def _labels(a: FEModel, b: FEModel) -> tuple[Ints, Ints, list[str]]:
         if model.labels is not None:
             return model.labels
         rest = model.n - int(model.boundary or 0)
-        return np.vstack([boundary, np.column_stack([inner - 1 - np.arange(rest), np.zeros(rest)])]).astype(np.int64)
+        whole: Ints = np.vstack([boundary, np.column_stack([inner - 1 - np.arange(rest), np.zeros(rest)])]).astype(
+            np.int64
+        )
+        return whole
 
     note = f"boundary of {bare.name!r} has no numbers of nodes: taken in the order of the other's"
     return named(a), named(b), [note]
@@ -122,9 +125,9 @@ def _turned(a: FEModel, b: FEModel, labels: Ints) -> Any:
         if np.allclose(R, np.eye(3), atol=1e-9):
             continue
         for start in (1, 4):
-            here = [where.get((node, start + k)) for k in range(3)]
-            if None in here and any(i is not None for i in here):
+            here = [where[node, start + k] for k in range(3) if (node, start + k) in where]
+            if 0 < len(here) < 3:
                 raise SceneError(f"fe.join: axes of node {node} differ, and not all of its dofs are free")
-            if None not in here:
-                turn[np.ix_(here, here)] = R
+            for i, row in zip(here, R, strict=False):
+                turn[[i], here] = row
     return turn.tocsr()

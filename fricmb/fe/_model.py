@@ -132,7 +132,8 @@ class FEModel:
         for key in kinds:
             if key not in given:
                 raise unknown_name(f"matrix in triangles of {self._label()}", key, given)
-        found, notes = {}, []
+        found: dict[str, Sparse] = {}
+        notes: list[str] = []
         for key, value in given.items():
             matrix, what = checked(self._label(), key, value, kinds.get(key))
             if what:
@@ -254,7 +255,8 @@ class FEModel:
         places = np.array(list(self.coordinates.values()))
         if near is not None:
             return numbers[[int(np.argmin(np.linalg.norm(places - np.asarray(near, dtype=float), axis=1)))]]
-        return numbers[np.asarray(where(places.T), dtype=bool)]  # type: ignore[misc]
+        inside: Any = where(places.T) if where is not None else None
+        return numbers[np.asarray(inside) != 0]
 
     def rows(self, node: int, axes: str = "xyz", turn: Floats | None = None) -> Floats:
         """Rows (len(axes), n) that give a node's displacement along global axes, or along the rows of ``turn`` (3, 3).

@@ -109,7 +109,7 @@ def _fields(path: Path, found: dict[str, Any]) -> dict[str, Any]:
         if key not in found:
             there = ", ".join(sorted(found)) or "no matrix"
             raise FileError(f"{path}: expected M and K, found {there}; say which is which by names={{'{key}': ...}}")
-    own = {key: found.pop(key) for key in ("M", "K", "C", "H") if key in found}
+    own: dict[str, Any] = {key: found.pop(key) for key in ("M", "K", "C", "H") if key in found}
     fields: dict[str, Any] = {**own, "parts": found}
     return fields
 

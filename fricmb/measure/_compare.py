@@ -62,7 +62,8 @@ def assurance(a: Complexes | Floats, b: Complexes | Floats) -> Floats:
     """Modal assurance criterion (k_a, k_b) of shapes by columns (n, k)."""
     top = np.abs(a.conj().T @ b) ** 2
     sizes = np.outer(np.sum(np.abs(a) ** 2, axis=0), np.sum(np.abs(b) ** 2, axis=0))
-    return np.divide(top, sizes, out=np.zeros_like(top), where=sizes > 0.0)
+    found: Floats = np.divide(top, sizes, out=np.zeros_like(top), where=sizes > 0.0)
+    return found
 
 
 def paired(mac: Floats, body: Floats, test: Floats) -> tuple[tuple[int, int], ...]:

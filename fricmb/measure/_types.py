@@ -75,7 +75,8 @@ class Frf:
         """Displacement over force (n,); nan at frequency 0 of an accelerance or mobility."""
         power = KINDS[kind or self.kind or "accelerance"]
         s = 2j * np.pi * self.f
-        return np.divide(self.values, s**power, out=np.full(self.f.size, np.nan + 0j), where=s != 0)
+        found: Complexes = np.divide(self.values, s**power, out=np.full(self.f.size, np.nan + 0j), where=s != 0)
+        return found
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

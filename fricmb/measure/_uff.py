@@ -104,7 +104,7 @@ def _function(path: Path, number: int, held: Mapping[str, Any]) -> TimeSeries | 
         raise FileError(f"{path}: function {number}: expected {x.size} values, got {values.size}")
     where: dict[str, Any] = {"node": int(held["rsp_node"]), "axis": _axis(held["rsp_dir"])}
     unit, name = str(held.get("ordinate_axis_units_lab", "")).strip(), str(held.get("id1", "")).strip()
-    plain = {"name": "" if name == "NONE" else name, "unit": "" if unit == "NONE" else unit}
+    plain: dict[str, Any] = {"name": "" if name == "NONE" else name, "unit": "" if unit == "NONE" else unit}
     if int(held["func_type"]) != FREQUENCY_RESPONSE and not np.iscomplexobj(values):
         label = str(held.get("rsp_ent_name", "")).strip()
         return TimeSeries(t=x, y=values.astype(float), **where, **(plain | ({} if plain["name"] else {"name": label})))

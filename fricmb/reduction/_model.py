@@ -70,7 +70,7 @@ def reduce_model(
     ------
     SceneError
     """
-    M, K, C, H = (matrices.get(key) for key in ("M", "K", "C", "H"))
+    M, K, C, H = matrices["M"], matrices["K"], matrices.get("C"), matrices.get("H")
     found = lowest_modes(label, M, K, count=count, up_to=top)
     omega, modes = np.sqrt(found.omega2), found.shapes
     if omega.size == 0:

@@ -183,7 +183,8 @@ def compare(body: ModalBody, test: Any, points: Any) -> Comparison:
     nodes = _nodes(body, points)
     count = body.n_modes - body.residual
     omega = np.asarray(value_of(body.frequencies), dtype=float)[:count]
-    mac, test_omega, pairs = np.zeros((0, 0)), np.zeros(0), ()
+    mac, test_omega = np.zeros((0, 0)), np.zeros(0)
+    pairs: tuple[tuple[int, int], ...] = ()
     ratios = np.zeros((2, 0))
     if modes is not None:
         own, other = _shapes(body, modes, nodes, count)

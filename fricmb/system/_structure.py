@@ -122,7 +122,8 @@ class Structure:
         m, stiffness = m[built], stiffness[built]
         if damping.ndim == 2:
             damping = damping[np.ix_(built, built)]
-            self._add_entries("C", np.array(places), *np.nonzero(damping), damping[damping != 0.0])
+            a, b = np.nonzero(damping)
+            self._add_entries("C", np.array(places), a, b, damping[a, b])
             damping = np.zeros(len(built))
         else:
             damping = damping[built]
