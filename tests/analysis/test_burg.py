@@ -1,4 +1,4 @@
-"""Burg's recursion against another library's, the choice of its order, and signals without noise."""
+"""Burg's recursion against its definition and another library's, its order, and signals without noise."""
 
 import numpy as np
 import pytest
@@ -9,6 +9,32 @@ from fricmb.analysis._spectrum import autoregression
 from fricmb.errors import FricmbError
 
 from .test_spectrum import COEFFICIENTS, ar_process
+
+
+def by_definition(x, order):
+    """Burg's model without his recursion of the errors: each filter is run over the whole signal.
+
+    The energy of both prediction errors is a parabola in the reflection coefficient; three of its values give the least.
+    """
+    a, variance = np.ones(1), x @ x / len(x)
+    for _ in range(order):
+        a = np.append(a, 0.0)
+        filters = [a + k * a[::-1] for k in (-1.0, 0.0, 1.0)]
+        errors = [np.concatenate([np.convolve(x, b, "valid"), np.convolve(x, b[::-1], "valid")]) for b in filters]
+        slope, curvature = errors[1] @ (errors[2] - errors[0]), np.sum((errors[2] - errors[0]) ** 2) / 2
+        k = -slope / curvature
+        a = a + k * a[::-1]
+        variance *= 1.0 - k**2
+    return a, variance
+
+
+@pytest.mark.parametrize("order", [4, 60])
+def test_agrees_with_its_definition(order):
+    x = ar_process(3000)
+    coefficients, variance = by_definition(x, order)
+    model = burg(x, order)
+    assert model.a == pytest.approx(coefficients, abs=1e-12)
+    assert model.variance == pytest.approx(variance, rel=1e-12)
 
 
 @pytest.mark.parametrize("order", [4, 60])
