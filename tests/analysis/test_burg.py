@@ -14,7 +14,7 @@ from .test_spectrum import COEFFICIENTS, ar_process
 def by_definition(x, order):
     """Burg's model without his recursion of the errors: each filter is run over the whole signal.
 
-    The energy of both prediction errors is a parabola in the reflection coefficient; three of its values give the least.
+    The energy of both prediction errors is a parabola in the reflection coefficient, so three filters give the least.
     """
     a, variance = np.ones(1), x @ x / len(x)
     for _ in range(order):

@@ -23,7 +23,7 @@ def clone(tmp_path_factory):
     clone.mkdir()
     made = ("__pycache__", "_build", "_made", "gallery", "generated", "jupyter_execute", "_*.md")
     skip = shutil.ignore_patterns("*.npz", *made)
-    for name in ("fricmb", "models", "tests", "docs", "examples", "tools", "template", ".ci"):
+    for name in ("fricmb", "models", "tests", "docs", "examples", "tools", "template", ".ci", ".github"):
         if (ROOT / name).exists():
             shutil.copytree(ROOT / name, clone / name, ignore=skip)
     for path in ROOT.iterdir():
@@ -123,6 +123,7 @@ def test_the_sdist_holds_tests_pages_and_examples(clone, tmp_path):
         held = {name.partition("/")[2] for name in file.getnames()}
     wanted = {
         "pyproject.toml", "setup.py", "README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md", ".ci/run",
+        ".ci/lowest.py", "SECURITY.md", ".github/workflows/checks.yml",
         "fricmb/__init__.py", "models/__init__.py", "fricmb/py.typed", "tests/conftest.py", "docs/conf.py",
         "docs/start.md", "docs/images/steps.svg", "tools/soak.py",
     }  # fmt: skip

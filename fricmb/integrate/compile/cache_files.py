@@ -11,6 +11,7 @@ too, stays in memory.  Nothing here ever stops a run.
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import re
 import secrets
@@ -39,6 +40,9 @@ _MARK = (
 _SHIPPED = Path(__file__).parents[2] / "_made"
 #: Where processes that this one starts find its temporary folder.
 _TEMPORARY = "FRICMB_TEMPORARY_CACHE"
+#: Where notices go beside the terminal; nowhere, unless a program asks for them.
+_log = logging.getLogger("fricmb")
+_log.addHandler(logging.NullHandler())
 #: Names of the files that this process has read or written, kind by kind.
 _used: dict[str, set[str]] = {}
 
@@ -141,7 +145,11 @@ def share_temporary() -> None:
 
 
 def say(text: str) -> None:
-    """A notice: one line on stderr; none with ``FRICMB_QUIET`` in the environment (``--quiet``)."""
+    """A notice: one line on stderr; none with ``FRICMB_QUIET`` in the environment (``--quiet``).
+
+    It goes to the logger "fricmb" either way.
+    """
+    _log.info(text)
     if os.environ.get("FRICMB_QUIET"):
         return
     with contextlib.suppress(OSError, ValueError, AttributeError), _bars_aside():
