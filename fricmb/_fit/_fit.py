@@ -25,9 +25,14 @@ Loss = Literal["linear", "soft_l1", "huber", "cauchy", "arctan"]
 _WINDOWS = (0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.8, 1.0)
 #: Residuals below this part of the extent of the data are none.
 _EXACT = 1e-4
-#: Residuals of all the data that are larger than those of a part by more than this many of their standard deviations
-#: are those of a false minimum.
-_DEVIATIONS = 3.5
+#: Around a fit, others set out at these multiples of its standard errors, until so many have found nothing that is
+#: better by more than this part.
+_REACHES, _IDLE, _BETTER = (2.0, 5.0, 10.0), 6, 1e-4
+#: A standard error of more than this part of the distance of the bounds says no more than they do.
+_BLIND = 0.5
+#: Residuals of all the data that are larger than those of a part by what chance does this seldom are those of a false
+#: minimum (3.5 standard deviations).
+_CHANCE = 2.3e-4
 
 
 @answers
@@ -73,7 +78,8 @@ def fit(
         "linear", or one of those of :func:`scipy.optimize.least_squares` that let outliers count less, with ``sigma``.
     starts : int
         Largest number of starts within the bounds, after the first guess: another is tried while all of the data are
-        fitted much worse than their first part, which is a false minimum.
+        fitted much worse than their first part, which is a false minimum.  Around the best of them further ones are
+        tried until several have found nothing better; 1: none of this.
     rtol : float
         Accuracy of the runs.
     progress : bool
@@ -117,21 +123,34 @@ def fit(
                 best = found
             if found.plausible:
                 break
-    assert best is not None
+        assert best is not None
+        if starts > 1:
+            best = _around(model, best, bounds, priors or {}, loss, rng)
     result = _result(best.model, model.runs, best.p, best.J, bounds, sigma is not None)
-    doubt = f"all of the data are fitted worse than a part of them, from {starts} starts: a false minimum, or the scene"
-    return result if best.plausible else replace(result, notes=(*result.notes, f"{doubt} lacks something"))
+    if best.plausible:
+        return result
+    explained = 1.0 - (best.cost / _extent(measured)) ** 2
+    doubt = (
+        f"residuals of all the data ({best.cost:.3g}) are larger than a part of them allows ({best.likely:.3g}),"
+        f" from {starts} starts: a false minimum, or the scene lacks something; R^2 is {explained:.6g} all the same"
+    )
+    return replace(result, notes=(*result.notes, doubt))
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Found:
-    """A fit through all windows; ``plausible``: as good over all the data as over their first parts."""
+    """A fit through all windows; ``likely``: residuals of all the data that those of their first parts allow."""
 
     model: Model
     p: Floats
     J: Floats
     cost: float
-    plausible: bool
+    likely: float
+
+    @property
+    def plausible(self) -> bool:
+        """Whether all the data are fitted as well as their first parts."""
+        return self.cost <= self.likely
 
 
 def _through(
@@ -139,20 +158,57 @@ def _through(
     shown: Any,
 ) -> _Found:  # fmt: skip
     """From the first window to the last, each started where the one before has ended."""
-    noise, likely = [], []
+    from scipy.stats import f as f_distribution
+
+    noise: list[float] = []
+    freedom: list[int] = []
     for i, t in enumerate(stages):
         part = model.until(t)
         p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
         model.runs += part.runs
         model.cycle = part.cycle
         residuals = part.residuals(p)
-        freedom = max(residuals.size - p.size, 1)
-        noise.append(float(np.sqrt(residuals @ residuals / freedom)))
-        likely.append(noise[-1] * (1.0 + _DEVIATIONS / np.sqrt(2.0 * freedom)))
+        noise.append(_noise(residuals, p.size))
+        freedom.append(max(residuals.size - p.size, 1))
         if shown is not None:
             shown.update()
-    plausible = noise[-1] <= max(min(likely), _EXACT * _extent(model.measured))
-    return _Found(model=part, p=p, J=J, cost=noise[-1], plausible=plausible)
+    # the variances of a part and of the whole, of errors that are alike, have Fisher's ratio: few data say little
+    ratios = f_distribution.isf(_CHANCE, freedom[-1], np.array(freedom))
+    allowed = max(float((np.array(noise) * np.sqrt(ratios)).min()), _EXACT * _extent(model.measured))
+    return _Found(model=part, p=p, J=J, cost=noise[-1], likely=allowed)
+
+
+def _around(
+    model: Model, best: _Found, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss,
+    rng: np.random.Generator,
+) -> _Found:  # fmt: skip
+    """The best of several fits that set out around one, as far as its errors and the bounds reach.
+
+    Trial runs get out of step with the data little by little, and false minima lie side by side: some standard errors
+    from one another, and hardly higher.
+    """
+    low, high = np.array(list(bounds.values())).T
+    idle = 0
+    while idle < _IDLE:
+        std = np.sqrt(np.diag(uncertainty(best.J, model.names).covariance))
+        std = np.where(np.isfinite(std), std, 0.0) * best.cost + np.where(np.isfinite(std), 0.0, high - low)
+        reach = np.minimum(_REACHES[idle % len(_REACHES)] * std, 0.5 * (high - low))
+        idle += 1
+        begin = np.clip(best.p + reach * rng.standard_normal(low.size), low, high)
+        try:
+            model.with_values(begin)
+        except FricmbError:  # mu_k above mu_s, say
+            continue
+        p, J = _solve(best.model, begin, bounds, priors, loss, False)
+        if _noise(best.model.residuals(p), p.size) < best.cost * (1.0 - _BETTER):
+            p, J = _solve(best.model, p, bounds, priors, loss, True)
+            best, idle = replace(best, p=p, J=J, cost=_noise(best.model.residuals(p), p.size)), 0
+    return best
+
+
+def _noise(residuals: Floats, n_p: int) -> float:
+    """Standard deviation of residuals by their degrees of freedom."""
+    return float(np.sqrt(residuals @ residuals / max(residuals.size - n_p, 1)))
 
 
 def _another(model: Model, low: Floats, high: Floats, rng: np.random.Generator) -> Floats:
@@ -259,14 +315,19 @@ def _result(
 ) -> Fit:
     residuals = model.residuals(p)
     found = uncertainty(J, model.names)
-    freedom = max(residuals.size - p.size, 1)
-    noise = float(np.sqrt(residuals @ residuals / freedom))
+    noise = _noise(residuals, p.size)
     known = np.isfinite(found.covariance)  # what is not determined is so without noise as well
     covariance = np.where(known, np.where(known, found.covariance, 0.0) * (1.0 if absolute else noise**2), np.inf)
     notes = list(found.notes)
     for name, value, (low, high) in zip(model.names, p.tolist(), bounds.values(), strict=True):
         if min(value - low, high - value) < 1e-6 * (high - low):
             notes.append(f"{name} lies at its bound {low if value - low < high - value else high:g}")
+    for name, std, (low, high) in zip(model.names, np.sqrt(np.diag(covariance)).tolist(), bounds.values(), strict=True):
+        if _BLIND * (high - low) < std < np.inf:
+            notes.append(
+                f"{name} is not determined within its bounds: its standard error is {std:.2g}, and they are"
+                f" {high - low:g} apart"
+            )
     places = np.cumsum([0] + [m.x.size for m in model.measured])
     return Fit(
         values=dict(zip(model.names, p.tolist(), strict=True)),
