@@ -80,12 +80,15 @@ def check_times(t_eval: Any, t_start: float, t_end: float) -> Floats:
     return times
 
 
-def check_tolerance(rtol: Any, atol: Any, n: int) -> Tolerance:
-    """Relative tolerance, and absolute ones for position and velocity (n,) each."""
+def check_tolerance(rtol: Any, atol: Any, n: int, max_step: Any = None) -> Tolerance:
+    """Relative tolerance, absolute ones for position and velocity (n,) each, and the longest step."""
     low, high = RTOL_RANGE
     found = number("rtol", rtol, f"a number from {low:g} to {high:g}", lambda r: low <= r <= high)
+    longest = math.inf
+    if max_step is not None:
+        longest = number("max_step", max_step, "a positive time, or None", lambda x: x > 0.0)
     if atol is None:
-        return Tolerance(rtol=found)
+        return Tolerance(rtol=found, max_step=longest)
     try:
         values = np.asarray(atol, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
@@ -96,7 +99,7 @@ def check_tolerance(rtol: Any, atol: Any, n: int) -> Tolerance:
             f"or {2 * n} (positions, then velocities)"
         )
     both = np.broadcast_to(values, (2 * n,)) if values.size in (1, 2 * n) else np.tile(values, 2)
-    return Tolerance(rtol=found, atol_q=both[:n].copy(), atol_v=both[n:].copy())
+    return Tolerance(rtol=found, atol_q=both[:n].copy(), atol_v=both[n:].copy(), max_step=longest)
 
 
 def floors(tolerance: Tolerance) -> tuple[float, ...] | None:

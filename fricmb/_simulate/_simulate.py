@@ -31,6 +31,7 @@ def simulate(
     initial: Solution | Mapping[str, Mapping[str, Any]] | None = None,
     observe: Iterable[str] | None = None,
     step: float | None = None,
+    max_step: float | None = None,
     progress: bool = False,
     dense: bool | None = None,
     chunk: float | None = None,
@@ -65,6 +66,9 @@ def simulate(
         Degrees of freedom, points and contacts that are asked for: what cannot influence them may be left out.
     step : float, optional
         Step of a method with a fixed one.
+    max_step : float, optional
+        Longest step of a method that chooses its own; default: as long as the motion and the functions of time in the
+        scene allow.
     progress : bool
         Show a bar on the terminal.
     dense : bool, optional
@@ -129,7 +133,7 @@ def simulate(
         mechanics = prepare(scene, parameters, observe)
         start, mechanics = find_start(mechanics, initial, number("t_start", t_start, "a finite time"))
         span = check_span(start.t, t_end, t_eval)
-        tolerance = check_tolerance(rtol, atol, start.q.size)
+        tolerance = check_tolerance(rtol, atol, start.q.size, max_step)
         chosen = find_runs(mechanics, method, start, span, tolerance.rtol)
         fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
         keep = check_keep(dense, chunk, on_chunk, span)

@@ -11,6 +11,7 @@ import sympy
 
 from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
+from fricmb.equations._inputs import time_inputs
 from fricmb.equations._split import affine, split
 
 
@@ -21,7 +22,7 @@ def derive_value(
     outputs = [sympy.sympify(value), *(sympy.diff(value, a) for a in arguments)]
     for expression in outputs:
         _code.check(expression, title)
-    return {"switches": time_switches(value, parameters)}, _code.kernel(arguments, parameters, outputs, title)
+    return _timed_facts(value, parameters), _code.kernel(arguments, parameters, outputs, title)
 
 
 def derive_force(
@@ -33,7 +34,13 @@ def derive_force(
     outputs = [force, *(sympy.diff(force, a) for a in [*arguments, v]), sympy.S.Zero, sympy.S.Zero, force * v]
     for expression in outputs:
         _code.check(expression, title)
-    return {"switches": time_switches(value, parameters)}, _code.kernel([*arguments, v], parameters, outputs, title)
+    return _timed_facts(value, parameters), _code.kernel([*arguments, v], parameters, outputs, title)
+
+
+def _timed_facts(value: Any, parameters: Sequence[Any]) -> dict[str, Any]:
+    """When an expression switches in time, and its parts that depend on time alone."""
+    inputs = time_inputs(without_mod(sympy.sympify(value)), sympy.Symbol("t", real=True), parameters)
+    return {"switches": time_switches(value, parameters), "inputs": inputs}
 
 
 def derive_bends(
@@ -61,13 +68,16 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
     else:
         integral = integrate(value, t)
         if integral is None and not switches(value, t, parameters):
-            facts = {"closed": True, "switches": []}
+            facts = {"closed": True, "switches": [], "inputs": time_inputs(value, t, parameters)}
             return facts, _quadrature_kernel(value, t, [*parameters, offset], title)
         closed = integral is not None
         outputs = [offset if integral is None else integral + offset, value, slope(value, t)]
     for expression in outputs:
         _code.check(expression, title)
-    facts = {"closed": closed, "switches": switches(value, t, parameters), "uniform": bool(outputs[2] == 0)}
+    # of a motion that is given by its position the speed acts, too
+    inputs = time_inputs(value, t, parameters, rates=1 if given == "value" else 0)
+    uniform = bool(outputs[2] == 0)
+    facts = {"closed": closed, "switches": switches(value, t, parameters), "uniform": uniform, "inputs": inputs}
     return facts, _code.kernel([t], [*parameters, offset], outputs, title)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,12 +17,13 @@ class Tolerance:
     """How accurate a run has to be.
 
     ``rtol`` is relative to each signal's running maximum; ``atol_q``, ``atol_v`` (n,) are floors of these scales times
-    rtol, or None (chosen from rtol and the scales found in the run).
+    rtol, or None (chosen from rtol and the scales found in the run).  No step is longer than ``max_step``.
     """
 
     rtol: float
     atol_q: Floats | None = None
     atol_v: Floats | None = None
+    max_step: float = math.inf
 
 
 def odd_stages(name: str, problem: Problem, stages: int | None) -> str | None:

@@ -14,7 +14,7 @@ from.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -135,18 +135,40 @@ class SparseLinear(LazyMatrices, Linear):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Input:
+    """A function of time alone that acts in a problem.
+
+    Attributes
+    ----------
+    tape : tuple of tuple, or None
+        Its operations: see :mod:`fricmb.integrate.signals.jets`.
+    parameters : tuple of float
+    function : callable, optional
+        Of the parameters followed by time: what has no tape is sampled.
+    rates : int
+        How many of its derivatives act as well: 1 for a position that is given.
+    """
+
+    tape: tuple[tuple[Any, ...], ...] | None
+    parameters: tuple[float, ...]
+    function: Callable[[Sequence[float]], float] | None = None
+    rates: int = 0
+
+
+@dataclass(frozen=True, kw_only=True)
 class Signals:
     """Prescribed functions of time: template with x = [t], out = [u, u', u''].
 
     A signal of a driven body is its position, velocity and acceleration; of a time-dependent force the force as u; of a
     ``slide`` the slide velocity as u' (its u is unused).  ``breakpoints`` are stepped to exactly; integrators evaluate
     on the inner side of the interval between two of them.  ``uniform`` (n_u,): 1 where a signal is known to be linear
-    in time (empty: nothing is known).
+    in time (empty: nothing is known).  ``inputs``: all functions of time, those in normal forces and elements as well.
     """
 
     table: Templates = field(default_factory=Templates)
     breakpoints: Floats = field(default_factory=lambda: _f(0))
     uniform: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    inputs: tuple[Input, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

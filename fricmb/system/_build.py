@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import Contacts, Floats, Linear, Problem, Start
+from fricmb.integrate.problem import Contacts, Floats, Input, Linear, Problem, Start
 from fricmb.integrate.problem import Signals as SignalArrays
 from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
 from fricmb.scene._family import NUMBERS, STARTS
@@ -20,6 +20,7 @@ from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
+from fricmb.system._inputs import inputs_of
 from fricmb.system._leaps import leaps_of
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
@@ -147,7 +148,7 @@ def _problem_in_use(structure: Structure, touching: tuple[ContactArrays, Contact
 
 def _problem(
     dofs: tuple[str, ...], structure: Structure, touching: tuple[ContactArrays, Contacts], signals: _motions.Signals,
-    breakpoints: Floats,
+    breakpoints: Floats, inputs: tuple[Input, ...],
 ) -> Problem:  # fmt: skip
     n, n_u = len(dofs), len(signals.held)
     linear, elements = structure.arrays(n_u)
@@ -157,7 +158,7 @@ def _problem(
     table = signals.table.build(n, n_u)
     problem = Problem(
         linear=linear,
-        signals=SignalArrays(table=table, breakpoints=breakpoints, uniform=signals.uniform()),
+        signals=SignalArrays(table=table, breakpoints=breakpoints, uniform=signals.uniform(), inputs=inputs),
         contacts=contact_arrays,
         elements=elements,
         bends=bends_of((*structure.bends, *contacts.bends), n, n_u),
@@ -178,7 +179,7 @@ def _system(
     known, searched = switches_of(timed)
     problem = _problem_in_use(structure, touching) if not timed else None
     if problem is None:
-        problem = _problem(dofs, structure, touching, signals, known)
+        problem = _problem(dofs, structure, touching, signals, known, inputs_of(timed))
         if len(scene.parts) <= SMALL:
             scene._shared["problem"] = problem
     q, v = scene.initial_values(dofs)

@@ -30,6 +30,7 @@ from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
+from fricmb.system._inputs import inputs_of
 from fricmb.system._joints import JointArrays, Kept
 from fricmb.system._leaps import leaps_of
 from fricmb.system._mechanism_system import MechanismSystem
@@ -85,7 +86,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     table = signals.table.build(n_y, n_u)
     problem = Problem(
         linear=_no_structure(n, n_u),
-        signals=Signals(table=table, breakpoints=known),
+        signals=Signals(table=table, breakpoints=known, inputs=inputs_of(timed)),
         contacts=contacts.build(n_y, n_u, dense=False),
         elements=elements,
         bends=bends_of((*structure.bends, *contacts.bends), n_y, n_u),

@@ -169,6 +169,7 @@ def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
     if tolerance.atol_v is not None:
         np.maximum(run.scale, tolerance.atol_v / tolerance.rtol, out=run.scale)
     run.time, run.next_step, run.first_step = start.t, run.ladder[8], run.ladder[8]
+    run.bound = tolerance.max_step
     run.searched = run.looks = 0.0  # a run that was ended may have left them
     w = run.belt
     g = run.wt @ start.v - w
@@ -196,7 +197,7 @@ def _run_in(
 ) -> Trajectory:  # fmt: skip
     run = within(held[0], memory)
     if t_end > start.t:
-        set_longest_step(run, longest_step(problem, s, t_end - start.t))
+        set_longest_step(run, min(longest_step(problem, s, t_end - start.t), tolerance.max_step))
     _set_state(run, start, tolerance)
     tell = None if progress is None else lambda: progress(float(run.time))
     while True:

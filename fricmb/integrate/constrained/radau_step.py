@@ -28,7 +28,8 @@ class Control(Layout):
     ``rtol``, and where it cannot be had ``blur``, what can (see ``singular_position``); running maxima ``q``,
     ``v``, ``z`` with floors ``floor_v``; ``h`` next step, ``last_h`` the step before; ``old`` (s+1, n + m + n_c +
     nz) its values at ``nodes`` (s+1,) 0, c for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts``
-    work done; ``longest`` step of all; ``span`` (2,) and ``stops`` times to step to; ``mass`` (n,) diagonal of M;
+    work done; ``longest`` step at present, and anywhere, ``bound``; ``span`` (2,) and ``stops`` times to step to;
+    ``mass`` (n,) diagonal of M;
     ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z)
     space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
@@ -47,6 +48,7 @@ class Control(Layout):
     counts: Ints
     span: Floats
     longest: float
+    bound: float
     stops: Floats
     mass: Floats
     made: float
@@ -67,7 +69,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
     s, size, n, stops = len(st.tab.c), len(st.x), problem.n, problem.signals.breakpoints.size
     return Control(
         0.0, 0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
-        np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, np.zeros(stops), np.zeros(n),
+        np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
         np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
     )  # fmt: skip

@@ -27,6 +27,7 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
+from fricmb.integrate.signals.longest_steps import steps_of_run
 from fricmb.integrate.step.step_control import SAMPLED, first_step
 
 CHUNK = 1024
@@ -72,7 +73,9 @@ def run_mechanism(
         mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
         past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
-        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, *past)
+        limits = steps_of_run(problem, start.t, t_end, tolerance)
+        seen = limits.edge, limits.longest
+        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, *past, *seen)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small)
         if code == DONE:
@@ -101,7 +104,7 @@ def _set_up(
     for state in (y, workspace.end, workspace.before):
         set_out(state, start)
     c.rtol, c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
-    c.longest = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
+    c.longest = c.bound = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
     c.v[:], c.z[:] = np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol

@@ -24,7 +24,7 @@ from fricmb.integrate.constrained.transition import let_go
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
-from fricmb.integrate.problem import SLIP, Codes
+from fricmb.integrate.problem import SLIP, Codes, Floats
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
 from fricmb.integrate.run.outcomes import (
     ACCEPTED,
@@ -39,6 +39,7 @@ from fricmb.integrate.run.outcomes import (
     SLICE_OVER,
 )
 from fricmb.integrate.run.slices import slice_over, ticks
+from fricmb.integrate.signals.longest_steps import OF_BDF, longest_from
 
 
 @run_entry
@@ -90,15 +91,18 @@ def begin(
 @run_entry
 def drive(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
-    rec: Record, part: Codes, past: Differences, formula: Formula,
+    rec: Record, part: Codes, past: Differences, formula: Formula, edge: Floats, limit: Floats,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until a slice is over or the space for steps is used up.
 
     Steps are those of the one-step method, and where the history ``past`` lets BDF begin those of ``formula``.
+    ``edge``, ``limit``: how long inputs let steps be (see ``LongestSteps``).
     """
     stop = set_window(c, k.s.window, y.t)
     begun = ticks()
     while True:
+        seen = longest_from(edge, limit, y.t)
+        c.longest = min(c.bound, seen)
         # a stop is kept until it has been gone through: a step may end on it to the last digit
         if reached(y.t, stop):
             code = arrive(mech, k, w, y, before, c, out, rec, part, stop)
@@ -109,7 +113,7 @@ def drive(
         elif crowded(rec, y.mode.shape[0]):
             return FULL
         elif past.on == 1:
-            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, stop - y.t)
+            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, min(stop - y.t, OF_BDF * seen))
             if code == ACCEPTED and is_slower(past, formula.usual):
                 c.h = formula.usual
             elif code == HANDOVER:

@@ -47,16 +47,17 @@ PATIENCE = 10
 class Clock(Layout):
     """Step control: ``h`` next step, ``usual`` step to start with after a transition, ``span`` (2,) bounds.
 
-    ``longest`` step of all; ``stops`` breakpoints; transitions in a row at one instant, ``at_once``, and since the time
-    ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.  ``growth``: see
-    ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be; ``knot``
-    when the next step has to end, since a law or an element bends then (not ahead: whenever it likes).
+    ``longest`` step at present, and anywhere, ``bound``; ``stops`` breakpoints; transitions in a row at one instant,
+    ``at_once``, and since the time ``mark``, ``since_mark``; ``found``, ``retry`` (1,) space for locating.
+    ``growth``: see ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next
+    one be; ``knot`` when the next step has to end, since a law or an element bends then (not ahead: whenever it likes).
     """
 
     h: float
     usual: float
     span: Floats
     longest: float
+    bound: float
     stops: Floats
     at_once: int
     since_mark: int

@@ -106,5 +106,5 @@ def bdf_loop(run: Collector, one: OneStep, multi: OneStep) -> Callable[[], int]:
     past.wait, past.slower = SETTLE, 1
     return partial(
         drive, run.packed, run.scratch, run.y, run.end, one, multi, run.acc, past, guard_of(problem, spectral),
-        run.rest, run.old, run.rows, run.clock,
+        run.rest, run.old, run.rows, run.clock, *run.seen,
     )  # fmt: skip

@@ -85,5 +85,5 @@ def one_step_loop(run: Collector, one: OneStep) -> Callable[[], int]:
     """The loop over the steps of one formula."""
     return partial(
         drive, run.packed, run.scratch, run.y, run.end, one, one, run.acc, no_differences(), no_guard(), run.rest,
-        run.old, run.rows, run.clock,
+        run.old, run.rows, run.clock, *run.seen,
     )  # fmt: skip

@@ -19,6 +19,7 @@ from fricmb.integrate.problem import Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
 from fricmb.integrate.run.stop import ended
+from fricmb.integrate.signals.longest_steps import LongestSteps, steps_of_run
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import SAMPLED, first_step
@@ -44,6 +45,8 @@ def set_accuracy(run: Collector, tolerance: Tolerance) -> Accuracy:
         scale[:] = np.abs(value)
     for one in run.steps:
         one.w.slope[:] = 0.0
+    limits = steps_of_run(run.problem, start.t, run.t_end, tolerance)
+    run.seen = limits.edge, limits.longest
     return acc
 
 
@@ -77,6 +80,8 @@ class Collector:
         fill_rest(self.rest, self.packed)
         self.rest.small[:] = 1e-4 * NOISE * np.max(self.natural_v, initial=0.0)
         self.chunks = Chunks(self.rows, "values", "kind", "mode")
+        unlimited = LongestSteps.none()
+        self.seen = unlimited.edge, unlimited.longest
 
     def begin(self) -> int:
         """Modes, forces and accelerations at the start; the first row.  Returns DONE or a code of failure."""
@@ -174,5 +179,5 @@ def set_clock(run: Collector) -> None:
     clock.h = clock.usual = first_step(run.y.v, run.y.a, run.t_end - run.start.t, PART, omega)
     clock.span[:] = run.start.t, run.t_end
     clock.knot = -np.inf
-    clock.longest = longest_step(run)
+    clock.bound = longest_step(run)
     clock.stops[:] = run.packed.breakpoints

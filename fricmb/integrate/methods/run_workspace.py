@@ -72,8 +72,8 @@ def made(problem: Problem) -> RunWorkspace:
     floats = [np.zeros(size) for size in (n, n, nz, nc, n, n, n)]
     stops = np.zeros(problem.signals.breakpoints.size)
     clock = Clock(
-        h=0.0, usual=0.0, span=np.zeros(2), longest=0.0, stops=stops, at_once=0, since_mark=0, found=np.zeros(2),
-        mark=0.0, retry=np.zeros(1), growth=np.inf, wanted=0.0,
+        h=0.0, usual=0.0, span=np.zeros(2), longest=0.0, bound=0.0, stops=stops, at_once=0, since_mark=0,
+        found=np.zeros(2), mark=0.0, retry=np.zeros(1), growth=np.inf, wanted=0.0,
         knot=-np.inf,
     )  # fmt: skip
     return RunWorkspace(

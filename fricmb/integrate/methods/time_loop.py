@@ -16,9 +16,11 @@ from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.output.recorder import Rows
+from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.breakpoints import reached, set_window
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER, SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks
+from fricmb.integrate.signals.longest_steps import OF_BDF, longest_from
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.step_matrix import forget
 
@@ -48,11 +50,12 @@ def crowded(out: Rows, n_s: int, nc: int) -> bool:
 @run_entry
 def drive(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, multi: OneStep, acc: Accuracy,
-    past: Differences, guard: BdfGuard, r: Rest, old: Before, out: Rows, clock: Clock,
+    past: Differences, guard: BdfGuard, r: Rest, old: Before, out: Rows, clock: Clock, edge: Floats, limit: Floats,
 ) -> int:  # fmt: skip
     """Step from y until the end of the span, or until a slice is over or the space for rows is used up.
 
     Steps are those of the one-step method ``one``, and where the history ``past`` lets BDF begin those of ``multi``.
+    ``edge``, ``limit``: how long inputs let steps be (see ``LongestSteps``).
     """
     stop = set_window(clock, s.window, y.t)
     begun = ticks()
@@ -60,13 +63,15 @@ def drive(
         if crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
         left = stop - y.t
+        seen = longest_from(edge, limit, y.t)
+        clock.longest = min(clock.bound, seen)
         if reached(y.t, stop):
             code = arrive(packed, s, y, r, old, out, clock, stop)
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
             past.on = 0
         elif past.on == 1:
-            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, left)
+            code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, min(left, OF_BDF * seen))
             if code == ACCEPTED and is_slower(past, max(clock.usual, clock.wanted)):
                 clock.h = clock.usual
             if code == HANDOVER:

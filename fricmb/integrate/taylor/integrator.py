@@ -13,6 +13,7 @@ from fricmb.integrate.compile.exchange import put_zeros, with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
 from fricmb.integrate.run.stop import ended, in_slices
+from fricmb.integrate.signals.longest_steps import steps_of_run
 from fricmb.integrate.suits_taylor import fastest
 from fricmb.integrate.taylor.driving import Driving, find_driving
 from fricmb.integrate.taylor.friction_curve import LEAST
@@ -125,7 +126,8 @@ def set_start(
         np.maximum(net.top, tolerance.atol_v / tolerance.rtol, out=net.top)
     breaks = problem.signals.breakpoints
     inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
-    net = with_arrays(net, stops=np.append(inside, t_end))
+    limits = steps_of_run(problem, start.t, t_end, tolerance)
+    net = with_arrays(net, stops=np.append(inside, t_end), edge=limits.edge, within=limits.longest)
     span = t_end - start.t
     w = fastest(problem)
     degree = net.Q.shape[0] - 1

@@ -50,7 +50,8 @@ class Net(Layout):
     Step: ``Q``, ``R``, ``slack``, ``due``, ``since`` (m,), ``heap_t``, ``heap_c``, ``flat`` (3, n).
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
-    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end.
+    is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end; ``edge``,
+    ``within``: how long inputs let steps be.
     ``groups``: what contacts need that are not plain.
     """
 
@@ -158,6 +159,8 @@ class Net(Layout):
     out_mode: Codes2
     out_x: Floats2
     stops: Floats
+    edge: Floats
+    within: Floats
     groups: Groups
 
 

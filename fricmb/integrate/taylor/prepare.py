@@ -184,7 +184,7 @@ def _work_pattern(n: int, m: int, n_u: int, P: int, widest: int) -> Pattern:
         **dict.fromkeys(("q", "v", "top", "free"), (n,)), "Q": (P + 1, wide), "R": (P - 1, wide),
         **dict.fromkeys(("sigma", "loss", "mark", "slack", "due", "since"), (m,)), "heap_t": heap, "flat": (3, n),
         "dQ": (P + 2, widest), "dR": (P + 1, widest), "old": (3, P + 3), "events": (max(64, 4 * m), 3),
-        "steps": (256, 2), "stops": (1,),
+        "steps": (256, 2), "stops": (1,), "edge": (2,), "within": (1,),
     }  # fmt: skip
     return Pattern(Net, floats, {"heap_c": heap, "local": (widest,), "place": (n,)})
 

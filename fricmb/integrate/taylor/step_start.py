@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.signals.longest_steps import longest_from
 from fricmb.integrate.step.step_control import step_factor
 from fricmb.integrate.taylor.fresh import all_series, lose_fresh
 from fricmb.integrate.taylor.idle import idle_step
@@ -75,7 +76,7 @@ def choose_step(net: Net) -> bool:
     stop = net.stops[net.n_stop]
     left = stop - t
     take_off(net)
-    h = min(net.next_step, net.longest)
+    h = min(net.next_step, net.longest, longest_from(net.edge, net.within, t))
     if h > left * (1.0 - 1e-9):
         h = left
     elif h > 0.5 * left:
@@ -93,7 +94,7 @@ def choose_step(net: Net) -> bool:
             net.step = h
             busy = all_series(net, h)
         if not busy and net.series.shape[0] == 0:
-            idle = idle_step(net, left)
+            idle = idle_step(net, min(left, longest_from(net.edge, net.within, t)))
             if idle > h:
                 rescale(net, idle / h)
                 net.step = idle

@@ -25,7 +25,9 @@ GRAIN = 1e-14
 #: Steps at a time on the way to samples.
 STRIDE = 16
 #: Arrays of the state.
-STATE = ("q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "stops", "window")
+STATE = (
+    "q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "window", "stops", "edge", "within",
+)  # fmt: skip
 
 
 class Checkpoints:
@@ -139,12 +141,13 @@ class TaylorRun(Trajectory):
                 return samples_of(problem, with_arrays(lent, **no_samples(problem.n, problem.m)), slice(0, 0))
             state = self._state_before(float(t[0]))
             for name in STATE:
-                if name != "stops":
+                if name not in ("stops", "edge", "within"):
                     getattr(lent, name)[:] = state[name]
             put_numbers(lent, state["numbers"])
             last = len(self.transitions.t)
             net = with_arrays(
-                lent, stops=state["stops"], events=np.zeros((last + problem.m + 1, 3)),
+                lent, stops=state["stops"], edge=state["edge"], within=state["within"],
+                events=np.zeros((last + problem.m + 1, 3)),
                 steps=np.zeros((2 * len(self._steps) + STRIDE, 2)),  # pauses at marks may end steps, too
                 **{**no_samples(problem.n, problem.m, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip

@@ -35,8 +35,9 @@ class Run(Layout):
     ``terms`` (n,), ``radau`` (s, s), ``rhs`` (s,), ``coefficients`` (s+1,), ``out`` (3, m), ``change`` (m,) of signals
     per impulse on a row.
     State between phases: ``pos`` with its low part, ``vel``, ``scale`` (n,); ``g``, ``n`` (m,); ``time`` with its
-    low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``searched``, ``looks`` of a stick, ``mode``.
-    ``used`` (3,) rows of steps, phases and events; ``counts`` (5,) work done (see Counters).
+    low part, friction ``loss``, ``next_step``, ``first_step`` of a slip, ``searched``, ``looks`` of a stick,
+    ``bound`` of steps, ``mode``.  ``used`` (3,) rows of steps, phases and events; ``counts`` (5,) work done (see
+    Counters).
     ``steps``, ``kinds``, ``phases``, ``events``: rows of what is kept.
     """
 
@@ -128,6 +129,7 @@ class Run(Layout):
     first_step: float
     searched: float
     looks: float
+    bound: float
     mode: int
     used: Ints
     counts: Ints

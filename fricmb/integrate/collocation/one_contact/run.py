@@ -205,7 +205,7 @@ def run_single(run: Run, t_end: float, tol: float, stiff: float) -> int:
         t = run.time
         low = run.time_low
         if run.mode == STICK:
-            code = stick_phase(run, t_end, begun)
+            code = stick_phase(run, min(t_end, run.time + run.bound), begun)
         else:
             code = slip_phase(run, t_end, tol, stiff)
         if code != DONE:

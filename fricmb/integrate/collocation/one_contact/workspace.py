@@ -38,7 +38,7 @@ BY_BLOCK = (
     "u", "u_low", "v", "a", "k", "load", "slope", "e0", "e1", "u_end", "low_end", "v_end", "force", "rate", "pos",
     "pos_low", "vel", "scale",
 )  # fmt: skip
-NUMBERS = ("time", "time_low", "loss", "next_step", "first_step", "searched", "looks", "mode")
+NUMBERS = ("time", "time_low", "loss", "next_step", "first_step", "searched", "looks", "bound", "mode")
 
 #: Arrays kept for each size of a scene, and bytes of rows and tables above which they are not put back.
 MANY, LARGE = 4, 32_000_000

@@ -1,0 +1,185 @@
+"""How long a step may be at each time so that no prescribed function is passed over.
+
+Within a step what acts is seen at the nodes of the method.  A polynomial of degree n - 1 through n Radau nodes errs by
+at most ``W h^n C``, ``W = 2 (n!)^2/(2n)!`` (at the begin of the step), where the n-th Taylor coefficient is below C.
+Steps are kept so short that this is below ``tol`` of the function's largest value.  The bounds hold for all times: no
+pulse is too short to be seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.integrator import Tolerance
+from fricmb.integrate.problem import Floats, Input, Problem
+from fricmb.integrate.signals.jets import bounds
+
+#: Stretches that are looked at first; most of all; halvings of one.
+FIRST, MOST, DEEPEST = 64, 200_000, 40
+#: A stretch is halved where that saves so much of its steps; stretches are one where their steps differ by less.
+SAVES, ALIKE = 0.75, 1.4
+#: Part of such a step that BDF takes at most: it looks at its ends alone.
+OF_BDF = 0.25
+#: Stretches of a run on which a function without bounds is sampled; round-off of its differences.
+SAMPLED, ROUND_OFF = 2048, 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class LongestSteps:
+    """``edge`` (k + 1,) times, rising, and the longest step ``longest`` (k,) from any time between two of them."""
+
+    edge: Floats
+    longest: Floats
+
+    @classmethod
+    def none(cls) -> LongestSteps:
+        """No function limits steps."""
+        return cls(np.array([-np.inf, np.inf]), np.array([np.inf]))
+
+
+def steps_of_run(problem: Problem, t_start: float, t_end: float, tolerance: Tolerance) -> LongestSteps:
+    """The longest steps of a run of a problem."""
+    rtol = tolerance.rtol
+    found = longest_steps(problem.signals.inputs, t_start, t_end, tol=rtol, nodes=5 if rtol > 1e-5 else 7)
+    return LongestSteps(found.edge, np.minimum(found.longest, tolerance.max_step))
+
+
+def longest_steps(inputs: Sequence[Input], t_start: float, t_end: float, *, tol: float, nodes: int) -> LongestSteps:
+    """The longest steps under all of these inputs from ``t_start`` to ``t_end``, to ``tol`` of each one's size.
+
+    ``nodes``: at how many times of a step a method looks.
+    """
+    found = LongestSteps.none()
+    for given in inputs:
+        found = _both(found, _of_one(given, t_start, t_end, tol, nodes))
+    return found
+
+
+@lru_cache(maxsize=256)
+def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) -> LongestSteps:
+    if not t_end > t_start:
+        return LongestSteps.none()
+    if given.tape is None:
+        return _sampled(given, t_start, t_end, tol, nodes)
+    edge = np.linspace(t_start, t_end, FIRST + 1)
+    low, high = edge[:-1], edge[1:]
+    steps, value = _allowed(given, low, high, nodes)
+    scale = np.max(value[np.isfinite(value)], initial=0.0)
+    if scale == 0.0 or not np.isfinite(steps).any():
+        return LongestSteps.none()
+    part = (tol * scale) ** (1.0 / nodes)
+    done: list[tuple[Floats, Floats, Floats]] = []
+    for depth in range(DEEPEST):
+        short = part * steps < high - low
+        open_ = short if low.size < MOST and depth < DEEPEST - 1 else np.zeros_like(short)
+        done.append((low[~open_], high[~open_], steps[~open_]))
+        if not open_.any():
+            break
+        low, high, steps = low[open_], high[open_], steps[open_]
+        middle = 0.5 * (low + high)
+        left, right = _allowed(given, low, middle, nodes)[0], _allowed(given, middle, high, nodes)[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            before, after = 2.0 / steps, 1.0 / left + 1.0 / right
+            better = (after < SAVES * before) | ~np.isfinite(before)
+        done.append((low[~better], high[~better], steps[~better]))
+        low, high = np.concatenate([low[better], middle[better]]), np.concatenate([middle[better], high[better]])
+        steps = np.concatenate([left[better], right[better]])
+        if not low.size:
+            break
+    low, high, steps = (np.concatenate([d[i] for d in done]) for i in range(3))
+    order = np.argsort(low)
+    # where a function has no bound at all, as a root where it begins, steps are as long as what was looked at
+    longest = np.maximum(part * steps[order], np.where(steps[order] == 0.0, high[order] - low[order], 0.0))
+    return _merged(LongestSteps(np.append(low[order], t_end), longest))
+
+
+def _allowed(given: Input, low: Floats, high: Floats, nodes: int) -> tuple[Floats, Floats]:
+    """Step (k,) over (tol times the scale)^(1/nodes), and the size of the function, on intervals."""
+    assert given.tape is not None
+    jet = bounds(given.tape, given.parameters, low, high, nodes + given.rates)
+    most = jet.size(nodes)
+    factor = 1.0
+    for rate in range(1, given.rates + 1):
+        factor *= nodes + rate
+        most = np.maximum(most, factor * jet.size(nodes + rate))
+    with np.errstate(divide="ignore"):
+        return (_farthest(nodes) * most) ** (-1.0 / nodes), jet.size(0)
+
+
+def _farthest(nodes: int) -> float:
+    """The largest product of the distances of a place in [0, 1] from the Radau nodes."""
+    return 2.0 / math.comb(2 * nodes, nodes)
+
+
+def _sampled(given: Input, t_start: float, t_end: float, tol: float, nodes: int) -> LongestSteps:
+    """Of a function without bounds: from its differences on stretches, each seen at ``nodes`` + 1 times."""
+    assert given.function is not None
+    edge = np.linspace(t_start, t_end, SAMPLED + 1)
+    h = edge[1] - edge[0]
+    places = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, nodes + 1))
+    times = edge[:-1, None] + h * places
+    value = np.array([_value(given, float(t)) for t in times.ravel()]).reshape(times.shape)
+    scale = np.max(np.abs(value), initial=0.0)
+    if scale == 0.0:
+        return LongestSteps.none()
+    gaps = np.prod(np.where(np.eye(nodes + 1, dtype=bool), 1.0, places[:, None] - places), axis=1)
+    most = np.abs(value @ (1.0 / gaps)) / h**nodes
+    with np.errstate(divide="ignore"):
+        least = ROUND_OFF * scale / h**nodes
+        allowed = (tol * scale / (_farthest(nodes) * np.maximum(most, least))) ** (1.0 / nodes)
+    return _merged(LongestSteps(edge, np.maximum(allowed, h)))
+
+
+def _value(given: Input, t: float) -> float:
+    """The function; 0 where it has no value."""
+    assert given.function is not None
+    try:
+        found = float(given.function((*given.parameters, t)))
+    except (ArithmeticError, ValueError):
+        return 0.0
+    return found if np.isfinite(found) else 0.0
+
+
+def _merged(steps: LongestSteps) -> LongestSteps:
+    """Neighbours that are alike as one, with the shorter step."""
+    with np.errstate(divide="ignore", over="ignore"):
+        rung = np.floor(np.log(steps.longest) / np.log(ALIKE))
+    first = np.flatnonzero(np.append(True, rung[1:] != rung[:-1]))
+    return LongestSteps(np.append(steps.edge[first], steps.edge[-1]), np.minimum.reduceat(steps.longest, first))
+
+
+def _both(a: LongestSteps, b: LongestSteps) -> LongestSteps:
+    """The shorter of two at each time."""
+    inside = np.unique(np.concatenate([a.edge, b.edge]))
+    at = inside[:-1]
+    return LongestSteps(inside, np.minimum(_at(a, at), _at(b, at)))
+
+
+def _at(steps: LongestSteps, t: Floats) -> Floats:
+    place = np.searchsorted(steps.edge, t, side="right") - 1
+    known = (place >= 0) & (place < steps.longest.size)
+    return np.where(known, steps.longest[np.clip(place, 0, steps.longest.size - 1)], np.inf)
+
+
+@kernel
+def longest_from(edge: Floats, longest: Floats, t: float) -> float:
+    """The longest step from t: none reaches into a stretch farther than that allows."""
+    low, high = 0, longest.shape[0] - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if edge[middle] <= t:
+            low = middle
+        else:
+            high = middle - 1
+    h = longest[low]
+    for j in range(low + 1, longest.shape[0]):
+        if edge[j] >= t + h:
+            break
+        h = max(edge[j] - t, min(h, longest[j]))
+    return float(h)

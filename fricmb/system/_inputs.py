@@ -1,0 +1,21 @@
+"""Functions of time that act in a scene, as integrators ask about them before a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fricmb.equations import Template, formula
+from fricmb.integrate.problem import Input
+
+
+def inputs_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Input, ...]:
+    """Every function of time in templates with their parameters, each once."""
+    found: dict[Input, None] = {}
+    for template, parameters in timed:
+        for fact in template.facts.get("inputs", ()):
+            tape = fact.get("tape")
+            function = formula(fact["source"]) if tape is None else None
+            entries = None if tape is None else tuple(map(tuple, tape))
+            given = Input(tape=entries, parameters=tuple(parameters), function=function, rates=fact["rates"])
+            found[given] = None
+    return tuple(found)
