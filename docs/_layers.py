@@ -27,6 +27,7 @@ ENGINE = (
     ("problem", "trajectory", "integrator", "mechanism", "csr"),
     ("compile",),
     ("run",),
+    ("signals",),
     ("model",),
     ("output",),
     ("step",),

@@ -28,11 +28,13 @@ FLOORS = (
     {"cli"},
 )
 #: Inside `integrate`, imports inside functions counted: what a problem is and what a run returns; compilation; what
-#: goes on around any run; forces and accelerations; rows that a run leaves; one implicit step; transitions; methods.
+#: goes on around any run; inputs; forces and accelerations; rows that a run leaves; one implicit step; transitions;
+#: methods.
 ENGINE = (
     {"problem", "once_per", "array_cache", "mechanism", "csr", "trajectory", "integrator"},
     {"compile"},
     {"run"},
+    {"signals"},
     {"model"},
     {"output"},
     {"step"},

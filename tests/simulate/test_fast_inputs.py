@@ -30,7 +30,7 @@ def roller(load):
 
 
 def slides(load, t_end, mu_s=1.0, mu_k=0.8, samples=400_000):
-    """Transitions and way of a block at rest: it lets go where the load passes mu_s, and stops where its impulse is spent."""
+    """Transitions and way of a block at rest: it lets go where the load passes mu_s, and stops in time."""
     t, events, x = 0.0, [], 0.0
     grid = np.linspace(0.0, t_end, samples)
     value = load(grid)

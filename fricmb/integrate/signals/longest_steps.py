@@ -69,11 +69,12 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
         return _sampled(given, t_start, t_end, tol, nodes)
     edge = np.linspace(t_start, t_end, FIRST + 1)
     low, high = edge[:-1], edge[1:]
-    steps, value = _allowed(given, low, high, nodes)
+    value = bounds(given.tape, given.parameters, low, high, 1).size(0)
     scale = np.max(value[np.isfinite(value)], initial=0.0)
-    if scale == 0.0 or not np.isfinite(steps).any():
+    if scale == 0.0:
         return LongestSteps.none()
-    part = (tol * scale) ** (1.0 / nodes)
+    steps = _allowed(given, low, high, nodes, scale)
+    part = tol ** (1.0 / nodes)
     done: list[tuple[Floats, Floats, Floats]] = []
     for depth in range(DEEPEST):
         short = part * steps < high - low
@@ -83,7 +84,7 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
             break
         low, high, steps = low[open_], high[open_], steps[open_]
         middle = 0.5 * (low + high)
-        left, right = _allowed(given, low, middle, nodes)[0], _allowed(given, middle, high, nodes)[0]
+        left, right = _allowed(given, low, middle, nodes, scale), _allowed(given, middle, high, nodes, scale)
         with np.errstate(divide="ignore", invalid="ignore"):
             before, after = 2.0 / steps, 1.0 / left + 1.0 / right
             better = (after < SAVES * before) | ~np.isfinite(before)
@@ -99,8 +100,8 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
     return _merged(LongestSteps(np.append(low[order], t_end), longest))
 
 
-def _allowed(given: Input, low: Floats, high: Floats, nodes: int) -> tuple[Floats, Floats]:
-    """Step (k,) over (tol times the scale)^(1/nodes), and the size of the function, on intervals."""
+def _allowed(given: Input, low: Floats, high: Floats, nodes: int, scale: float) -> Floats:
+    """Step (k,) over tol^(1/nodes) on intervals; towards a pole what counts is the function's size there."""
     assert given.tape is not None
     jet = bounds(given.tape, given.parameters, low, high, nodes + given.rates)
     most = jet.size(nodes)
@@ -108,8 +109,10 @@ def _allowed(given: Input, low: Floats, high: Floats, nodes: int) -> tuple[Float
     for rate in range(1, given.rates + 1):
         factor *= nodes + rate
         most = np.maximum(most, factor * jet.size(nodes + rate))
-    with np.errstate(divide="ignore"):
-        return (_farthest(nodes) * most) ** (-1.0 / nodes), jet.size(0)
+    least = np.where(jet.low[0] > 0.0, jet.low[0], np.where(jet.high[0] < 0.0, -jet.high[0], 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = (np.maximum(scale, least) / (_farthest(nodes) * most)) ** (1.0 / nodes)
+    return np.where(np.isnan(found), 0.0, found)
 
 
 def _farthest(nodes: int) -> float:
