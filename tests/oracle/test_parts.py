@@ -26,14 +26,8 @@ def test_every_part_has_its_case():
 def test_part_moves_as_the_oracle_says(name):
     true = truth(CASES[name]())
     assert not true.marginal
-    verdicts = {method: judge(true, method) for method in METHODS if (name, method) not in PARTS}
+    verdicts = {method: judge(true, method) for method in METHODS}
     assert verdicts["auto"].kind == "right"
-    assert {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD} == {}
-
-
-@pytest.mark.parametrize(("name", "method"), PARTS)
-def test_what_is_known_to_crash_still_does(name, method):
-    """An entry of ``known.PARTS`` that passes or is refused has to go."""
-    case = CASES[name]()
-    with pytest.raises(ValueError, match="broadcast"):
-        fm.simulate(case.scene, t_end=1.0, method=method)
+    wrong = {method: verdict for method, verdict in verdicts.items() if verdict.kind in BAD}
+    # what is known to be wrong and is right has to go from the list
+    assert wrong.keys() == {method for part, method in PARTS if part == name}, wrong

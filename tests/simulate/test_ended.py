@@ -117,10 +117,8 @@ def test_the_end_is_asserted():
 def test_a_time_limit_ends_a_run(method):
     scene = endless()
     fm.simulate(scene, t_end=1.0, method=method, **step_of(method))  # whatever has to be compiled is
-    begin = time.perf_counter()
     with pytest.raises(fm.IntegrationError, match=r"the time limit of 0\.4 s was reached") as caught:
-        fm.simulate(scene, t_end=1e8, method=method, time_limit=0.4, **step_of(method))
-    assert time.perf_counter() - begin < 60.0  # what was computed is put together, too
+        fm.simulate(scene, t_end=1e8, method=method, time_limit=0.4, **step_of(method))  # of days
     partial = caught.value.partial
     assert 1.0 < partial.t[-1] <= caught.value.t < 1e8
     assert np.isfinite(partial.q).all()
@@ -230,10 +228,8 @@ def test_ctrl_c_ends_a_run_within_a_second_and_keeps_it(method, scene, asked, se
 
 
 def test_a_run_ends_at_its_limit():
-    begin = time.perf_counter()
     with pytest.raises(fm.IntegrationError, match=r"the time limit of 0\.2 s was reached") as caught:
-        fm.simulate(endless(), t_end=1e12, t_eval=[0.0, 1e12], method="radau", time_limit=0.2)
-    assert time.perf_counter() - begin < 60.0
+        fm.simulate(endless(), t_end=1e12, t_eval=[0.0, 1e12], method="radau", time_limit=0.2)  # of years
     assert caught.value.t > 0.0
 
 

@@ -46,9 +46,7 @@ def test_a_killed_process_costs_its_run(capfd):
 
 
 def test_a_run_that_takes_too_long_is_ended(capfd):
-    begin = time.monotonic()
     found = run([1, "hang", 3, "hang"], limit=0.5)
-    assert time.monotonic() - begin < 20
     assert [found[0], found[2]] == [1, 9]
     assert all(isinstance(found[i], fm.IntegrationError) and "more than 0.5 s" in found[i].reason for i in (1, 3))
     assert "run_limit" in capfd.readouterr().err
@@ -140,7 +138,7 @@ def test_workers_end_with_their_parent(started):
     process, workers = started(600)
     assert all(map(alive, workers))
     process.kill()
-    wait_for(lambda: not any(map(alive, workers)), 10)
+    wait_for(lambda: not any(map(alive, workers)))
 
 
 @linux
@@ -150,12 +148,10 @@ def test_ctrl_c_waits_for_what_is_under_way_and_a_second_one_does_not(started):
     time.sleep(1.0)
     assert process.poll() is None
     assert all(map(alive, workers)), "the runs go on"
-    begin = time.monotonic()
     os.killpg(process.pid, signal.SIGINT)
-    _, err = process.communicate(timeout=20)
-    assert time.monotonic() - begin < 10
+    _, err = process.communicate(timeout=300)  # they would go on for 600 s
     assert "waiting for 2 runs" in err
-    wait_for(lambda: not any(map(alive, workers)), 10)
+    wait_for(lambda: not any(map(alive, workers)))
 
 
 @linux
