@@ -13,6 +13,7 @@ from fricmb.integrate import Tolerance
 from fricmb.integrate.methods import run_setup
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.named import integrators
+from tests.ticking import ticking
 
 SCENES = {
     "lugre": lambda: fm.models.belt_oscillator(
@@ -77,7 +78,8 @@ def test_a_run_that_another_comes_between_is_the_same(name, method, monkeypatch)
         other.integrate(problem, far, 0.5, tolerance=Tolerance(rtol=1e-3))
 
     def bits(progress):
-        run = integrator.integrate(problem, start, 20.0, tolerance=tolerance, progress=progress)
+        with ticking():
+            run = integrator.integrate(problem, start, 20.0, tolerance=tolerance, progress=progress)
         motion = run.motion(np.linspace(0.0, 20.0, 40))
         return [np.asarray(x).tobytes() for x in (run.t, motion.q, motion.v, motion.F, run.transitions.t)]
 
