@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,10 +147,11 @@ class Piece:
         """With what an integrator does not know of: work of its steady forces that loads do, and what jumps bring."""
         if not isinstance(samples, Samples):
             return samples
-        if self.leaps.t.size:
-            samples = self.leaps.added(samples)
-        given = self._delivered(samples)
-        return samples if given is None else replace(samples, input=samples.input + given - self._delivered_before)
+        found: Samples = self.leaps.added(samples) if self.leaps.t.size else samples
+        given = self._delivered(found)
+        if given is not None:
+            found = replace(found, input=found.input + given - self._delivered_before)
+        return cast("_Samples", found)
 
     def _delivered(self, samples: MotionSamples) -> Floats | None:
         return self.mechanics.delivered(samples if self.leaps.span is None else self.leaps.seen(samples))

@@ -65,7 +65,7 @@ class RowTrajectory(Trajectory):
 
     def __getstate__(self) -> dict[str, Any]:
         rows = {name: getattr(self, name) for name in ("_values", "_kind", "_mode", "_times", "_steps")}
-        made = {"_parts", "_integrates", "_recorded", "_scale", "_spent"}
+        made = {"_parts", "_integrates", "_damped_out", "_recorded", "_scale", "_spent"}
         return {name: value for name, value in {**super().__getstate__(), **rows}.items() if name not in made}
 
     @property
@@ -102,6 +102,8 @@ class RowTrajectory(Trajectory):
         step = np.maximum(np.searchsorted(self.t, t, side="right") - 1, 0)
         before = self._recorded[step]
         own = integrate_between(self._powers, t, step, said.T, self.t[step], before, self.rtol, self._scale)
+        damped = self._damped_out[np.minimum(step, self._damped_out.size - 1)]
+        own[damped, -2] = (said.T - before)[damped, -2]
         return self._complete(motion, (self._spent[step] + own).T)
 
     def motion(self, t: Floats) -> MotionSamples:
@@ -124,6 +126,17 @@ class RowTrajectory(Trajectory):
         return self.integrates and not smooth and not damped_normals(self.problem).any()
 
     @cached_property
+    def _damped_out(self) -> NDArray[np.bool_]:
+        """Steps (n_t - 1,), or one, in which dampers calm something that the step does not follow.
+
+        What velocities between its stages err by, squared, is then no measure of what is lost.
+        """
+        structure = packed_of(self.problem).structure
+        inertia = np.repeat(structure.M[structure.own], np.diff(structure.first))
+        rate = np.max(np.abs(structure.C) / inertia, initial=0.0)
+        return np.append(np.diff(self.t) * rate > 1.0, False)
+
+    @cached_property
     def _recorded(self) -> Floats:
         """Energies at the accepted steps (n_t, n_c + 2), as their stages say."""
         return self._sampled(self.t, self._steps)[1].T
@@ -139,7 +152,10 @@ class RowTrajectory(Trajectory):
         t, own = self.t, np.diff(self._recorded, axis=0)
         steps = np.flatnonzero(np.diff(t) > 0.0)
         start, end = t[steps], t[steps + 1]
+        said = own[:, -2].copy()
         own[steps] = integrate_powers(self._powers, start, end, steps, own[steps], self.rtol, self._scale)
+        damped = self._damped_out[:-1]
+        own[damped, -2] = said[damped]
         return np.concatenate([self._recorded[:1], self._recorded[0] + np.cumsum(own, axis=0)])
 
     def _powers(self, t: Floats, step: Ints) -> Floats:
