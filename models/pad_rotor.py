@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import fricmb as fm
 from fricmb.errors import shown
-from fricmb.values import SI
+from fricmb.values import SI, counted
 
 from ._arguments import checked
 
@@ -158,7 +158,7 @@ def pad_rotor(
         fm.Contact(f"c{i + 1}", pad.point(f"p{i + 1}"), rotor.point(f"p{i + 1}"), law=friction, normal_force=float(N))
         for i, N in enumerate(loads)
     ]
-    name = f"pad and rotor, {pad_count} + {rotor_count} modes, {len(places)} contacts"
+    name = f"pad and rotor, {pad_count} + {rotor_count} modes, {counted(len(places), 'contact')}"
     return fm.Scene(name, [pad, rotor, *contacts], units=SI)
 
 

@@ -109,6 +109,7 @@ def fit(
     check_options("fit", options, simulate, "t_end", "t_eval", "parameters", "sensitivities", "rtol")
     bounds, first = _bounds(scene, parameters)
     names = tuple(bounds)
+    _check_first(scene, dict(zip(names, first.tolist(), strict=True)), bounds)
     measured = read(data, signals, sigma)
     _check(priors, sigma, names)
     model = Model(scene=scene, names=names, measured=measured, options={"rtol": rtol, **options})
@@ -252,6 +253,25 @@ def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float
         bounds[name] = (low, high)
         first.append(value if inside else 0.5 * (low + high))
     return bounds, np.array(first)
+
+
+def _check_first(scene: Scene, first: Mapping[str, float], bounds: Mapping[str, tuple[float, float]]) -> None:
+    """The scene accepts the first guess; else the bounds are named that it follows from."""
+    try:
+        scene.with_parameters(dict(first))
+    except FricmbError as error:
+        # those without which the others are accepted
+        guilty = [n for n in first if _accepts(scene, {m: v for m, v in first.items() if m != n})] or list(first)
+        told = ", ".join(f"{n}: {bounds[n][0]:g} to {bounds[n][1]:g}, first guess {first[n]:g}" for n in guilty)
+        raise SceneError(f"parameters: the scene does not accept the first guess ({told}): {error}") from error
+
+
+def _accepts(scene: Scene, values: Mapping[str, float]) -> bool:
+    try:
+        scene.with_parameters(dict(values))
+    except FricmbError:
+        return False
+    return True
 
 
 def _check_search(loss: Any, starts: Any) -> None:

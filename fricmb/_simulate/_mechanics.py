@@ -158,6 +158,12 @@ class SceneMechanics:
                 total += energy(member.system, member.place.part(samples))
         return total
 
+    def freedom(self, samples: MotionSamples) -> int | None:
+        """Degrees of freedom of a mechanism, constraints taken off; None for a scene without joints."""
+        if self.whole is None or not self.placed.is_mechanism or not samples.t.size:
+            return None
+        return self.whole.system.freedom(samples)
+
     def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t); UnknownNameError for a name that is none."""
         if self.whole is None:

@@ -54,7 +54,24 @@ def setting(text: str) -> tuple[str, Any]:
     try:
         return name.strip(), ast.literal_eval(value.strip())
     except (SyntaxError, ValueError):
-        return name.strip(), value.strip()
+        return name.strip(), _law(value.strip()) or value.strip()
+
+
+def _law(text: str) -> fm.FrictionLaw | None:
+    """``Coulomb(mu_s=0.5)`` as the law that it names, None for other text: read, not executed."""
+    try:
+        call = ast.parse(text, mode="eval").body
+        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)):
+            return None
+        if call.func.id not in fm.laws.names:
+            raise unknown_name("law", call.func.id, fm.laws.names)
+        return getattr(fm.laws, call.func.id)(  # type: ignore[no-any-return]
+            *map(ast.literal_eval, call.args), **{k.arg or "": ast.literal_eval(k.value) for k in call.keywords}
+        )
+    except (SyntaxError, ValueError) as error:
+        if isinstance(error, FricmbError):
+            raise
+        return None
 
 
 def _built_in(name: str, settings: dict[str, Any], build: Callable[..., Any], t_end: float | None) -> Loaded:
@@ -126,8 +143,21 @@ def _place(error: Exception, path: Path) -> str:
     return str(path) if line is None else f"{path}:{line}"
 
 
+def _with_law(scene: fm.Scene, name: str, law: fm.FrictionLaw) -> fm.Scene:
+    """The scene with another law: ``sole.law=...``, or ``sole.friction=...`` of a joint."""
+    owner, _, field = name.rpartition(".")
+    known = [f"{part.name}.law" for part in scene.parts if isinstance(part, fm.Contact)]
+    known += [f"{part.name}.friction" for part in scene.parts if isinstance(part, fm.Joint) and part.friction]
+    if name not in known:
+        raise unknown_name("law in --set", name, known)
+    return scene.replace(owner, **{field: law})
+
+
 def _with_parameters(scene: fm.Scene, values: dict[str, Any]) -> fm.Scene:
-    for name, value in values.items():
-        if name in scene.parameters and not isinstance(value, (int, float, tuple, list)):
+    for name, value in dict(values).items():
+        if isinstance(value, fm.FrictionLaw):
+            scene = _with_law(scene, name, value)
+            del values[name]
+        elif name in scene.parameters and not isinstance(value, (int, float, tuple, list)):
             raise SceneError(f"--set: {name} takes a number; got {shown(value)}")
     return scene.with_parameters(values) if values else scene

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NoReturn, TypeAlias
 
 from fricmb import __version__
+from fricmb.cli._kinds import KINDS, NEED_NAME
 
 DONE, BAD_INPUT, FAILED = 0, 2, 3
 
@@ -151,7 +152,8 @@ def _command(commands: _Commands, name: str, summary: str, run: str, *, model: b
             default=[],
             metavar="NAME=VALUE",
             dest="values",
-            help="an argument of the model if it has one of that name, else a parameter of the scene; may be repeated",
+            help="an argument of the model if it has one of that name, else a parameter of the scene, or a law, "
+            "sole.law='Coulomb(mu_s=0.5)'; may be repeated",
         )
     return sub
 
@@ -274,11 +276,11 @@ def _add_plot(commands: _Commands) -> None:
     sub.add_argument(
         "kind",
         metavar="KIND",
-        help="velocities, phase, path, force, transitions, energy, spectrum, spectrogram, orders, animation, sound or "
-        "view",
+        help=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}; {', '.join(NEED_NAME)} need --of",
     )
     sub.add_argument("--laws", type=Path, metavar="FILE.py", help="where own laws are defined; this file is run")
-    sub.add_argument("--of", metavar="NAME", help="the dof, contact or signal that is shown, such as pad.y")
+    what = "what is shown: a motion, contact, element or signal, such as pad.y; several with commas"
+    sub.add_argument("--of", metavar="NAME", help=what)
     sub.add_argument("--hz", action="store_true", help="spectra: frequency in place of angular frequency")
     sub.add_argument("--theme", choices=("light", "dark"), help="colours for a light or a dark page")
     kinds = "default: KIND.png, .gif, .wav or .html beside FILE; .svg and .pdf are lines"

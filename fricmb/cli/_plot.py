@@ -8,18 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import fricmb as fm
+from fricmb.cli._kinds import FREQUENCIES, KINDS, NEED_NAME, OWN_FILE, SEVERAL
 from fricmb.cli._load import module_of
 from fricmb.cli._output import make_folder
 from fricmb.errors import SceneError, unknown_name
 from fricmb.values import Declaration
-
-#: Kinds that need a signal or contact (``--of``), and those that write a file of their own.
-NEED_NAME = ("phase", "path", "force", "spectrum", "spectrogram", "orders", "sound")
-OWN_FILE = {"animation": ".gif", "sound": ".wav", "view": ".html"}
-KINDS = (
-    "velocities", "phase", "path", "force", "transitions", "energy", "spectrum", "spectrogram", "orders", *OWN_FILE,
-)  # fmt: skip
-FREQUENCIES = ("spectrum", "spectrogram", "orders")
 
 
 def plot(options: argparse.Namespace) -> int:
@@ -48,9 +41,6 @@ def _laws(path: Path | None) -> list[type]:
 
 
 def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: argparse.Namespace) -> None:
-    import matplotlib as mpl
-
-    mpl.use("Agg")
     if kind == "animation":
         sol.plot.animation(path, t_start=options.t_start, t_end=options.t_end, frames=options.frames)
     elif kind == "sound":
@@ -66,5 +56,5 @@ def _draw(sol: fm.Solution, kind: str, name: str | None, path: Path, options: ar
                 raise SceneError(f"fricmb plot {kind}: --hz: only {', '.join(FREQUENCIES)} have frequencies")
             given["hz"] = True
         names = () if name is None else tuple(name.split(","))
-        figure = draw(names, **given) if kind == "velocities" and names else draw(*names, **given)
+        figure = draw(names, **given) if kind in SEVERAL and names else draw(*names, **given)
         figure.savefig(path, dpi=150)

@@ -27,7 +27,7 @@ from fricmb.scene._other_values import numbers_alone, with_changed
 from fricmb.scene._part import LETTERS, Part
 from fricmb.scene._rigid import PLANE, RigidBody, RigidPoint
 from fricmb.scene._space_body import SpaceBody, SpacePoint
-from fricmb.values import DIMENSIONS, Units, has_entries, value_of
+from fricmb.values import DIMENSIONS, Units, counted, has_entries, value_of
 from fricmb.values._pause import no_collection
 
 if TYPE_CHECKING:
@@ -454,7 +454,9 @@ class Scene:
         return _scene, (self.name, self.parts, self.units)
 
     def __repr__(self) -> str:
-        return f"Scene({self.name!r}, {len(self.parts)} parts, {len(self.dof_names)} degrees of freedom)"
+        n = len(self.dof_names)
+        what = ("coordinate", "") if self.is_mechanism else ("degree of freedom", "degrees of freedom")
+        return f"Scene({self.name!r}, {counted(len(self.parts), 'part')}, {counted(n, *what)})"
 
 
 def _scene(name: str, parts: tuple[Part, ...], units: Units) -> Scene:

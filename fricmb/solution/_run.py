@@ -51,6 +51,9 @@ class Mechanics(Protocol):
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_u, n_t)."""
 
+    def freedom(self, samples: MotionSamples) -> int | None:
+        """Degrees of freedom of a mechanism, constraints taken off; None for a scene without joints."""
+
     def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t)."""
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fricmb.integrate import OPEN, STICK
+from fricmb.solution._run import Run
+from fricmb.values import DIMENSIONS, counted
 
 if TYPE_CHECKING:
     from fricmb.solution._solution import Solution
@@ -15,8 +17,8 @@ if TYPE_CHECKING:
 def describe(sol: Solution) -> str:
     """One line."""
     return (
-        f"<Solution: {len(sol.names.dofs)} dofs, {len(sol.names.contacts)} contacts, t = {sol.t_start:g} to "
-        f"{sol.t_end:g}, {sol.t.size} times, {len(sol.events)} events, method {sol.stats.method}>"
+        f"<Solution: {_freedom(sol)}, {counted(len(sol.names.contacts), 'contact')}, t = {sol.t_start:g} to "
+        f"{sol.t_end:g}, {counted(sol.t.size, 'time')}, {counted(len(sol.events), 'event')}, method {sol.stats.method}>"
     )
 
 
@@ -24,7 +26,7 @@ def summarise(sol: Solution) -> str:
     """A few lines: transitions, stick share, energy and where it went, cost, notes."""
     stats, energy = sol.stats, sol.energy
     lines = [
-        f"t = {sol.t_start:g} to {sol.t_end:g}, {len(sol.names.dofs)} degrees of freedom",
+        f"t = {sol.t_start:g} to {sol.t_end:g}, {_freedom(sol)}",
         f"method       {stats.method}" + (f" ({stats.why})" if stats.why else ""),
     ]
     lines += _contacts(sol)
@@ -36,7 +38,7 @@ def summarise(sol: Solution) -> str:
         lines.append(
             f"energy       {number(energy.reference.start)} at the start, {number(energy.total[-1])} at the end; "
             f"friction {number(energy.friction_loss[-1])}, damping {number(energy.damping_loss[-1])}, "
-            f"input {number(energy.input[-1])}; ledger residual {np.abs(energy.residual).max():.1e}"
+            f"input {number(energy.input[-1])}{_unit(sol)}; ledger residual {np.abs(energy.residual).max():.1e}"
         )
     lines.append(
         f"cost         {stats.n_steps} steps, {stats.n_rejected} rejected, {stats.n_rhs} right-hand sides, "
@@ -45,6 +47,21 @@ def summarise(sol: Solution) -> str:
     )
     lines += [f"note         {note}" for note in stats.notes]
     return "\n".join(lines)
+
+
+def _unit(sol: Solution) -> str:
+    """Unit of energies, where the scene names one."""
+    return "" if sol.units.dimensionless or sol.units == DIMENSIONS else f" {sol.units.energy}"
+
+
+def _freedom(sol: Solution) -> str:
+    """Degrees of freedom; of a mechanism those that constraints leave, beside its coordinates."""
+    n = len(sol.names.dofs)
+    opened = sol._run if isinstance(sol._run, Run) else None
+    free = None if opened is None else opened.pieces[0].mechanics.freedom(sol.record.samples)
+    if free is None:
+        return counted(n, "degree of freedom", "degrees of freedom")
+    return f"{counted(free, 'degree of freedom', 'degrees of freedom')} ({counted(n, 'coordinate')})"
 
 
 def _contacts(sol: Solution) -> list[str]:
@@ -57,7 +74,7 @@ def _contacts(sol: Solution) -> list[str]:
         numbers = {kind: len(sol.events.of(kind=kind, contact=only)) for kind in _KINDS}
         counts = [f"{number} {kind}" for kind, number in numbers.items() if number]
         places = [names.index(name) for name in group]
-        lost = f"{_lost(sol, places):.6g}" if sol.t.size else "nothing"
+        lost = f"{_lost(sol, places):.6g}{_unit(sol)}" if sol.t.size else "nothing"
         lines.append(
             (f"contact      {group[0]}: " if len(group) == 1 else f"contacts     {len(group)}: ")
             + (", ".join(counts) or "no transitions")

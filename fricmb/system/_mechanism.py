@@ -10,6 +10,7 @@ import numpy as np
 
 from fricmb.equations import place_template
 from fricmb.errors import SceneError
+from fricmb.integrate.constrained.consistent_start import assembled
 from fricmb.integrate.mechanism import Entries, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import common
@@ -36,6 +37,9 @@ from fricmb.system._leaps import leaps_of
 from fricmb.system._mechanism_system import MechanismSystem
 from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._structure import Structure
+
+#: Bodies may be carried by this share of the geometry at the start.
+_FAR = 0.5
 
 
 def _found_once(scene: Any, key: Any, find: Callable[[], list[Any]]) -> list[Any]:
@@ -95,6 +99,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         mechanism=mechanism,
     )
     q, v = scene.initial_values(dofs)
+    _check_places(problem, scene, Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)))
     problem = without_redundant(problem, scene, Start(t=0.0, q=q, v=v, z=np.zeros(problem.n_z)))
     return MechanismSystem(
         problem=problem,
@@ -107,6 +112,29 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         leaps=leaps_of(scene, signals.index),
         joint_forms=dict(zip(joints.names, joints.forms, strict=True)),
     )
+
+
+def _check_places(problem: Problem, scene: Any, start: Start) -> None:
+    """Bodies stand where their joints are, but for a part of the geometry by which a rough start may be off.
+
+    Raises
+    ------
+    SceneError
+        Where a body would have to be carried farther than half of the largest distance of a point from its body.
+    """
+    points = [*scene.rigid_points.values(), *scene.space_points.values()]
+    size = max((float(np.linalg.norm(point.offset)) for point in points), default=0.0)
+    rows = [i for i, name in enumerate(problem.dof_names) if name.rpartition(".")[2] in ("x", "y", "z")]
+    mechanism = problem.mechanism
+    if not rows or size == 0.0 or mechanism is None or not mechanism.n_rows:
+        return
+    moved = np.abs(assembled(problem, start).q - start.q)[rows]
+    if moved.max() > _FAR * size:
+        name = problem.dof_names[rows[int(np.argmax(moved))]]
+        raise SceneError(
+            f"the mechanism is not assembled: {name} would have to move by {moved.max():.3g} to satisfy the joints, "
+            f"which is beyond half of its size, {size:.3g}; expected position= of bodies near their places"
+        )
 
 
 def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:

@@ -86,6 +86,10 @@ class System:
         """Times at which prescribed positions jump, and with them what springs store."""
         return leap_times(self.leaps, self.problem_for(t_start, t_end), t_start, t_end) if self.leaps else np.zeros(0)
 
+    def freedom(self, samples: MotionSamples) -> int:
+        """Degrees of freedom, constraints taken off."""
+        return len(samples.q)
+
     def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t); there is none without joints."""
         raise unknown_name("joint", joint, ())

@@ -14,9 +14,9 @@ from fricmb.errors import LawError
 Floats = NDArray[np.float64]
 
 #: Slip speeds that are tried, in any unit.
-SPEEDS = (0.0, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 10.0, 1e300)
-#: Up to this speed a force must not drive the slip (a viscous part may be of any size, a fit may fail far outside).
-DRIVES = 1.0
+SPEEDS = (0.0, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e6, 1e300)
+#: Up to this speed, which nothing reaches in any unit, a force must not drive the slip.
+DRIVES = 1e6
 #: What is written beyond the end of a kernel's output, to see whether it is overwritten.
 _GUARD = -1.2345678901234567e-123
 _BEYOND = 64

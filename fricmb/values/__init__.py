@@ -22,6 +22,7 @@ from fricmb.values._numbers import (
 from fricmb.values._parameter import Parameter, parameter
 from fricmb.values._standin import Symbolic, symbolic
 from fricmb.values._units import DIMENSIONLESS, DIMENSIONS, SI, Units
+from fricmb.values._words import counted
 
 __all__ = [
     "DIMENSIONLESS",
@@ -36,6 +37,7 @@ __all__ = [
     "Units",
     "as_float",
     "ask",
+    "counted",
     "depth_of",
     "expressions",
     "has_entries",

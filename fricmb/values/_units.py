@@ -6,6 +6,13 @@ from dataclasses import dataclass, fields
 
 from fricmb.errors import SceneError, shown
 
+#: Units that everybody knows, by what they measure.
+_KNOWN = {
+    "time": ("s", "ms", "us", "µs", "min", "h"),
+    "length": ("m", "mm", "cm", "km", "um", "µm", "in", "ft"),
+    "force": ("N", "kN", "MN", "mN", "lbf", "kgf"),
+    "mass": ("kg", "g", "t", "mg", "lb"),
+}
 #: A thousand times the first is the second: what the reciprocal of a unit of time is called.
 _FREQUENCIES = {"s": "Hz", "ms": "kHz", "us": "MHz", "µs": "MHz", "min": "1/min", "h": "1/h"}
 
@@ -39,6 +46,12 @@ class Units:
             value = getattr(self, field.name)
             if not isinstance(value, str) or not value:
                 raise SceneError(f"Units: {field.name} must be a non-empty string, got {shown(value)}")
+            meant = next((kind for kind, names in _KNOWN.items() if value in names), field.name)
+            if meant != field.name:
+                raise SceneError(
+                    f"Units: {field.name} must be a unit of {field.name}, got {shown(value)}, one of {meant};"
+                    ' the order is time, length, force, as in Units("s", "m", "N")'
+                )
 
     @property
     def velocity(self) -> str:

@@ -82,6 +82,9 @@ class Mechanics:
     def attach(self, trajectory):
         trajectory.attach(self.problem)
 
+    def freedom(self, samples):
+        return None
+
     def fastest(self):
         return 1.0
 

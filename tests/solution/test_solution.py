@@ -143,7 +143,7 @@ def test_a_pickled_solution_keeps_its_dense_output(sol):
 
 
 def test_said_in_words(sol):
-    assert "1 dofs, 1 contacts, t = 0 to 20" in repr(sol)
+    assert "1 degree of freedom, 1 contact, t = 0 to 20" in repr(sol)
     assert "5 events" in repr(sol)
     assert repr(sol.events) == "<5 events: 1 stick, 4 reversal>"
     text = sol.summary()
