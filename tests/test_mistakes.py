@@ -21,7 +21,8 @@ def test_units_stand_in_their_order():
 
 def pendulum(off):
     arm = fm.RigidBody("arm", mass=1.0, inertia=0.1, position={"x": off, "y": -0.5}, points={"top": (0.0, 0.5)})
-    return fm.Scene("pendulum", [arm, fm.Gravity("weight", acceleration={"y": -9.81}), fm.Revolute("pin", arm.point("top"))])
+    weight = fm.Gravity("weight", acceleration={"y": -9.81})
+    return fm.Scene("pendulum", [arm, weight, fm.Revolute("pin", arm.point("top"))])
 
 
 def test_a_joint_far_off_its_place_is_refused():
