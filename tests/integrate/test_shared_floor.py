@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve
 
-from fricmb.integrate.compile.band import band_sizes, factor_band, solve_band, spread_of_pivots
+from fricmb.integrate.compile.band import NARROW, band_sizes, factor_band, solve_band, spread_of_pivots
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lapack import load_lapack
 from fricmb.integrate.compile.room import room
@@ -152,10 +152,10 @@ def band_of(matrix, half):
     return ab.ravel()
 
 
+@pytest.mark.parametrize(("n", "half"), [(12, 2), (30, NARROW), (40, NARROW + 3)])
 @pytest.mark.parametrize("kind", [float, complex])
-def test_banded_systems_are_those_of_scipy(kind):
+def test_banded_systems_are_those_of_scipy(kind, n, half):
     rng = np.random.default_rng(3)
-    n, half = 12, 2
     matrix = rng.normal(size=(n, n)).astype(kind) + (1j * rng.normal(size=(n, n)) if kind is complex else 0.0)
     matrix[np.abs(np.subtract.outer(np.arange(n), np.arange(n))) > half] = 0.0
     b = rng.normal(size=n).astype(kind)

@@ -52,3 +52,11 @@ def test_small_vibrations_about_the_origin(method):
         expected = amplitude / omega * np.sin(omega * 5.0)
         assert sol["body.angle"][-1] == pytest.approx(expected, abs=1e-4 * amplitude / omega)
         assert sol.stats.n_steps + sol.stats.n_rejected < 400
+
+
+def test_a_transition_takes_few_steps_to_find():
+    """The polynomial of a step says where it is: beside attempts, some three solutions of other lengths."""
+    sol = fm.simulate(fm.models.dry_pendulum(), t_end=10.0, rtol=1e-6, method="radau")
+    located = sol.stats.n_lu - sol.stats.n_steps - sol.stats.n_rejected
+    assert len(sol.events) == 10
+    assert located <= 3 * len(sol.events), located

@@ -1,7 +1,8 @@
-"""Banded matrices, real and complex: factors with row pivoting by LAPACK, and solving with them.
+"""Banded matrices, real and complex: factors with row pivoting, and solving with them.
 
 Entry (i, j) of a matrix with ``half`` diagonals on either side stands at ``2 half + i - j`` in column j, which is
-3 half + 1 long: space for the rows that pivoting brings.
+3 half + 1 long: space for the rows that pivoting brings.  Wide bands are LAPACK's; in narrow ones a call of it costs
+more than the arithmetic, and the same elimination is done here.
 """
 
 from __future__ import annotations
@@ -18,9 +19,15 @@ def band_sizes(n: int, half: int) -> Pivots:
     return np.array([n, half, half, 3 * half + 1, 1, 0, ord("N")], np.int32)
 
 
+#: Diagonals on either side up to which loops here are faster than calls of LAPACK (mechanisms of 6 to 40 unknowns).
+NARROW = 20
+
+
 @kernel
 def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
     """Factor in place; False where the matrix is singular."""
+    if sizes[1] <= NARROW:
+        return eliminate(ab, pivots, sizes)
     n, kl, ku, ld, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[5:6]
     if np.iscomplexobj(ab):
         zgbtrf((n, n, kl, ku, ab, ld, pivots, info))
@@ -32,11 +39,76 @@ def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
 @kernel
 def solve_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
     """Overwrite b (n,) by the solution for the matrix whose factors are in ``ab``."""
+    if sizes[1] <= NARROW:
+        substitute(ab, pivots, sizes, b)
+        return
     n, kl, ku, ld, one, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[4:5], sizes[5:6]
     if np.iscomplexobj(ab):
         zgbtrs((sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
     else:
         dgbtrs((sizes[6:7], n, kl, ku, one, ab, ld, pivots, b, n, info))
+
+
+@kernel
+def size_of(x: complex) -> float:
+    """What pivots are compared by: the magnitude of a real number, and of a complex one that of LAPACK."""
+    return float(abs(x.real) + abs(x.imag))
+
+
+@kernel
+def eliminate(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
+    """Factor a narrow band as LAPACK's ``gbtf2`` does, passing over entries that are 0."""
+    n, half, length = int(sizes[0]), int(sizes[1]), int(sizes[3])
+    for j in range(n):
+        for i in range(half):
+            ab[j * length + i] = 0.0
+    last = 0
+    for j in range(n):
+        diagonal = j * length + 2 * half
+        below = min(half, n - 1 - j)
+        p, most = 0, size_of(ab[diagonal])
+        for i in range(1, below + 1):
+            size = size_of(ab[diagonal + i])
+            if size > most:
+                p, most = i, size
+        pivots[j] = j + p + 1
+        if not most > 0.0:
+            return False
+        last = max(last, min(j + half + p, n - 1))
+        for c in range(j, last + 1 if p > 0 else j):
+            at = diagonal + (c - j) * (length - 1)
+            ab[at], ab[at + p] = ab[at + p], ab[at]
+        inverse = 1.0 / ab[diagonal]
+        for i in range(1, below + 1):
+            ab[diagonal + i] *= inverse
+        for c in range(j + 1, last + 1):
+            at = diagonal + (c - j) * (length - 1)
+            factor = ab[at]
+            if factor != 0.0:
+                for i in range(1, below + 1):
+                    ab[at + i] -= ab[diagonal + i] * factor
+    return True
+
+
+@kernel
+def substitute(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
+    """Solve with the factors of a narrow band."""
+    n, half, length = int(sizes[0]), int(sizes[1]), int(sizes[3])
+    for j in range(n - 1):
+        p = pivots[j] - 1
+        x = b[p]
+        if p != j:
+            b[p] = b[j]
+            b[j] = x
+        if x != 0.0:
+            for i in range(1, min(half, n - 1 - j) + 1):
+                b[j + i] -= ab[j * length + 2 * half + i] * x
+    for j in range(n - 1, -1, -1):
+        x = b[j] / ab[j * length + 2 * half]
+        b[j] = x
+        if x != 0.0:
+            for i in range(1, min(2 * half, j) + 1):
+                b[j - i] -= ab[j * length + 2 * half - i] * x
 
 
 @kernel

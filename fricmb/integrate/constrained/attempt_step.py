@@ -15,8 +15,18 @@ from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_defect import load_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.near_rest import nears_rest
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, asked, end_step, error_of, remember, try_step
+from fricmb.integrate.constrained.radau_step import (
+    Control,
+    asked,
+    end_step,
+    error_of,
+    has_joints,
+    order_of,
+    remember,
+    try_step,
+)
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import (
     SUSPECTED,
@@ -37,7 +47,7 @@ from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
 from fricmb.integrate.step.knots import NOWHERE, SLIGHT
 from fricmb.integrate.step.slip_growth import too_long
-from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, next_step, step_factor
+from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, next_step, step_factor
 
 #: Shortest step, as a part of the span.
 SMALLEST = 1e-14
@@ -107,13 +117,37 @@ def reject(c: Control, h: float) -> int:
     return REJECTED
 
 
+#: Rate of convergence up to which the Jacobian of a step serves the next one.
+KEPT = 0.02
+
+
+@kernel
+def rung(y: State, h: float) -> float:
+    """A step that comes again, and its factors with it; with joints they are made anew at every step."""
+    return h if has_joints(y) else ladder(h, ONE_STEP_RUNGS)
+
+
+@kernel
+def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
+    """Whether the Jacobian of the step before, in the same modes, serves a step h from y.
+
+    With joints it turns with the bodies; near rest it turns with the directions of slip.
+    """
+    if has_joints(y) or c.made == 0.0 or st.turns.near > 0 or not st.found <= KEPT:
+        return False
+    far = True
+    for p in range(y.mode.shape[0]):
+        far = far and not nears_rest(mech, k, y, p, h)
+    return far
+
+
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
     rec: Record, part: Codes, stop: float,
 ) -> int:  # fmt: skip
     """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
-    s = st.tab.c.shape[0]
+    order = order_of(y, st)
     t = y.t
     before_knot = t < c.knot < stop
     goal = c.knot if before_knot else stop
@@ -121,13 +155,19 @@ def radau_step(
     h = min(c.h, c.longest, longest_towards(out))
     if h >= left:
         h = left
-    elif h > 0.5 * left:
-        h = 0.5 * left
+    else:
+        h = rung(y, min(h, 0.5 * left) if h > 0.5 * left else h)
     if is_round_off(c, h, t):
         margins(mech, k, w, y, out, False)
         return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
-    c.made = 0.0
-    if not try_step(mech, k, y, st, c, h):
+    kept = may_keep(mech, k, y, st, c, h)
+    if not kept:
+        c.made = 0.0
+    solved = try_step(mech, k, y, st, c, h)
+    if kept and not solved:
+        c.made = 0.0
+        solved = try_step(mech, k, y, st, c, h)
+    if not solved:
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         return reject(c, 0.4 * h)
@@ -141,10 +181,10 @@ def radau_step(
     if mech.bends.address.shape[0] > 0:
         knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
     error = max(error_of(c, y, st), between / asked(c))
-    error = max(error, too_long(growth(mech, k, y, st, h), s + 1))
+    error = max(error, too_long(growth(mech, k, y, st, h), order))
     if not error < 1e300:
         return reject(c, 0.4 * h)
-    factor = step_factor(error, s + 1, ONE_STEP_SAFETY)
+    factor = step_factor(error, order, ONE_STEP_SAFETY)
     if knot < 1.0 and (error <= 1.0 or knot < factor):
         c.knot = t + knot * h
         return reject(c, h)
@@ -177,7 +217,7 @@ def radau_step(
     grow(c, out, k, y)
     c.wanted = max(h, c.h)
     if worst < 0 and (h < left or factor < 1.0):
-        c.wanted = h * min(3.0, max(0.3, factor))
+        c.wanted = h * min(3.0 if has_joints(y) else 5.0, max(0.3, factor))
         c.h = next_step(c, h, c.wanted)
     if near_singular(c, out, h):
         return FAIL_SINGULAR

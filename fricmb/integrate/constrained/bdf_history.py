@@ -7,9 +7,9 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.constrained.state import State, state_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.methods.backward_differences import Differences, begin_at
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Problem, Start

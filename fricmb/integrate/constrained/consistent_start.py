@@ -9,7 +9,8 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.constrained.least_change import Constrained, Least, constraints_at, names_of_rows, unit_rows
-from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
+from fricmb.integrate.constrained.problem_structs import masses
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Codes, Floats, Problem, Start

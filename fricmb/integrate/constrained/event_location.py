@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.event_functions import gaps, grain, triggers, violated
 from fricmb.integrate.constrained.moving import Moving
@@ -12,9 +14,24 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.step.crossing import evaluate, first_crossing
 
+#: What is left of a trigger from one step to the next as long as the slope of its polynomial is worth following.
+BETTER = 0.1
 #: Tries of what only the polynomial shows, each by a shorter step.
 DOUBTS = 4
+
+
+@kernel
+def by_polynomial(st: Stages, out: Watch, j: int, h: float) -> tuple[float, float]:
+    """Where the polynomial of trigger j first vanishes in a step h, and its slope there; (-1, 0) where it does not."""
+    for i in range(st.tab.c.shape[0]):
+        out.values[i] = out.inner[i + 1, j]
+    x = first_crossing(st.tab, max(out.inner[0, j], 0.0), out.values, out.series)
+    if x > 1.0:
+        return -1.0, 0.0
+    _, slope, _ = evaluate(out.series, x)
+    return x * h, slope / h
 
 
 @kernel
@@ -23,9 +40,10 @@ def locate_trigger(
 ) -> tuple[float, int]:
     """Length of the step that ends where the first trigger vanishes, and that trigger; ``end`` is left there.
 
-    Regula falsi (Illinois) on steps of variable length; a step at whose end another trigger is below 0 replaces the
-    upper bound.  What the polynomial alone shows is tried by a step to there: trigger -1 where that finds nothing, and
-    it is a step like any other.  Length 0 where a step could not be made.
+    Steps of variable length: by root and slope of the polynomial of the trigger, then by regula falsi (Illinois); a
+    step at whose end another trigger is below 0 replaces the upper bound.  What the polynomial alone shows is tried by
+    a step to there: trigger -1 where that finds nothing, and it is a step like any other.  Length 0 where a step could
+    not be made.
     """
     inside = out.where
     if out.opened > 0:
@@ -39,6 +57,8 @@ def locate_trigger(
     high, f_high = h, min(out.trigger[j], 0.0)
     side = 0
     step = h
+    left = np.inf
+    guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 else (-1.0, 0.0)
     for i in range(80):
         gap = f_low - f_high
         step = low + (high - low) * (f_low / gap if gap > 0.0 and f_high < 0.0 and f_low > 0.0 else 0.5)
@@ -47,8 +67,13 @@ def locate_trigger(
         step = min(max(step, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
         if inside < 1.0:
             step = inside * high
+        elif low < guess < high:
+            step = guess
         if not step_to(mech, k, w, y, end, st, c, step):
-            return 0.0, j
+            if step != guess:
+                return 0.0, j
+            guess, slope = -1.0, 0.0
+            continue
         worst = violated(mech, k, w, out, y, end, st)
         if inside < 1.0 and (worst < 0 or (out.where < 1.0 and i >= DOUBTS)):
             return step, -1
@@ -67,6 +92,9 @@ def locate_trigger(
         # where a step begins beyond by what `violated` takes for nothing, no shorter one comes nearer
         if abs(value) <= (limit if f_low > 0.0 else 10.0 * limit) or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
+        if j != first or abs(value) > BETTER * left:
+            slope = 0.0
+        left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)
         if value < 0.0 or worst >= 0:
             high, f_high = step, min(value, 0.0)
             f_low *= 0.5 if side == 1 else 1.0

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.problem_structs import mechanism_of
 from fricmb.integrate.constrained.redundancy import singular_joints
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem
 from fricmb.integrate.run.outcomes import (
     FAIL_HIT,

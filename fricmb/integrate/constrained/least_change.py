@@ -11,7 +11,8 @@ import numpy as np
 
 from fricmb.integrate.constrained.instants import constraints
 from fricmb.integrate.constrained.pattern import of_pattern
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem

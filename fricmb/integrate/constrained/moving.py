@@ -8,7 +8,8 @@ import numpy as np
 
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.pattern import of_pattern
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.model.forces import Scratch, scratch_of
 from fricmb.integrate.problem import Codes, Floats, Problem
 
@@ -25,8 +26,9 @@ class Moving(Layout):
     nothing ``furthest``, the largest share reached, and ``unsolved``, how many combinations have no solution; the
     largest force so far, that of the present trial counted in, ``borne``, and of states that were reached,
     ``borne_before``;
-    ``slight`` (n_c,) slip velocity that is nothing in the step, or its derivative where a port sets out: it stands in
-    matrices for slip of 0, which leaves forces along directions that joints block open;
+    ``slight`` (n_c,) stands in matrices for less slip: where the direction is found from the force a slip velocity that
+    is nothing in the step, or its derivative where a port sets out, since slip of 0 leaves forces along directions that
+    joints block open; else what slip may change by in the step;
     ``answer`` (m_p,) changes of slip velocities by unit forces there, joints holding, of the instant at which modes are
     being decided; below 0: not known;
     ``way`` (m_p,) the motion in which contacts in loops give way, ``looped`` (n_c,) 1 of those that cannot slip alone.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.plane_slip import largest_part
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SLIGHT, lightness, plane
-from fricmb.integrate.constrained.stages import Stages, newton_change
+from fricmb.integrate.constrained.stages import Stages, solve_system
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.turning import NEAR, Turns, across, by_turn, force_place
 from fricmb.integrate.model.law_values import magnitude
@@ -15,28 +17,57 @@ from fricmb.integrate.problem import SLIP
 
 
 @kernel
+def slip_change(mech: Mech, k: Moving, y: State, c: int, h: float) -> float:
+    """What the slip velocity of contact c may change by in a step h."""
+    light = 0.0
+    for a in range(mech.port.row[c + 1] - mech.port.row[c]):
+        light += lightness(mech, k, c, a, y.lam, mech.mass)
+    return float(h * (magnitude(mech.port.row, c, y.ga) + magnitude(mech.port.row, c, y.F) * light))
+
+
+@kernel
+def nears_rest(mech: Mech, k: Moving, y: State, c: int, h: float) -> bool:
+    """Whether contact c slips in a plane, and may come to rest in a step h, or has only set out."""
+    if not plane(mech, c) or y.mode[c] != SLIP or y.N[c] <= 0.0 or magnitude(mech.port.row, c, y.F) <= 0.0:
+        return False
+    return bool(magnitude(mech.port.row, c, y.g) <= NEAR * slip_change(mech, k, y, c, h))
+
+
+@kernel
 def choose_forms(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
-    """Mark the contacts that may come to rest in a step h, or set out (``k.form``)."""
+    """Mark the contacts that may come to rest in a step h, or set out (``k.form``): those nearest to it, if many are.
+
+    The others step as if their slip were not less than what it may change by.
+    """
     row, turns = mech.port.row, st.turns
     turns.near = 0
     for c in range(y.mode.shape[0]):
         k.form[c] = 0
-        first, d = row[c], row[c + 1] - row[c]
-        if not plane(mech, c) or y.mode[c] != SLIP or turns.near + d - 1 > turns.contact.shape[0]:
-            continue
-        force, light = magnitude(row, c, y.F), 0.0
-        for a in range(d):
-            light += lightness(mech, k, c, a, y.lam, mech.mass)
-        change = magnitude(row, c, y.ga) + force * light
-        if y.N[c] <= 0.0 or force <= 0.0 or magnitude(row, c, y.g) > NEAR * h * change:
-            continue
+        k.slight[c] = slip_change(mech, k, y, c, h) if nears_rest(mech, k, y, c, h) else 0.0
+    for _ in range(turns.contact.shape[0]):
+        c = nearest(mech, k, y)
+        if c < 0 or turns.near + row[c + 1] - row[c] - 1 > turns.contact.shape[0]:
+            break
         k.form[c] = 1
-        k.slight[c] = SLIGHT * h * change
+        k.slight[c] *= SLIGHT
+        first, force = row[c], magnitude(row, c, y.F)
         m = largest_part(row, c, y.n) - first
-        for line in range(d):
+        for line in range(row[c + 1] - first):
             if line != m:
                 turn_row(turns, c, line, m, -y.F[first + line] / force, -y.F[first + m] / force)
                 turns.base[turns.near - 1] = by_turn(mech, c, y.F, y.g)
+
+
+@kernel
+def nearest(mech: Mech, k: Moving, y: State) -> int:
+    """The contact near rest, and not marked yet, that is slowest beside what its slip may change by; or -1."""
+    found, least = -1, np.inf
+    for c in range(y.mode.shape[0]):
+        if k.form[c] == 0 and k.slight[c] > 0.0:
+            part = magnitude(mech.port.row, c, y.g) / k.slight[c]
+            if part < least:
+                found, least = c, part
+    return found
 
 
 @kernel
@@ -52,15 +83,18 @@ def turn_row(turns: Turns, c: int, line: int, m: int, n_line: float, n_m: float)
 @kernel
 def prepare_turns(mech: Mech, st: Stages) -> None:
     """Solve for what the marked contacts' directions answer; the factors are there."""
-    turns, s = st.turns, st.tab.c.shape[0]
-    for p in range(turns.near * s):
-        for i in range(s):
-            for a in range(st.R.shape[1]):
-                st.R[i, a] = 0.0
-        st.R[p % s, force_place(mech, turns.contact[p // s]) + turns.line[p // s]] = 1.0
-        newton_change(mech, st)
-        for i in range(s):
-            for a in range(st.R.shape[1]):
-                turns.answer[p, i, a] = st.R[i, a]
-        for q in range(turns.near * s):
-            turns.gain[q, p] = across(mech, turns, q // s, st.R[q % s])
+    turns, tab = st.turns, st.tab
+    s, near = tab.c.shape[0], turns.near
+    turns.gain[: near * s, : near * s] = 0.0
+    for k in range(near):
+        row = force_place(mech, turns.contact[k]) + turns.line[k]
+        for i in range(tab.lam.shape[0]):
+            st.w[i, :] = 0.0
+            st.w[i, row] = 1.0
+            solve_system(mech, st, i)
+            turns.answer[k, i, :] = st.w[i]
+            for q in range(near):
+                turn = across(mech, turns, q, st.w[i])
+                for j in range(s):
+                    for p in range(s):
+                        turns.gain[q * s + j, k * s + p] += (tab.T[j, i] * tab.Tinv[i, p] * turn).real

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 
@@ -20,7 +21,7 @@ _store: dict[Any, dict[str, Any]] = {}
 
 def of_pattern(problem: Problem, name: str, make: Callable[[], _T]) -> _T:
     """What was made under a name for a problem with the same pattern; it must never be written to."""
-    facts = once_per(problem, "pattern", lambda: _facts(tuple(_pattern(problem))))
+    facts = once_per(problem, "pattern", lambda: _facts((*_pattern(problem), *_pattern(mechanism_of(problem)))))
     if name not in facts:
         facts[name] = make()
     value: _T = facts[name]

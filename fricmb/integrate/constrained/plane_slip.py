@@ -121,7 +121,7 @@ def add_along(
         for b in range(d if turns else 0):
             other = g[first + b] / speed
             across = (1.0 if a == b else 0.0) - unit * other
-            slope = load * (mu / speed * across + by_speed * unit * other)
+            slope = load * (mu / max(speed, k.slight[c]) * across + by_speed * unit * other)
             add_slip(mech, k, c, b, lam, L, row + a, slope, full)
         if load > 0.0:
             add_load(mech, k, c, lam, L, row + a, unit * (mu + by_load * load), full)

@@ -11,6 +11,7 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
 from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.damped_normals import damped_normals
@@ -130,13 +131,6 @@ def mech_of(problem: Problem) -> Mech:
     """The problem as the kernels take it, made once per problem object."""
     load_mechanism()
     return once_per(problem, "mechanism", lambda: _pack(problem))
-
-
-def mechanism_of(problem: Problem) -> Mechanism:
-    """The mechanism of a problem that has one."""
-    if problem.mechanism is None:
-        raise TypeError("the problem has no mechanism")
-    return problem.mechanism
 
 
 def _pack(problem: Problem) -> Mech:

@@ -179,8 +179,23 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
 
 
 @kernel
+def has_joints(y: State) -> bool:
+    """Whether there are constraints."""
+    return y.lam.shape[0] > 0
+
+
+@kernel
+def order_of(y: State, st: Stages) -> int:
+    """The power of the step that its estimated error goes with."""
+    return st.tab.c.shape[0] + (1 if has_joints(y) else 0)
+
+
+@kernel
 def error_of(c: Control, y: State, st: Stages) -> float:
-    """Estimated error of the velocities within the step over the tolerance: the Legendre series, one term further."""
+    """Estimated error of velocities and states within the step over the tolerance, from their Legendre series.
+
+    Its last term; where there are joints one term further.  See ``order_of``.
+    """
     tab = st.tab
     s = tab.c.shape[0]
     last = before = 0.0
@@ -189,7 +204,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
             scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), c.noise_z[a], 1e-290)
             high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
             last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
-    ratio = min(1.0, last / before) if before > 0.0 else 1.0
+    ratio = min(1.0, last / before) if has_joints(y) and before > 0.0 else 1.0
     return float(last * ratio / asked(c))
 
 
@@ -199,14 +214,14 @@ def settle(mech: Mech, k: Moving, w: Instant, end: State) -> bool:
 
     Where positions have moved, what sticks would slip, and each next step begin with a jump to where it does not.
     """
-    held = False
+    held, joints = False, has_joints(end)
     for c in range(end.mode.shape[0]):
         held = held or end.mode[c] == STICK
-    return bool(
-        project_positions(mech, k, w, end)
-        and project_velocities(mech, k, w, end, True, held)
-        and react(mech, k, w, end, True)
-    )
+    if joints and not project_positions(mech, k, w, end):
+        return False
+    if (joints or held) and not project_velocities(mech, k, w, end, joints, held):
+        return False
+    return bool(react(mech, k, w, end, joints))
 
 
 @kernel

@@ -9,10 +9,11 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.forces import is_open
-from fricmb.integrate.constrained.problem_structs import Mech, mechanism_of
+from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.problem import Codes2, Floats2, Floats3, Ints, Problem
 
 
@@ -35,11 +36,16 @@ class Record(Layout):
     used: Ints
 
 
+def width(problem: Problem) -> int:
+    """Numbers that are kept of a node."""
+    return 2 * problem.n + problem.n_z + problem.n_c + 2
+
+
 def record_of(problem: Problem, stages: int, capacity: int) -> Record:
     """Empty space for ``capacity`` steps."""
     m, nc = mechanism_of(problem), problem.n_c
     return room(Record(
-        np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, 2 * m.n + problem.n_z + nc + 2)),
+        np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, width(problem))),
         np.zeros((capacity, m.n_rows + 2 * problem.m)), np.zeros((capacity, nc), np.int8),
         np.zeros((capacity, len(mechanism_of(problem).joints.port)), np.int8), np.zeros(capacity, np.int64),
         np.zeros((capacity + 8 * nc + 8, 3)), np.zeros(2, np.int64),

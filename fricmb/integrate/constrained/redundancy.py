@@ -11,7 +11,8 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.constrained.consistent_start import assembled, closed, listed
 from fricmb.integrate.constrained.least_change import Least, constraints_at, names_of_rows, unit_rows
-from fricmb.integrate.constrained.problem_structs import masses, mechanism_of
+from fricmb.integrate.constrained.problem_structs import masses
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem, Start
 

@@ -13,10 +13,11 @@ from fricmb.integrate.constrained.consistent_start import away, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.impulses import impulse_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
-from fricmb.integrate.constrained.problem_structs import masses, mech_of, mechanism_of
-from fricmb.integrate.constrained.recorder import record_of
+from fricmb.integrate.constrained.problem_structs import masses, mech_of
+from fricmb.integrate.constrained.recorder import record_of, width
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
@@ -30,19 +31,21 @@ from fricmb.integrate.run.stop import ended
 from fricmb.integrate.signals.longest_steps import steps_of_run
 from fricmb.integrate.step.step_control import SAMPLED, first_step
 
-CHUNK = 1024
+#: Steps that a kernel fills before they are taken out: so many, or so many bytes.
+CHUNK, CHUNK_BYTES = 1024, 1e6
 #: Part that a first step takes of the time in which velocities change.
 PART = 0.05
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
 MULTISTEP_STAGES = 5
 
 
-def stages_for(rtol: float) -> int:
+def stages_for(problem: Problem, rtol: float) -> int:
     """Stages of the formula for a tolerance.
 
     Three would be faster by a quarter at 1e-2, as fast at 1e-4, and err by up to 30 ``rtol`` where five err by 0.1.
+    Without joints, where factors are kept from step to step, seven pay earlier.
     """
-    return 5 if rtol > 1e-11 else 7
+    return 5 if rtol > (1e-11 if mechanism_of(problem).n_rows else 1e-5) else 7
 
 
 def run_mechanism(
@@ -68,9 +71,10 @@ def run_mechanism(
         load_blocks("knot_within", "off_near_ends", "passes_bend")
     if problem.bends.table.address.size:
         load_blocks("bend_within")
+    capacity = int(np.clip(CHUNK_BYTES / (8 * (stages + 1) * width(problem)), 16, CHUNK))
     with run_workspace(problem, stages) as workspace:
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
-        mech, record, part = mech_of(problem), record_of(problem, stages, CHUNK), np.zeros(problem.n_c, np.int8)
+        mech, record, part = mech_of(problem), record_of(problem, stages, capacity), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
         past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
         limits = steps_of_run(problem, start.t, t_end, tolerance)

@@ -194,6 +194,9 @@ def may_have_passed(mech: Mech, k: Moving, w: Instant, end: State, out: Watch, h
     of the way that was left (0.3), the latter is but a turn of the motion.  ``sigma_end``, ``weak_end`` and
     ``reactions_end`` are left for :func:`near_singular`.
     """
+    if out.weak.shape[0] == 0:
+        out.sigma_end = 1.0
+        return False
     out.sigma_end = 0.0
     # without friction the factors of the projection are those of the instant
     if end.F.shape[0] > 0 and not instant_matrix(mech, k, w, end, NONE):

@@ -20,10 +20,11 @@ from fricmb.integrate.constrained.forces import forces, move, pull_back
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
 from fricmb.integrate.constrained.moving import Moving
-from fricmb.integrate.constrained.problem_structs import Mech, mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import Mech, mech_of
 from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
-from fricmb.integrate.problem import Complexes2, Floats, Floats2, Pivots, Problem
+from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2, Pivots, Problem
 from fricmb.integrate.step.tableau import Tableau
 
 
@@ -50,6 +51,7 @@ class Stages(Layout):
     pivots: Pivots
     x: Floats
     w: Complexes2
+    line: Complexes
     zd: Floats
     acc: Floats
     scale: Floats
@@ -68,8 +70,8 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
         np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
         np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
-        np.zeros((count, size), complex), np.zeros(nz), np.zeros(size), np.ones(m.n), 0.0,
-        turns_of(problem, s, size),
+        np.zeros((count, size), complex), np.zeros(size, complex), np.zeros(nz), np.zeros(size), np.ones(m.n), 0.0,
+        turns_of(problem, tab, size),
     )  # fmt: skip
 
 
@@ -147,39 +149,43 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
         r[n + m + n_c + a] = rate / h - st.zd[a]
 
 
+@kernel
+def solve_system(mech: Mech, st: Stages, i: int) -> None:
+    """Overwrite ``st.w[i]`` by the solution of system i, whose factors are there."""
+    place, w = mech.order.place, st.w[i]
+    pivots = st.pivots[i * place.shape[0] : (i + 1) * place.shape[0]]
+    if st.tab.lam[i].imag == 0.0:
+        for a in range(place.shape[0]):
+            st.x[place[a]] = w[a].real
+        solve_band(st.real, pivots, mech.order.sizes, st.x)
+        for a in range(place.shape[0]):
+            w[a] = st.x[place[a]]
+        return
+    for a in range(place.shape[0]):
+        st.line[place[a]] = w[a]
+    solve_band(st.pairs[i], pivots, mech.order.sizes, st.line)
+    for a in range(place.shape[0]):
+        w[a] = st.line[place[a]]
+
+
 @block
 def newton_change(mech: Mech, st: Stages) -> None:
     """Solve for the changes of all unknowns: R is overwritten."""
-    order, tab = mech.order, st.tab
-    size, s = order.place.shape[0], tab.c.shape[0]
+    tab = st.tab
+    size, s = mech.order.place.shape[0], tab.c.shape[0]
     for i in range(tab.lam.shape[0]):
-        pivots = st.pivots[i * size : (i + 1) * size]
-        if tab.lam[i].imag == 0.0:
-            for a in range(size):
-                value = 0.0
-                for j in range(s):
-                    value += tab.Tinv[i, j].real * st.R[j, a]
-                st.x[order.place[a]] = value
-            solve_band(st.real, pivots, order.sizes, st.x)
-            for a in range(size):
-                st.w[i, a] = st.x[order.place[a]]
-            continue
-        w = st.w[i]
-        pair = st.pairs[i]
-        # the right-hand side in LAPACK's order, behind it the same in ours
         for a in range(size):
-            value_c = 0.0j
+            value = 0.0j
             for j in range(s):
-                value_c += tab.Tinv[i, j] * st.R[j, a]
-            w[order.place[a]] = value_c
-        solve_band(pair, pivots, order.sizes, w)
+                value += tab.Tinv[i, j] * st.R[j, a]
+            st.w[i, a] = value
+        solve_system(mech, st, i)
     for j in range(s):
         for a in range(size):
-            value = 0.0
+            total = 0.0
             for i in range(tab.lam.shape[0]):
-                at = a if tab.lam[i].imag == 0.0 else order.place[a]
-                value += tab.T[j, i].real * st.w[i, at].real - tab.T[j, i].imag * st.w[i, at].imag
-            st.R[j, a] = value
+                total += tab.T[j, i].real * st.w[i, a].real - tab.T[j, i].imag * st.w[i, a].imag
+            st.R[j, a] = total
 
 
 #: Newton's iterations in a step before it is given up.
@@ -208,7 +214,8 @@ def is_noise(mech: Mech, st: Stages) -> bool:
 @block
 def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> int:
     """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
-    s = st.tab.c.shape[0]
+    tab = st.tab
+    s = tab.c.shape[0]
     last = np.inf
     st.found = 1.0
     for iteration in range(ITERATIONS):
@@ -218,7 +225,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
             spread_of_stages(mech, st.turns, st.F, st.g)
         newton_change(mech, st)
         if st.turns.near > 0:
-            correct_turns(mech, st.turns, st.R)
+            correct_turns(mech, st.turns, tab, st.R, st.w)
         change, sound = 0.0, 0.0
         for i in range(s):
             for a in range(st.R.shape[1]):

@@ -6,7 +6,8 @@ import numpy as np
 
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.jacobian_layers import Layers
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.problem import Codes, Floats, Pivots, Problem
 
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.constrained.instants import instants
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.output.step_energies import integrate_between, integrate_powers

@@ -14,12 +14,23 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.problem import LAW_SMOOTH, Floats, Floats2, Floats3, Ints, Pivots, Problem
+from fricmb.integrate.problem import (
+    LAW_SMOOTH,
+    Complexes,
+    Complexes2,
+    Complexes3,
+    Floats,
+    Floats2,
+    Ints,
+    Pivots,
+    Problem,
+)
+from fricmb.integrate.step.tableau import Tableau
 
 #: A contact faster than what this many steps of its acceleration bring has a direction of its own.
-NEAR = 4.0
+NEAR = 1.0
 #: Contacts that can be near rest at once and still step well.
-TOGETHER = 24
+TOGETHER = 48
 
 
 class Turns(Layout):
@@ -27,8 +38,9 @@ class Turns(Layout):
 
     ``near`` how many rows, ``tangent`` (k, 3) across the slip.
 
-    ``answer`` (k s, s, size): changes by a unit residual in the row of a direction; ``gain`` (k s, k s) the turns
-    among them; ``base`` (k,), ``spread`` (k s,): derivatives in the Jacobian, and what a stage's differ by.
+    ``answer`` (k, l, size): changes of the unknowns by a unit residual in the row of a direction, in each of the
+    systems into which the stages fall apart; ``gain`` (k s, k s) the turns at stages by such residuals at stages;
+    ``base`` (k,), ``spread`` (k s,): derivatives in the Jacobian, and what a stage's differ by.
     """
 
     contact: Ints
@@ -36,7 +48,7 @@ class Turns(Layout):
     near: int
     tangent: Floats2
     base: Floats
-    answer: Floats3
+    answer: Complexes3
     gain: Floats2
     work: Floats
     spread: Floats
@@ -51,13 +63,15 @@ def turning_rows(problem: Problem) -> int:
     return min(int(np.maximum(np.diff(contacts.row) - 1, 0)[contacts.law != LAW_SMOOTH].sum()), TOGETHER)
 
 
-def turns_of(problem: Problem, s: int, size: int) -> Turns:
+def turns_of(problem: Problem, tab: Tableau, size: int) -> Turns:
     """Arrays for the contacts in several directions with set-valued laws."""
+    s = len(tab.c)
     k = turning_rows(problem) if s > 1 else 0
     full = k * s
     return Turns(
         np.zeros(k, np.int64), np.zeros(k, np.int64), 0, np.zeros((k, 3)), np.zeros(k),
-        np.zeros((full, s, size)), np.zeros((full, full)), np.zeros(full * full), np.zeros(full), np.zeros(full),
+        np.zeros((k, len(tab.lam), size), complex), np.zeros((full, full)), np.zeros(full * full), np.zeros(full),
+        np.zeros(full),
         np.zeros(4, np.int32), np.zeros(full, np.int32),
     )  # fmt: skip
 
@@ -89,18 +103,18 @@ def spread_of_stages(mech: Mech, turns: Turns, F: Floats2, g: Floats2) -> None:
 
 
 @kernel
-def across(mech: Mech, turns: Turns, k: int, x: Floats) -> float:
+def across(mech: Mech, turns: Turns, k: int, x: Floats | Complexes) -> complex:
     """The turn of row k in a change x (size,) of the unknowns of a stage: force across the slip."""
     c = turns.contact[k]
-    place, turn = force_place(mech, c), 0.0
+    place, turn = force_place(mech, c), 0.0 * x[0]
     for a in range(mech.port.row[c + 1] - mech.port.row[c]):
         turn += turns.tangent[k, a] * x[place + a]
-    return float(turn)
+    return turn
 
 
 @kernel
-def correct_turns(mech: Mech, turns: Turns, R: Floats2) -> None:
-    """From the changes R (s, size) by the Jacobian to those by the derivatives of every stage."""
+def correct_turns(mech: Mech, turns: Turns, tab: Tableau, R: Floats2, w: Complexes2) -> None:
+    """From the changes R (s, size) by the Jacobian to those by the derivatives of every stage; ``w`` is space."""
     s = R.shape[0]
     full = turns.near * s
     work = turns.work[: full * full].reshape(full, full)
@@ -113,7 +127,15 @@ def correct_turns(mech: Mech, turns: Turns, R: Floats2) -> None:
         return
     lu_solve(work, turn, turns.sizes, turns.pivots)
     for q in range(full):
-        part = turns.spread[q] * turn[q]
-        for i in range(s):
+        turn[q] *= turns.spread[q]
+    for i in range(tab.lam.shape[0]):
+        w[i, :] = 0.0
+        for k in range(turns.near):
+            part = 0.0j
+            for j in range(s):
+                part += tab.Tinv[i, j] * turn[k * s + j]
             for a in range(R.shape[1]):
-                R[i, a] -= part * turns.answer[q, i, a]
+                w[i, a] += part * turns.answer[k, i, a]
+        for j in range(s):
+            for a in range(R.shape[1]):
+                R[j, a] -= (tab.T[j, i] * w[i, a]).real

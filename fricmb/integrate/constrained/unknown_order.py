@@ -13,13 +13,16 @@ from fricmb.integrate.problem import Ints, Problem, Templates
 
 def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int]:
     """Place of each unknown [v, lam, F, z] and the half-bandwidth: reverse Cuthill-McKee on the pattern."""
+    from scipy.sparse import csr_array
+
     size = m.n + m.n_rows + problem.m + problem.n_z
-    pairs = {(i, i) for i in range(size)}
-    for group in _groups(problem, m, y_start, y_dof):
-        held = sorted(group)
-        pairs.update((i, j) for i in held for j in held)
-    rows, columns = np.array(sorted(pairs), dtype=np.int64).T
-    return narrow_order(rows, columns, size)
+    groups = [(i,) for i in range(size)] + [sorted(group) for group in _groups(problem, m, y_start, y_dof)]
+    start = np.concatenate(([0], np.cumsum([len(group) for group in groups])))
+    member = np.array([i for group in groups for i in group], dtype=np.int64)
+    meets = csr_array((np.ones(len(member)), member, start), shape=(len(groups), size))
+    pattern = (meets.T @ meets).tocoo()
+    order = np.lexsort((pattern.col, pattern.row))
+    return narrow_order(pattern.row[order].astype(np.int64), pattern.col[order].astype(np.int64), size)
 
 
 def _groups(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> Iterator[set[int]]:

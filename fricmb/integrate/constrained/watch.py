@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.layout import Layout
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 
 #: Joints that slip at once and are looked at together.

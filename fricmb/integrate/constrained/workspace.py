@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 from fricmb.integrate.constrained.moving import Moving, lengths, moving_of
 from fricmb.integrate.constrained.pattern import of_pattern
-from fricmb.integrate.constrained.problem_structs import mech_of, mechanism_of
+from fricmb.integrate.constrained.problem_structs import mech_of
 from fricmb.integrate.constrained.radau_step import Control, control_of
 from fricmb.integrate.constrained.stages import Stages, stages_of
 from fricmb.integrate.constrained.state import Instant, State, instant_of, state_of
+from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import turning_rows
 from fricmb.integrate.constrained.watch import Watch, watch_of
 from fricmb.integrate.model.forces import longest_call

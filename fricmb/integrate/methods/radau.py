@@ -13,6 +13,20 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
 
+#: Rows of contacts (slip, normal forces that vary, states of laws) below which steps are condensed to them.
+FEW = 8
+
+
+def in_a_band(problem: Problem, stages: int | None) -> bool:
+    """Whether steps are solved for all unknowns in a band: with joints or bodies that turn, and with many contacts."""
+    if problem.mechanism is not None:
+        return True
+    if problem.m + problem.n_v + problem.n_z < FEW or (stages is not None and stages % 2 == 0):
+        return False
+    from fricmb.integrate.constrained import has_many_rows
+
+    return has_many_rows(problem)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Radau(OneStepMethod):
@@ -51,10 +65,10 @@ class Radau(OneStepMethod):
         memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
-        if problem.mechanism is not None:
+        if in_a_band(problem, self.stages):
             from fricmb.integrate import constrained
 
-            count = self.stages or constrained.stages_for(tolerance.rtol)
+            count = self.stages or constrained.stages_for(problem, tolerance.rtol)
             return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
         return super().integrate(
             problem, start, t_end, tolerance=tolerance, t_eval=t_eval, progress=progress, memory=memory

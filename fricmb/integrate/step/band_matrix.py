@@ -36,11 +36,12 @@ def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortS
                 j = place[index[e]]
                 ab[j, 2 * half + place[i] - j] = M[e] + sigma * (C[e] + sigma * K[e])
         pivots = fac.pivots[which * n : (which + 1) * n]
-        if not factor_band(ab, pivots, fac.sizes):
+        factors = ab.reshape(ab.size)
+        if not factor_band(factors, pivots, fac.sizes):
             return False
         for c in range(fac.X.shape[1]):
             load_column(packed, c, sigma, fac.line)
-            solve_band(ab, pivots, fac.sizes, fac.line)
+            solve_band(factors, pivots, fac.sizes, fac.line)
             for i in range(n):
                 fac.X[x, c, i] = fac.line[place[i]]
     port_inputs(tab, fac)
@@ -79,7 +80,8 @@ def correct_band(packed: Packed, tab: Tableau, fac: Factor, st: Stages) -> None:
             for j in range(s):
                 value += Tinv[x, j] * res[j, a]
             line[place[a]] = value
-        solve_band(fac.Sinv[which], fac.pivots[which * n : (which + 1) * n], fac.sizes, line)
+        ab = fac.Sinv[which]
+        solve_band(ab.reshape(ab.size), fac.pivots[which * n : (which + 1) * n], fac.sizes, line)
         for a in range(n):
             for i in range(s):
                 dV[i, a] -= (T[i, x] * line[place[a]]).real
