@@ -118,7 +118,7 @@ def reject(c: Control, h: float) -> int:
 
 
 #: Rate of convergence up to which the Jacobian of a step serves the next one.
-KEPT = 0.02
+KEPT = 0.1
 
 
 @kernel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.problem import Floats, Ints, Problem, Templates
@@ -47,7 +48,20 @@ def softness(problem: Problem, m: Mechanism, port_joint: Ints) -> Floats:
         tied[block] = set()
     joints = len(m.joints.port)
     own = np.where(port_joint >= 0, port_joint, joints + np.arange(len(port_joint)))
-    return np.array([SOFT if tied[block] else 0.0 for block in own])
+    looped = np.array([bool(tied[block]) for block in own], dtype=bool)
+    if looped.any() and problem.mechanism is None and _is_independent(problem, looped):
+        looped[:] = False
+    return np.where(looped, SOFT, 0.0)
+
+
+def _is_independent(problem: Problem, some: NDArray[np.bool_]) -> bool:
+    """Whether rows of ``some`` contacts (n_c,) of a linear structure follow from no others: nothing is redundant then.
+
+    A body given by modes moves at its contacts in as many ways as there are modes.
+    """
+    rows = some[problem.contacts.of_row]
+    W = problem.contacts.csr("W").dense()[:, rows]
+    return bool(rows.sum() <= problem.n and np.linalg.matrix_rank(W) == rows.sum())
 
 
 #: The node of what the motion does not move: the ground, and what is driven.

@@ -11,7 +11,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SLIGHT, lightness, plane
 from fricmb.integrate.constrained.stages import Stages, solve_system
 from fricmb.integrate.constrained.state import State
-from fricmb.integrate.constrained.turning import NEAR, Turns, across, by_turn, force_place
+from fricmb.integrate.constrained.turning import NEAR, NEAR_WITHOUT, Turns, across, by_turn, force_place
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import SLIP
 
@@ -30,7 +30,8 @@ def nears_rest(mech: Mech, k: Moving, y: State, c: int, h: float) -> bool:
     """Whether contact c slips in a plane, and may come to rest in a step h, or has only set out."""
     if not plane(mech, c) or y.mode[c] != SLIP or y.N[c] <= 0.0 or magnitude(mech.port.row, c, y.F) <= 0.0:
         return False
-    return bool(magnitude(mech.port.row, c, y.g) <= NEAR * slip_change(mech, k, y, c, h))
+    near = NEAR if y.lam.shape[0] > 0 else NEAR_WITHOUT
+    return bool(magnitude(mech.port.row, c, y.g) <= near * slip_change(mech, k, y, c, h))
 
 
 @kernel

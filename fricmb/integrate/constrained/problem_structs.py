@@ -152,7 +152,7 @@ def _pack(problem: Problem) -> Mech:
         normal = np.where((port_joint >= 0) & (rows[port_joint] == 0), NORMAL_LAW, normal).astype(np.int8)
     port = Port(
         port_joint, solid(contacts.row, np.int64),
-        of_pattern(problem, "softness", lambda: softness(problem, m, port_joint)), table_of(m.slip),
+        _softness(problem, m, port_joint), table_of(m.slip),
         solid(contacts.w), solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0),
         knot_starts(contacts), solid(contacts.knots), solid(contacts.z_start, np.int64), normal,
         damped_normals(problem),
@@ -170,6 +170,13 @@ def _pack(problem: Problem) -> Mech:
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), table_of(problem.bends.table),
         solid(problem.bends.start, np.int64),
     ))  # fmt: skip
+
+
+def _softness(problem: Problem, m: Mechanism, port_joint: Ints) -> Floats:
+    """See ``loop_softness``; without joints it depends on the shapes of modes."""
+    if problem.mechanism is None:
+        return softness(problem, m, port_joint)
+    return of_pattern(problem, "softness", lambda: softness(problem, m, port_joint))
 
 
 def masses(m: Mechanism) -> Floats:

@@ -27,8 +27,9 @@ from fricmb.integrate.problem import (
 )
 from fricmb.integrate.step.tableau import Tableau
 
-#: A contact faster than what this many steps of its acceleration bring has a direction of its own.
-NEAR = 1.0
+#: A contact faster than what this many steps of its acceleration bring has a direction of its own: with joints, and
+#: without, where a direction found from the force costs more than the few iterations that it spares.
+NEAR, NEAR_WITHOUT = 4.0, 1.0
 #: Contacts that can be near rest at once and still step well.
 TOGETHER = 48
 

@@ -1,0 +1,99 @@
+"""Scenes without joints and with many rows of contacts: solved in the band, against steps condensed to the contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+import fricmb as fm
+from fricmb.integrate import OneStepMethod
+from fricmb.integrate.methods.radau import in_a_band
+from fricmb.integrate.step.tableau import radau
+from fricmb.system import build
+
+
+@dataclass(frozen=True, kw_only=True)
+class Condensed(OneStepMethod):
+    """Radau IIA of seven stages, always condensed."""
+
+    name = "condensed"
+    order = "13"
+
+    def nodes(self, problem, rtol):
+        return tuple(radau(7).c.tolist())
+
+
+def pad(contacts, modes, law=None, normal=20.0, axes="xy"):
+    """A body by its modes, pressed on a disc at many points."""
+    rng, law = np.random.default_rng(1), law or fm.laws.Coulomb(mu_s=0.6, mu_k=0.4)
+    shapes = {f"p{i}": rng.normal(size=(2, modes)) for i in range(contacts)}
+    omega = 2.0 * np.pi * np.linspace(300.0, 6000.0, modes)
+    body = fm.ModalBody("pad", frequencies=omega, damping_ratios=0.005, shapes=shapes, axes="xy")
+    disc = fm.Driven("disc", velocity={"x": 0.02, "y": 0.003})
+    rubs = {"law": law, "normal_force": normal, "axes": axes}
+    pads = [fm.Contact(f"c{i}", body.point(f"p{i}"), disc, **rubs) for i in range(contacts)]
+    return fm.Scene("pad", [body, disc, *pads])
+
+
+def bar(contacts, law, nodes=30):
+    """Linear finite elements with a mass matrix that couples, some of whose nodes rub on a belt."""
+    unit = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    M, K = np.zeros((2, nodes, nodes))
+    for e in range(nodes - 1):
+        M[e : e + 2, e : e + 2] += (np.abs(unit) + np.eye(2)) / (6.0 * nodes)
+        K[e : e + 2, e : e + 2] += unit * nodes
+    K[0, 0] += 5.0
+    bodies, belt = [fm.Body(f"x{i}", mass=1e-3 / nodes) for i in range(nodes)], fm.Driven("belt", velocity={"x": 0.05})
+    matrices = fm.MatrixElement("bar", [f"x{i}.x" for i in range(nodes)], M=M, C=1e-3 * K + 0.05 * M, K=K)
+    places = np.linspace(nodes // 6, nodes - 1, contacts).round().astype(int)
+    rubs = {"law": law, "normal_force": 1.0 / contacts}
+    return fm.Scene("bar", [*bodies, belt, matrices, *(fm.Contact(f"c{i}", bodies[i], belt, **rubs) for i in places)])
+
+
+STRIBECK = fm.laws.Stribeck(mu_s=1.2, mu_k=0.8, v_s=0.1)
+LUGRE = fm.laws.LuGre(sigma0=1e3, sigma1=30.0, sigma2=0.1, mu_s=1.3, mu_k=1.0, v_s=0.1)
+LIFTS = fm.normal.Spring(axis="y", stiffness=3e7, preload=5.0)
+
+
+@pytest.mark.parametrize(
+    ("scene", "t_end"),
+    [
+        pytest.param(bar(10, STRIBECK), 1.0, id="one direction"),
+        pytest.param(bar(10, LUGRE), 0.5, id="states"),
+        pytest.param(pad(18, 44), 3e-4, id="in the plane"),
+        pytest.param(pad(12, 24, normal=LIFTS, axes="x"), 2e-3, id="normal forces"),
+    ],
+)
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_errors_stay_below_the_tolerance(scene, t_end, rtol):
+    assert in_a_band(build(scene).problem, None)
+    t = np.linspace(0.0, t_end, 51)
+    true = fm.simulate(scene, t_end=t_end, t_eval=t, rtol=1e-11, method=Condensed())
+    found = fm.simulate(scene, t_end=t_end, t_eval=t, rtol=rtol, method="radau")
+    assert [(e.contact, e.kind) for e in found.events] == [(e.contact, e.kind) for e in true.events]
+    for a, b in ((found.q, true.q), (found.v, true.v)):
+        assert (np.abs(a - b).max(axis=1) < rtol * np.abs(b).max(axis=1)).all()
+    assert np.abs(found.energy.residual).max() < 10.0 * rtol
+
+
+def test_jacobians_are_kept_while_nothing_changes():
+    """Under constant friction one Jacobian serves until modes change."""
+    sol = fm.simulate(bar(10, fm.laws.Coulomb(mu_s=1.2, mu_k=0.8)), t_end=1.0, rtol=1e-8, method="radau")
+    assert sol.stats.n_steps > 100
+    assert sol.stats.n_jac <= len(sol.events) + 1 + sol.stats.n_rejected
+
+
+@pytest.mark.slow
+def test_more_contacts_set_out_than_directions_are_found_for():
+    """Left as if it had a direction of its own, one at rest kept the force it broke away with: 2e-2 at rtol 1e-6."""
+    scene, t = pad(36, 80), np.linspace(0.0, 1e-3, 51)
+    true = fm.simulate(scene, t_end=1e-3, t_eval=t, rtol=1e-9, method=Condensed())
+    found = fm.simulate(scene, t_end=1e-3, t_eval=t, rtol=1e-6, method="radau")
+    assert (np.abs(found.q - true.q).max(axis=1) < 1e-6 * np.abs(true.q).max(axis=1)).all()
+
+
+def test_few_contacts_on_many_modes_stay_condensed():
+    assert not in_a_band(build(pad(4, 400)).problem, None)
+    assert not in_a_band(build(pad(18, 44)).problem, 4)  # an even number of stages
