@@ -17,7 +17,7 @@ from fricmb.cli import main
 ROOT = Path(__file__).parents[1]
 # What is fenced as python, and the cells of pages that are notebooks (without their options).
 BLOCK = re.compile(
-    r"^```(?:python|\{code-cell\} python)\n(?:---\n.*?^---\n|(?::.*\n)*)(.*?)^```", re.MULTILINE | re.DOTALL
+    r"^```(?:python|\{code-cell\} python)\n(?:---\n.*?^---\n|(?::[^\n]*\n)*)(.*?)^```", re.MULTILINE | re.DOTALL
 )
 COMMAND = re.compile(r"^    (fricmb .*)$", re.MULTILINE)
 FENCE = re.compile(r"^(`{3,}|:{3,}).*?^\1$", re.MULTILINE | re.DOTALL)

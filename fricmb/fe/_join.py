@@ -107,9 +107,8 @@ def _labels(a: FEModel, b: FEModel) -> tuple[Ints, Ints, list[str]]:
         if model.labels is not None:
             return model.labels
         rest = model.n - int(model.boundary or 0)
-        whole: Ints = np.vstack([boundary, np.column_stack([inner - 1 - np.arange(rest), np.zeros(rest)])]).astype(
-            np.int64
-        )
+        modal = np.column_stack([inner - 1 - np.arange(rest), np.zeros(rest)])
+        whole: Ints = np.asarray(np.vstack([boundary, modal]), dtype=np.int64)
         return whole
 
     note = f"boundary of {bare.name!r} has no numbers of nodes: taken in the order of the other's"

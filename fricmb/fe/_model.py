@@ -256,7 +256,8 @@ class FEModel:
         if near is not None:
             return numbers[[int(np.argmin(np.linalg.norm(places - np.asarray(near, dtype=float), axis=1)))]]
         inside: Any = where(places.T) if where is not None else None
-        return numbers[np.asarray(inside) != 0]
+        chosen: Ints = numbers[np.asarray(inside) != 0]
+        return chosen
 
     def rows(self, node: int, axes: str = "xyz", turn: Floats | None = None) -> Floats:
         """Rows (len(axes), n) that give a node's displacement along global axes, or along the rows of ``turn`` (3, 3).

@@ -41,7 +41,7 @@ def identify(frfs: Sequence[Frf], *, band: tuple[float, float] | None = None, n_
     SceneError
     """
     f, values, places = _arrays(frfs, band)
-    s: Complexes = 2j * np.pi * f
+    s: Complexes = np.asarray(2j * np.pi * f, dtype=np.complex128)
     power = KINDS[frfs[0].kind or "accelerance"]
     found = [_refined(s, values, power, *window) for window in _windows(f, values, n_modes)]
     omega, zeta = np.array([x[0] for x in found]), np.array([x[1] for x in found])
@@ -96,9 +96,9 @@ def _windows(f: Floats, values: Complexes, n_modes: int | None) -> list[tuple[in
         peaks = np.sort(peaks[np.argsort(facts["prominences"])[::-1][:n_modes]])
     if not peaks.size:
         raise SceneError("measure.identify: no peak stands out of the mean response")
-    edges = [0, *((a + b) // 2 for a, b in pairwise(peaks.tolist())), f.size - 1]
+    edges: list[int] = [0, *((a + b) // 2 for a, b in pairwise(peaks.tolist())), f.size - 1]
     found = []
-    for peak, low, high in zip(peaks, edges[:-1], edges[1:], strict=True):
+    for peak, low, high in zip(peaks.tolist(), edges[:-1], edges[1:], strict=True):
         reach = max(4, min(peak - low, high - peak) // 2)
         found.append((int(peak), np.arange(max(low, peak - reach), min(high, peak + reach) + 1)))
     return found
