@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fricmb._calls import answers
 from fricmb.analysis._crossings import Crossing, crossings
-from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_scene
+from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked_scene, positive
 from fricmb.analysis._steady import SteadySliding, checked_speeds, steady_sliding
 from fricmb.analysis._track import NEUTRAL, Complexes, Pairs, checked_values, follow, refine
 from fricmb.errors import shown
@@ -98,7 +98,12 @@ class Eigenvalues:
 
 @answers
 def complex_eigenvalues(
-    scene: Scene, *, over: str, values: ArrayLike, speeds: Mapping[str, float] | None = None
+    scene: Scene,
+    *,
+    over: str,
+    values: ArrayLike,
+    speeds: Mapping[str, float] | None = None,
+    highest: float | None = None,
 ) -> Eigenvalues:
     """Eigenvalues of steady sliding over one parameter.
 
@@ -117,6 +122,9 @@ def complex_eigenvalues(
         Rising or falling.
     speeds : dict of str to float, optional
         As in :func:`steady_sliding`.
+    highest : float, optional
+        Angular frequency above which modes and critical values are left out: a reduced body has no true modes above
+        those that were kept.
 
     Returns
     -------
@@ -139,6 +147,7 @@ def complex_eigenvalues(
     checked_scene(who, scene)
     checked_kind(who, "over", over, str, "a name out of scene.parameters or speeds")
     grid = checked_values(who, values)
+    top = np.inf if highest is None else positive(who, "highest", highest)
     dofs: list[str] = []
 
     @functools.cache
@@ -153,7 +162,7 @@ def complex_eigenvalues(
     eigenvalues = np.array([pairs[0] for pairs in found])
     vectors = np.array([pairs[1] for pairs in found])[:, :, : len(dofs)]
     limit = 1e-12 * max(float(np.abs(eigenvalues).max(initial=0.0)), 1e-300)
-    kept = np.flatnonzero(eigenvalues[0].imag >= -limit)
+    kept = np.flatnonzero((eigenvalues[0].imag >= -limit) & (np.abs(eigenvalues.imag).min(axis=0) <= top))
     # of a crossing by the mode that stands for it: itself, or its conjugate at the first value
     start = eigenvalues[0]
     upper = start.real + 1j * np.abs(start.imag)
@@ -167,7 +176,9 @@ def complex_eigenvalues(
         eigenvalues=eigenvalues[:, kept],
         shapes=_scaled(vectors[:, kept]),
         dofs=tuple(dofs),
-        critical=tuple(replace(c, mode=stands[c.mode], kind=_kind(c, len(dofs))) for c in critical),
+        critical=tuple(
+            replace(c, mode=stands[c.mode], kind=_kind(c, len(dofs))) for c in critical if c.frequency <= top
+        ),
         fine_values=fine,
         fine_eigenvalues=between[:, kept],
         units=scene.units,
@@ -216,6 +227,7 @@ def stability_map(
     over: tuple[str, str],
     values: Sequence[ArrayLike],
     speeds: Mapping[str, float] | None = None,
+    highest: float | None = None,
 ) -> StabilityMap:
     """Largest growth rate of steady sliding over two parameters.
 
@@ -228,6 +240,9 @@ def stability_map(
         Of the first and the second, rising or falling.
     speeds : dict of str to float, optional
         As in :func:`steady_sliding`.
+    highest : float, optional
+        Angular frequency above which modes and critical values are left out: a reduced body has no true modes above
+        those that were kept.
 
     Returns
     -------
@@ -246,11 +261,13 @@ def stability_map(
             f" {shown(values)}"
         )
     first, second = (checked_values("stability_map", v) for v in values)
+    top = np.inf if highest is None else positive("stability_map", "highest", highest)
     growth, frequency = np.zeros((2, first.size, second.size))
     unstable = np.zeros((first.size, second.size), dtype=np.int64)
     for i, a in enumerate(first.tolist()):
         for j, b in enumerate(second.tolist()):
             found = _steady(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
+            found = found[np.abs(found.imag) <= top]
             if not found.size:
                 continue
             scale = float(np.abs(found).max())

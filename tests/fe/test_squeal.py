@@ -81,6 +81,25 @@ def test_growth_rates_need_complex_modes():
     assert distances(eigenvalues(rich, mu=0.36, omega=1.5), near[near.imag < top]).max() < 1e-3
 
 
+def test_modes_that_are_none_of_the_structure_are_left_out():
+    fe = squealer()
+    top = 12.0
+    body = fm.ModalBody.from_fe(
+        "bars", fe, points={"tip": 150}, axes="xy", up_to=top / (2 * np.pi), scales=SCALES, enrich=[{"mu": 0.4}],
+    )  # fmt: skip
+    grid = [0.1, 0.4]
+    found = fm.analysis.complex_eigenvalues(scene_of(body), over="mu", values=grid, highest=top)
+    assert found.frequency.max() <= 1.01 * top
+    assert all(c.frequency <= top for c in found.critical)
+    whole = exact(fe, 0.4, 2.0)
+    assert found.eigenvalues.shape[1] == np.count_nonzero(whole.imag <= top)
+    maps = fm.analysis.stability_map(scene_of(body), over=("mu", "omega"), values=[grid, [2.0]], highest=top)
+    assert maps.growth[1, 0] == pytest.approx(whole[whole.imag <= top].real.max(), rel=1e-3)
+    assert maps.frequency.max() <= top
+    with pytest.raises(fm.FricmbError, match="highest"):
+        fm.analysis.complex_eigenvalues(scene_of(body), over="mu", values=grid, highest=-1.0)
+
+
 def test_estimated_errors_are_those_of_eigenvalues():
     from fricmb.reduction import lowest_modes
     from fricmb.reduction._enrich import Pencil, pairs
