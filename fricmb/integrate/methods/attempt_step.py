@@ -29,7 +29,7 @@ from fricmb.integrate.run.outcomes import (
     FAIL_STEP,
     REJECTED,
 )
-from fricmb.integrate.step.element_bends import bend_ahead
+from fricmb.integrate.step.element_bends import bend_ahead, go_over_bend
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
 from fricmb.integrate.step.knots import NOWHERE, beside_knots, knot_ahead
@@ -137,7 +137,10 @@ def advance(
     if packed.ports.knots.shape[0] > 0:
         knot = knot_ahead(packed, s, y, one, acc, h)
     if packed.bends.address.shape[0] > 0 and not is_exact(one):
-        knot = min(knot, bend_ahead(packed, s, y, one, acc, h))
+        bend = bend_ahead(packed, s, y, one, acc, h)
+        if bend < knot:
+            # forces that jump there reach a cone anywhere on polynomials over both sides
+            knot, contact = bend, -1
     if knot < 1.0 and (error <= 1.0 or knot * h < wanted) and (contact < 0 or knot < clock.found[0]):
         clock.knot = t + knot * h
         return reject(clock, one, h)
@@ -158,6 +161,9 @@ def advance(
             clock.knot = -np.inf
             clock.h = max(clock.h, clock.usual)
             clock.growth = np.inf
+            if packed.bends.address.shape[0] > 0 and not is_exact(one) and go_over_bend(packed, s, y):
+                # what jumps may be more than a contact at rest can hold
+                return settled(transition(packed, s, y, -1, False, r, old, out))
             return CHANGED
         return ACCEPTED
     if contact < 0 or (error > 1.0 and clock.found[0] * h > wanted):

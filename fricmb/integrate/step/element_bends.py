@@ -21,6 +21,8 @@ from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slow_slip import NEARER, TIMES, WITHIN, line_at
 from fricmb.integrate.step.tableau import by_line
 
+#: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
+SHORT_OF = 4096.0
 #: Times that the law is asked on either side of a bend.
 ASKED = 6
 
@@ -125,6 +127,66 @@ def missed_at(
     return total
 
 
+@kernel
+def before_bend(
+    packed: Packed, s: Scratch, y: State, one: OneStep, x: float, low: float, h: float, signs: Floats2, line: Floats,
+    state: Floats2,
+) -> float:  # fmt: skip
+    """A place at x where nothing has changed its sign since ``low``: the last stage of a step that ends there, too."""
+    here, back = np.empty(signs.shape[1]), EPS * (1.0 + abs(y.t) / h)
+    for _ in range(ASKED):
+        look(packed, s, y, one, x, h, line, state)
+        put_signs(packed.bends, packed.bend_start, s, here)
+        same = True
+        for b in range(here.shape[0]):
+            same = same and (here[b] < 0.0) == (signs[0, b] < 0.0)
+        if same or x - back <= low:
+            break
+        x -= back
+        back *= 4.0
+    # the polynomial itself is known to some roundings
+    return float(max(x - SHORT_OF * EPS * (1.0 + abs(y.t) / h), low))
+
+
+@kernel
+def go_over_bend(packed: Packed, s: Scratch, y: State) -> bool:
+    """Carry y over the bend that it has come to, by a few roundings of the time; False where there is none at once."""
+    count, n = packed.bend_start[packed.bend_start.shape[0] - 1], y.q.shape[0]
+    before, behind, q, v = np.empty(count), np.empty(count), y.q.copy(), y.v.copy()
+    set_instant(packed.signals, s, y.t, y.q, y.v)
+    put_signs(packed.bends, packed.bend_start, s, before)
+    way = EPS * max(abs(y.t), 1e-290)
+    for _ in range(ASKED + 4):
+        way *= 4.0
+        for i in range(n):
+            q[i] = y.q[i] + way * y.v[i]
+            v[i] = y.v[i] + way * y.a[i]
+        set_instant(packed.signals, s, y.t + way, q, v)
+        put_signs(packed.bends, packed.bend_start, s, behind)
+        for b in range(count):
+            if (before[b] < 0.0) != (behind[b] < 0.0):
+                y.q[:], y.v[:] = q, v
+                y.t += way
+                return True
+    return False
+
+
+@kernel
+def begins_at_bend(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> bool:
+    """Whether a step begins where forces bend, on the near side by round-off: its stages are all on the far one."""
+    count = packed.bend_start[packed.bend_start.shape[0] - 1]
+    signs, line, state = np.empty((2, count)), np.empty(one.tab.c.shape[0] + 1), np.empty((2, y.q.shape[0]))
+    set_instant(packed.signals, s, y.t, y.q, y.v)
+    put_signs(packed.bends, packed.bend_start, s, signs[0])
+    set_instant(packed.signals, s, one.st.t[0], one.st.Q[0], one.st.V[0])
+    put_signs(packed.bends, packed.bend_start, s, signs[1])
+    least, found = max(AT_AN_END, NEAR * EPS * abs(y.t) / h), False
+    for b in range(count):
+        if (signs[0, b] < 0.0) != (signs[1, b] < 0.0):
+            found = found or where_turned(packed, s, y, one, h, b, 0.0, one.tab.c[0], signs, line, state) <= least
+    return bool(found)
+
+
 @block
 def bend_ahead(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
     """Part of the step h just solved up to the first bend that its polynomials do not know; ``NOWHERE`` without one."""
@@ -143,7 +205,7 @@ def bend_ahead(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy
                 if least < x < min(found, 1.0 - AT_AN_END):
                     found = x
         if found < 1.0 and missed_at(packed, s, y, one, acc, found, low, c[j], h, line, state) > SLIGHT * acc.rtol:
-            return float(found)
+            return before_bend(packed, s, y, one, found, low, h, signs, line, state)
         signs[0], low = signs[1], c[j]
     return NOWHERE
 

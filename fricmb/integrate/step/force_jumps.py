@@ -62,6 +62,21 @@ def close_in(packed: Packed, s: Scratch, k: int, x: Floats2, f: Floats2, n_f: in
 
 
 @kernel
+def turns_over(packed: Packed, s: Scratch, k: int, first: Floats, last: Floats, f: Floats2, n_f: int) -> bool:
+    """Whether the force of element k changes with those of its arguments that change their signs.
+
+    Others may have made it jump (where forces bend, steps end), beside a speed that is but round-off of rest.
+    """
+    x = first.copy()
+    for a in range(x.shape[0]):
+        if first[a] * last[a] < 0.0:
+            x[a] = last[a]
+    put_force(packed, s, k, first, f[0])
+    put_force(packed, s, k, x, f[1])
+    return change(f[0], f[1], n_f) > 0.0
+
+
+@kernel
 def jump_error(packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float) -> float:
     """What jumps of elements' forces between y and the state at the end of a step leave of velocities, over tolerance.
 
@@ -88,6 +103,8 @@ def jump_error(packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Flo
             x[0, a], x[1, a] = ends[0, first_x + a], ends[1, first_x + a]
         n_f = spread.f_start[k + 1] - spread.f_start[k]
         f = np.zeros((3, n_f * (1 + n_x)))
+        if not turns_over(packed, s, k, x[0], x[1], f, n_f):
+            continue
         put_force(packed, s, k, x[0], f[0])
         put_force(packed, s, k, x[1], f[1])
         close_in(packed, s, k, x, f, n_f)

@@ -12,6 +12,7 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import LAW_SMOOTH, STICK
 from fricmb.integrate.step.contact_unknowns import PortState
+from fricmb.integrate.step.element_bends import begins_at_bend
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
@@ -104,15 +105,16 @@ def radau_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     worst = max(worst, slow_slip_defect(packed, s, y, one, acc, h))
     worst = max(worst / acc.rtol, too_long(growth(packed, s, y, one, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
-    return float(max(worst, unseen_force(packed, y, one, acc, h)))
+    fresh = packed.bends.address.shape[0] > 0 and begins_at_bend(packed, s, y, one, h)
+    return float(max(worst, unseen_force(packed, y, one, acc, h, fresh)))
 
 
 @kernel
-def unseen_force(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+def unseen_force(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, fresh: bool) -> float:
     """Error of the forces of stuck contacts, in units of what is allowed: where nothing moves, only they show a load.
 
     Not a matter of accuracy, but of seeing that a limit has been passed: transitions are located with steps of their
-    own.
+    own.  ``fresh``: the step begins where forces jump, and its first value is that before the jump.
     """
     worst = 0.0
     n_s = one.tab.c.shape[0]
@@ -124,7 +126,7 @@ def unseen_force(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
             N = max(N, one.w.N[j, k])
         allowed = RESOLVED * abs(packed.ports.mu_s[k]) * N + 1e-290
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
-            error = by_line(one.tab.top[0], y.F[a], one.w.F, a)
+            error = by_line(one.tab.top[0], one.w.F[0, a] if fresh else y.F[a], one.w.F, a)
             if abs(error) > allowed:
                 noise = 30.0 * force_noise(packed, y, k, h) + spring_noise(packed, acc, a)
                 worst = max(worst, abs(error) / (allowed + noise))
