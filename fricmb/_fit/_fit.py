@@ -11,6 +11,7 @@ import numpy as np
 from fricmb._calls import answers
 from fricmb._fit._data import Measured, numbers, read
 from fricmb._fit._model import Model
+from fricmb._fit._offsets import checked_offsets
 from fricmb._fit._result import Fit
 from fricmb._fit._uncertainty import uncertainty
 from fricmb._simulate import simulate
@@ -45,6 +46,7 @@ def fit(
     window: str | float = "grow",
     sigma: float | Mapping[str, Any] | None = None,
     priors: Mapping[str, tuple[float, float]] | None = None,
+    offset: bool | str | Iterable[str] = False,
     loss: Loss = "linear",
     starts: int = 6,
     rtol: float = 1e-8,
@@ -74,6 +76,9 @@ def fit(
         of a quantity, found from the residuals; several quantities then count by their extents.
     priors : dict, optional
         What is known before, ``{"sole.law.mu_k": (mean, standard deviation)}``; needs ``sigma``.
+    offset : bool or names
+        Signals whose zero is not known, True for all: a constant that is added to each is found as well, ``offsets`` of
+        the result.  Load cells drift, and displacements are measured from somewhere.
     loss : str
         "linear", or one of those of :func:`scipy.optimize.least_squares` that let outliers count less, with ``sigma``.
     starts : int
@@ -112,7 +117,10 @@ def fit(
     _check_first(scene, dict(zip(names, first.tolist(), strict=True)), bounds)
     measured = read(data, signals, sigma)
     _check(priors, sigma, names)
-    model = Model(scene=scene, names=names, measured=measured, options={"rtol": rtol, **options})
+    model = Model(
+        scene=scene, names=names, measured=measured, options={"rtol": rtol, **options},
+        offset=checked_offsets(offset, measured),
+    )
     stages = _stages(measured, window, len(names))
     low, high = np.array(list(bounds.values())).T
     rng, best = np.random.default_rng(0), None
@@ -168,9 +176,8 @@ def _through(
         p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
         model.runs += part.runs
         model.cycle = part.cycle
-        residuals = part.residuals(p)
-        noise.append(_noise(residuals, p.size))
-        freedom.append(max(residuals.size - p.size, 1))
+        noise.append(part.noise(p))
+        freedom.append(part.freedom(p))
         if shown is not None:
             shown.update()
     # the variances of a part and of the whole, of errors that are alike, have Fisher's ratio: few data say little
@@ -201,15 +208,10 @@ def _around(
         except FricmbError:  # mu_k above mu_s, say
             continue
         p, J = _solve(best.model, begin, bounds, priors, loss, False)
-        if _noise(best.model.residuals(p), p.size) < best.cost * (1.0 - _BETTER):
+        if best.model.noise(p) < best.cost * (1.0 - _BETTER):
             p, J = _solve(best.model, p, bounds, priors, loss, True)
-            best, idle = replace(best, p=p, J=J, cost=_noise(best.model.residuals(p), p.size)), 0
+            best, idle = replace(best, p=p, J=J, cost=best.model.noise(p)), 0
     return best
-
-
-def _noise(residuals: Floats, n_p: int) -> float:
-    """Standard deviation of residuals by their degrees of freedom."""
-    return float(np.sqrt(residuals @ residuals / max(residuals.size - n_p, 1)))
 
 
 def _another(model: Model, low: Floats, high: Floats, rng: np.random.Generator) -> Floats:
@@ -335,7 +337,7 @@ def _result(
 ) -> Fit:
     residuals = model.residuals(p)
     found = uncertainty(J, model.names)
-    noise = _noise(residuals, p.size)
+    noise = model.noise(p)
     known = np.isfinite(found.covariance)  # what is not determined is so without noise as well
     covariance = np.where(known, np.where(known, found.covariance, 0.0) * (1.0 if absolute else noise**2), np.inf)
     notes = list(found.notes)
@@ -353,7 +355,7 @@ def _result(
         values=dict(zip(model.names, p.tolist(), strict=True)),
         std=dict(zip(model.names, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
         covariance=covariance, condition=found.condition, noise=noise, scene=model.with_values(p),
-        solution=model.run(p), measured=model.measured, notes=tuple(notes), runs=runs,
+        solution=model.run(p), measured=model.measured, notes=tuple(notes), runs=runs, offsets=dict(model.offsets),
         residuals={
             m.name: residuals[a:b] * m.sigma
             for m, a, b in zip(model.measured, places[:-1], places[1:], strict=True)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fricmb._fit._data import Measured
+from fricmb._fit._offsets import without_offset
 from fricmb._simulate import simulate
 from fricmb.analysis.cycles import Cycle, limit_cycle
 from fricmb.errors import FricmbError, SceneError, unknown_name
@@ -48,8 +49,11 @@ class Model:
     names: tuple[str, ...]
     measured: tuple[Measured, ...]
     options: Mapping[str, Any]
+    offset: frozenset[str] = frozenset()
     runs: int = 0
     cycle: Cycle | None = None
+    #: Those found last.
+    offsets: dict[str, float] = field(default_factory=dict)
     _kept: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
 
     def until(self, t: float) -> Model:
@@ -57,7 +61,7 @@ class Model:
         early = tuple(m.until(t) for m in self.measured)
         return Model(
             scene=self.scene, names=self.names, measured=tuple(m for m in early if m.x.size), options=self.options,
-            cycle=self.cycle,
+            offset=self.offset, cycle=self.cycle,
         )  # fmt: skip
 
     def residuals(self, p: Floats) -> Floats:
@@ -72,6 +76,15 @@ class Model:
             if self.runs == 1:
                 raise
             return np.full(sum(m.x.size for m in self.measured), _FAR)
+
+    def noise(self, p: Floats) -> float:
+        """Standard deviation of the residuals by their degrees of freedom."""
+        residuals = self.residuals(p)
+        return float(np.sqrt(residuals @ residuals / self.freedom(p)))
+
+    def freedom(self, p: Floats) -> int:
+        """Degrees of freedom of the residuals: each parameter and each offset takes one."""
+        return max(sum(m.x.size for m in self.measured) - p.size - len(self.offset), 1)
 
     def jacobian(self, p: Floats) -> Floats:
         """Derivative (n, n_p) of the residuals."""
@@ -103,6 +116,9 @@ class Model:
         sol = self.run(p, sensitivities=self.names)
         beside = self._beside(sol, p)
         parts = [self._one(m, sol, p, beside) for m in self.measured]
+        for i, m in enumerate(self.measured):
+            if m.name in self.offset:
+                *parts[i], self.offsets[m.name] = without_offset(m, *parts[i])
         return np.concatenate([x for x, _ in parts]), np.concatenate([J for _, J in parts])
 
     def _beside(self, sol: Solution | None, p: Floats) -> tuple[Beside, ...]:

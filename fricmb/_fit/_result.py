@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,6 +44,8 @@ class Fit:
         What has to be known: parameters at a bound, or that cannot be told apart.
     runs : int
         Number of runs with derivatives that it took.
+    offsets : dict of str to float
+        What was measured more than there was, by signal: constants that were found beside the parameters.
     """
 
     values: Mapping[str, float]
@@ -57,6 +59,7 @@ class Fit:
     residuals: Mapping[str, Floats]
     notes: tuple[str, ...]
     runs: int
+    offsets: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def correlation(self) -> Floats:
@@ -72,5 +75,6 @@ class Fit:
     def __str__(self) -> str:
         width = max(map(len, self.values))
         lines = [f"{name:{width}s}  {value:.8g} +- {self.std[name]:.2g}" for name, value in self.values.items()]
+        lines += [f"{name}: measured {value:.6g} above what it is" for name, value in self.offsets.items()]
         lines.append(f"residuals {self.noise:.3g}, condition {self.condition:.3g}, {self.runs} runs")
         return "\n".join([*lines, *self.notes])

@@ -53,7 +53,8 @@ class FitPlots:
         for panel, m in zip(axes, signals, strict=False):
             assert sol is not None
             t = np.linspace(sol.t_start, sol.t_end, 2000)
-            panel.plot(m.t, m.x, ".", color=paint().slip, markersize=4, label="measured")
+            x = m.x - self.fit.offsets.get(m.name, 0.0)
+            panel.plot(m.t, x, ".", color=paint().slip, markersize=4, label="measured")
             panel.plot(t, sol.at(t).scalar(m.name), color=paint().stick, linewidth=1.0, label="fitted")
             finish(panel, x="", y=m.name, legend=True)
         axes[-1].set_xlabel(bare(f"time [{self.fit.scene.units.time}]"))
