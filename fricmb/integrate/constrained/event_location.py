@@ -58,7 +58,9 @@ def locate_trigger(
     side = 0
     step = h
     left = np.inf
-    guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 else (-1.0, 0.0)
+    # where friction ends or begins; loads that set in or bend are found from both sides
+    rubs = first < 2 * y.mode.shape[0] and first % 2 == 0
+    guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and rubs else (-1.0, 0.0)
     for i in range(80):
         gap = f_low - f_high
         step = low + (high - low) * (f_low / gap if gap > 0.0 and f_high < 0.0 and f_low > 0.0 else 0.5)
