@@ -94,6 +94,37 @@ def line(rng: Generator) -> Spec:
     return spec
 
 
+def shaken(rng: Generator) -> Spec:
+    """Blocks whose loads, normal forces or belts move faster than they do: near the cone, in slip, in bells."""
+    n = int(rng.integers(1, 4))
+    spec = Spec("shaken", 1, [some(rng, 0.5, 2.0) for _ in range(n)], even(rng, 10.0, 25.0))
+    spec.belt = some(rng, 0.05, 1.0)
+    for i in range(n):
+        if i:
+            spec.springs.append((i - 1, i, 0, some(rng, 0.3, 10.0)))
+        spec.touches.append(touch(rng, i, -2 if rng.random() < 0.4 else -1, vary=False))
+        hold = spec.touches[i].N * spec.touches[i].fields["mu_s"]
+        choice = rng.integers(4)
+        if choice == 0:  # crests just over the cone and just below it
+            share = even(rng, 0.3, 0.8)
+            over = even(rng, -0.02, 0.1)
+            load = round(share * hold, 4), round((1.0 - share + over) * hold, 4)
+            spec.pulls.append(Pull(i, 0, *load, some(rng, 20.0, 80.0), even(rng, 0.0, 6.28)))
+        elif choice == 1:  # the same of the normal force
+            spec.touches[i].swing, spec.touches[i].omega = even(rng, 0.1, 0.6), some(rng, 20.0, 80.0)
+            spec.pulls.append(Pull(i, 0, round(even(rng, 0.4, 0.95) * hold, 4), 0.0, 1.0, 0.0))
+        elif choice == 2:
+            width = some(rng, 1e-4, 1e-2)
+            at = even(rng, 0.2 * spec.t_end, 0.8 * spec.t_end)
+            push = round(hold * (1.0 + some(rng, 0.1, 1.0) / width), 2)
+            spec.pulls.append(Pull(i, 0, 0.0, push, 1.0, at, 0.0, width))
+    if rng.random() < 0.3:
+        steady = some(rng, 0.2, 1.0)
+        spec.across = [steady, round(0.9 * steady, 4), some(rng, 20.0, 80.0)]
+    starts(rng, spec)
+    return spec
+
+
 def guided(rng: Generator) -> Spec:
     """Blocks in guides along x, some of them on a belt that moves across the guides as well."""
     spec = line(rng)
@@ -283,8 +314,8 @@ def roller(rng: Generator) -> Bodies:
 
 
 KINDS: dict[str, Callable[[Generator], Any]] = {
-    "line": line, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes, "chain": chain,
-    "tree": tree, "roller": roller,
+    "line": line, "shaken": shaken, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes,
+    "chain": chain, "tree": tree, "roller": roller,
 }  # fmt: skip
 
 

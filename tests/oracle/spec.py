@@ -18,11 +18,16 @@ from .problem import Contact, Problem, nothing
 
 AXES = "xy"
 Vector = tuple[float, ...]
+#: Part of the inverse of a frequency that a step takes at most; where within a bell steps begin anew, in widths.
+SEEN, WITHIN = 0.25, (-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 6.0)
 
 
 @dataclass
 class Pull:
-    """A force on a body: constant + amplitude sin(omega t + phase), from ``since`` on."""
+    """A force on a body: constant + amplitude sin(omega t + phase), from ``since`` on.
+
+    With a ``bell`` the amplitude times exp(-((t - phase)/bell)^2) stands in place of the sine.
+    """
 
     body: int
     axis: int
@@ -31,6 +36,13 @@ class Pull:
     omega: float
     phase: float
     since: float = 0.0
+    bell: float = 0.0
+
+    def value(self, t: float) -> float:
+        """At a time from ``since`` on."""
+        if self.bell:
+            return self.constant + self.amplitude * math.exp(-(((t - self.phase) / self.bell) ** 2))
+        return self.constant + self.amplitude * math.sin(self.omega * t + self.phase)
 
 
 @dataclass
@@ -117,7 +129,8 @@ def scene(spec: Spec) -> Any:
     for number, (a, b, axis, c) in enumerate(spec.dampers):
         parts.append(fm.Damper(f"d{number}", ends[a], ends[b], axis=AXES[axis], damping=c))
     for number, pull in enumerate(spec.pulls):
-        value = pull.constant + pull.amplitude * sympy.sin(pull.omega * fm.t + pull.phase)
+        form = sympy.exp(-(((fm.t - pull.phase) / pull.bell) ** 2)) if pull.bell else None
+        value = pull.constant + pull.amplitude * (form or sympy.sin(pull.omega * fm.t + pull.phase))
         if pull.since:
             value = sympy.Piecewise((0, fm.t < pull.since), (value, True))
         parts.append(fm.Force(f"f{number}", ends[pull.body], axis=AXES[pull.axis], value=value))
@@ -174,9 +187,15 @@ def numbers(spec: Spec) -> Problem:
             matrix += value * np.outer(way, way)
     loads = [(ways[p.body][:, p.axis], p) for p in spec.pulls]
     breaks = [p.since for p in spec.pulls if p.since] + ([spec.belt_change] if spec.belt_change else [])
+    # explicit steps see a bell where they begin anew within it, and what swings fast where they are short
+    breaks += [p.phase + k * p.bell for p in spec.pulls if p.bell for k in WITHIN]
+    swings = [p.omega for p in spec.pulls if p.amplitude and not p.bell] + [t.omega for t in spec.touches if t.swing]
+    fastest = max([*swings, *spec.across[2:]], default=0.0)
+    longest = min(spec.t_end / 100.0, SEEN / fastest) if fastest else None
     return Problem(
         M=M, K=K, C=C, q=np.concatenate(spec.q), v=np.concatenate(spec.v), load=load_of(n, loads), t_end=spec.t_end,
         contacts=tuple(contact(spec, i, ways) for i in range(len(spec.touches))), breaks=tuple(breaks),
+        max_step=longest,
     )  # fmt: skip
 
 
@@ -196,7 +215,7 @@ def load_of(n: int, loads: list[tuple[np.ndarray, Pull]]) -> Callable[[float], n
         total = np.zeros(n)
         for way, p in loads:
             if t >= p.since:
-                total += way * (p.constant + p.amplitude * math.sin(p.omega * t + p.phase))
+                total += way * p.value(t)
         return total
 
     return load
