@@ -32,6 +32,7 @@ from fricmb.integrate.problem import (
     SparseContacts,
     Templates,
 )
+from fricmb.laws import LinearRegularised
 from fricmb.scene import Contact, Joint
 from fricmb.scene._lines import Rows
 from fricmb.system._bends import Bend
@@ -45,6 +46,8 @@ from fricmb.values import is_expression, value_of
 
 #: What stands for a row that is empty, or whose entries are elsewhere.
 NO_ROW = Row()
+#: Coefficients of friction that are none.
+NO_FRICTION = 1e-100
 #: Factors of the rows of a contact with an isotropic law, by their number; one object for all.
 UNIT = {d: (1.0,) * d for d in range(4)}
 
@@ -177,6 +180,14 @@ class ContactArrays:
         path = law.static_path
         mu_s = limit if path is None else law.break_away(N)
         _check_cone(contact, mu_s, limit)
+        nothing = LinearRegularised(mu=0.0, v_reg=1.0)
+        if constant and max(mu_s, limit) <= NO_FRICTION and d in nothing.dimensions:
+            # never sticks, and has no cone whose edge could be found: a law of forces, all of them 0
+            self.law.append(LAW_SMOOTH)
+            self.law_table.add(law_template(nothing, d).address, numbers(nothing))
+            self.mu_s.append(0.0)
+            self.mu_0.append(0.0)
+            return
         self.law.append(LAW_CONSTANT if constant else LAW_COEFFICIENT)
         self.law_table.add(NO_TEMPLATE if constant else template.address, () if constant else p)
         follows = path is None and template.facts.get("load_dependent", compiled)
