@@ -77,7 +77,7 @@ _MODELS = (
     Model(build=stick_slip_chain, t_end=60.0),
     Model(build=minimal_flutter, t_end=60.0),
     Model(build=rotor_doublet, t_end=100.0),
-    Model(build=pad_rotor, t_end=0.02, units=SI),
+    Model(build=pad_rotor, t_end=0.04, units=SI),
     Model(build=dry_pendulum, t_end=12.0, units=SI),
     Model(build=andrews, t_end=0.03, units=SI),
     Model(build=car_axis, t_end=3.0),

@@ -28,7 +28,7 @@ def rotor_doublet(
     normal_force: float = 0.1,
     mu_s: float = 0.6,
     mu_k: float = 0.4,
-    speed: float = 0.5,
+    speed: float = 0.2,
 ) -> fm.Scene:
     """Disc with a cosine and sine pair of modes, and pads on springs that its surface drags.
 

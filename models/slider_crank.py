@@ -9,6 +9,9 @@ from fricmb.values import SI
 
 from ._arguments import checked
 
+#: Friction of the joints, unless another is given.
+_RUBS = fm.laws.Coulomb(mu_s=0.1)
+
 
 @checked
 def slider_crank(
@@ -20,7 +23,7 @@ def slider_crank(
     speed: float = 30.0,
     torque: float = 0.0,
     gravity: float = 0.0,
-    friction: fm.FrictionLaw | None = None,
+    friction: fm.FrictionLaw | None = _RUBS,
     pin: float = 0.01,
 ) -> fm.Scene:
     """Slider crank: a crank, a connecting rod and a slider in a guide, each joint with friction if wanted.
@@ -38,8 +41,8 @@ def slider_crank(
     torque : float
         On the crank.
     gravity : float
-    friction : FrictionLaw, optional
-        In the three pins, of radius ``pin``, and in the guide.
+    friction : FrictionLaw or None
+        In the three pins, of radius ``pin``, and in the guide; None: in none of them.
     pin : float
 
     Returns

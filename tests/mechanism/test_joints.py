@@ -32,7 +32,9 @@ def test_physical_pendulum():
 def test_slider_crank_is_a_quadrature():
     crank, rod = 0.1, 0.3
     m1, m2, m3 = masses = (1.0, 0.6, 0.8)
-    scene = fm.models.slider_crank(crank=crank, rod=rod, masses=masses, angle=0.3, speed=30.0)
+    scene = fm.models.slider_crank(
+        crank=crank, rod=rod, masses=masses, angle=0.3, speed=30.0, friction=None
+    )
 
     def inertia(angle):
         lean = np.arcsin(crank * np.sin(angle) / rod)
