@@ -118,7 +118,8 @@ class Model:
         parts = [self._one(m, sol, p, beside) for m in self.measured]
         for i, m in enumerate(self.measured):
             if m.name in self.offset:
-                *parts[i], self.offsets[m.name] = without_offset(m, *parts[i])
+                x, J, self.offsets[m.name] = without_offset(m, *parts[i])
+                parts[i] = x, J
         return np.concatenate([x for x, _ in parts]), np.concatenate([J for _, J in parts])
 
     def _beside(self, sol: Solution | None, p: Floats) -> tuple[Beside, ...]:

@@ -105,7 +105,8 @@ def _labels(a: FEModel, b: FEModel) -> tuple[Ints, Ints, list[str]]:
 
     def named(model: FEModel) -> Ints:
         if model.labels is not None:
-            return model.labels
+            held: Ints = model.labels
+            return held
         rest = model.n - int(model.boundary or 0)
         modal = np.column_stack([inner - 1 - np.arange(rest), np.zeros(rest)])
         whole: Ints = np.asarray(np.vstack([boundary, modal]), dtype=np.int64)
