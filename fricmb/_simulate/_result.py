@@ -10,6 +10,7 @@ import numpy as np
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._blame import blame, blame_end, jumping_rate, undefined
 from fricmb._simulate._cannot_lock import lock_notes
+from fricmb._simulate._circumstances import circumstances
 from fricmb._simulate._closes import ledger_note
 from fricmb._simulate._digits import digit_notes
 from fricmb._simulate._joined import JoinedRun, island_stats
@@ -64,7 +65,8 @@ def make_solution(
         reason, end = f"{failure}{jumping_rate(mechanics)}", t
     if not ended:
         digits = "".join(f"; {note}" for note in digit_notes(trajectory, None))
-        reason = undefined(mechanics, trajectory, t) or f"{reason}{blame(mechanics, trajectory, t)}{digits}"
+        around = blame(mechanics, trajectory, t) or circumstances(mechanics, trajectory, reason)
+        reason = undefined(mechanics, trajectory, t) or f"{reason}{around}{digits}"
     # of a long run that takes much longer than ending it: Ctrl-C does not wait for it
     later = partial(_sound_part, mechanics, trajectory, stats, span, end)
     raise IntegrationError(f"{method} stopped at t = {t:.10g}: {reason}", t=t, reason=reason, later=later)
