@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import InitVar, dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -110,14 +109,14 @@ class FEModel:
         set_ = object.__setattr__
         for key in OWN:
             set_(self, key, matrices.get(key))
-        set_(self, "parts", MappingProxyType({k: v for k, v in matrices.items() if k not in OWN}))
+        set_(self, "parts", {k: v for k, v in matrices.items() if k not in OWN})
         set_(self, "labels", None if labels is None else labels[kept])
         if self.boundary is not None:
             set_(self, "boundary", int(np.count_nonzero(kept < self.boundary)))
         places, axes = checked_frames(self._label(), self.coordinates, self.frames)
-        set_(self, "coordinates", MappingProxyType(places))
-        set_(self, "frames", MappingProxyType(axes))
-        set_(self, "sets", MappingProxyType(checked_sets(self._label(), self.sets)))
+        set_(self, "coordinates", places)
+        set_(self, "frames", axes)
+        set_(self, "sets", checked_sets(self._label(), self.sets))
         set_(self, "notes", (*self.notes, *notes))
 
     def _matrices(self, kinds: dict[str, str]) -> tuple[dict[str, Sparse], list[str]]:

@@ -225,3 +225,20 @@ def test_industrial_brake():
     (first,) = modes.critical
     assert first.value == pytest.approx(0.404563081, rel=1e-5)
     assert first.frequency / (2 * np.pi) == pytest.approx(2781.626564, rel=1e-6)
+
+
+def test_models_and_bodies_go_into_files(tmp_path):
+    import pickle
+
+    fe = pickle.loads(pickle.dumps(squealer(20)))
+    body = fm.ModalBody.from_fe(
+        "bars", fe, points={"tip": 20}, axes="xy", n_modes=4, scales=SCALES, enrich=[{"mu": 0.4, "omega": 2.0}]
+    )
+    sol = fm.simulate(scene_of(body), t_end=0.2, initial={"velocity": {"bars.mode1": 1.0}})
+    sol.save(tmp_path / "run.npz")
+    again = fm.Solution.load(tmp_path / "run.npz")
+    np.testing.assert_array_equal(again.q, sol.q)
+    kept = again.scene["bars"]
+    np.testing.assert_array_equal(kept.parts["KR"], body.parts["KR"])
+    assert kept.errors == body.errors
+    assert again.scene.parameters["mu"] == 0.4
