@@ -397,6 +397,14 @@ print(fm.analysis.lyapunov(scene, t_end=100.0, intervals=50, progress=False))  #
 found = fm.analysis.poincare_section(sol, ("mass.x.velocity", 0.0), discard=0.3)
 print(found.t, found["mass.x"])
 """,
+    "analysis.NaturalModes": """
+a, b = fm.Body("a", mass=1.0), fm.Body("b", mass=2.0)
+scene = fm.Scene("two", [
+    a, b, fm.Spring("k1", a, axis="x", stiffness=3.0), fm.Spring("k2", a, b, axis="x", stiffness=1.0),
+    fm.Damper("c", b, axis="x", damping=0.1),
+])
+print(scene.modes())
+""",
     "analysis.frequency_response": """
 import sympy
 

@@ -31,6 +31,7 @@ TARGETS = {
     "fricmb.scene._scene:Scene._repr_html_": "fricmb.plot._html:scene_html",
     "fricmb.scene._scene:Scene.draw": "fricmb.plot._animation:draw_scene",
     "fricmb.scene._scene:Scene.equations": "fricmb.equations:scene_equations",
+    "fricmb.scene._scene:Scene.modes": "fricmb.analysis._natural:natural_modes",
     "fricmb.scene._scene:Scene.plan": "fricmb.plan:make_plan",
     "fricmb.solution._differentiated:Differentiated._differentiate": "fricmb.sensitivity:derive",
     "fricmb.solution._signals:Signals._element_axes": "fricmb.field:element_axes",

@@ -5,6 +5,7 @@ from fricmb.analysis._eigenvalues import Eigenvalues, StabilityMap, complex_eige
 from fricmb.analysis._errors import AliasingWarning, AnalysisError
 from fricmb.analysis._losses import EnergyLedger, Phase, energy_ledger
 from fricmb.analysis._modes import ModalEnergy, modal_energy
+from fricmb.analysis._natural import NaturalModes
 from fricmb.analysis._orders import OrderMap, order_map, sliding_speed
 from fricmb.analysis._paths import Path, compiled_force, cycle, path, pull, settling_distance
 from fricmb.analysis._peaks import Peaks, spectral_peaks
@@ -46,6 +47,7 @@ __all__ = [
     "Grazing",
     "Lyapunov",
     "ModalEnergy",
+    "NaturalModes",
     "NeimarkSacker",
     "OrderMap",
     "Path",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,7 +86,17 @@ class Eigenvalues:
         grows: NDArray[np.bool_] = (found.real > limit).any(axis=1)
         return grows
 
+    def _table(self) -> str:
+        """Modes at one value."""
+        lines = [f"{'mode':>4} {'angular frequency':>18} {'growth rate':>14}  moves most"]
+        for i, value in enumerate(self.eigenvalues[0]):
+            most = self.dofs[int(np.argmax(np.abs(self.shapes[0, i])))]
+            lines.append(f"{i:4d} {abs(value.imag):18.8g} {value.real:14.6g}  {most}")
+        return "\n".join(lines)
+
     def __str__(self) -> str:
+        if self.values.size == 1:
+            return self._table()
         lines = [f"{self.eigenvalues.shape[1]} modes over {self.over} = {self.values[0]:g} to {self.values[-1]:g}"]
         for c in self.critical:
             side = "above" if c.unstable_above else "below"
@@ -96,12 +106,22 @@ class Eigenvalues:
         return "\n".join(lines)
 
 
+def _as_it_is(scene: Scene, values: Any) -> tuple[str, list[float]]:
+    """A parameter and the value that the scene has for it."""
+    if values is not None:
+        raise AnalysisError("complex_eigenvalues: values need over=, the name of a parameter")
+    for name, value in scene.parameters.items():
+        if isinstance(value, float):
+            return name, [value]
+    raise AnalysisError("complex_eigenvalues: over is needed for a scene without a parameter that is one number")
+
+
 @answers
 def complex_eigenvalues(
     scene: Scene,
     *,
-    over: str,
-    values: ArrayLike,
+    over: str | None = None,
+    values: ArrayLike | None = None,
     speeds: Mapping[str, float] | None = None,
     highest: float | None = None,
 ) -> Eigenvalues:
@@ -116,10 +136,10 @@ def complex_eigenvalues(
     Parameters
     ----------
     scene : Scene
-    over : str
-        Name in ``scene.parameters``, or of a degree of freedom in ``speeds``.
-    values : (n_values,) array_like
-        Rising or falling.
+    over : str, optional
+        Name in ``scene.parameters``, or of a degree of freedom in ``speeds``.  Default: the scene as it is.
+    values : (n_values,) array_like, optional
+        Rising or falling; goes with ``over``.
     speeds : dict of str to float, optional
         As in :func:`steady_sliding`.
     highest : float, optional
@@ -145,6 +165,8 @@ def complex_eigenvalues(
     """
     who = "complex_eigenvalues"
     checked_scene(who, scene)
+    if over is None:
+        over, values = _as_it_is(scene, values)
     checked_kind(who, "over", over, str, "a name out of scene.parameters or speeds")
     grid = checked_values(who, values)
     top = np.inf if highest is None else positive(who, "highest", highest)

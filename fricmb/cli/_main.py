@@ -115,6 +115,7 @@ def parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_bench(commands)
     _add_figures(commands)
+    _add_export(commands)
     _add_plot(commands)
     _add_compile(commands)
     return top
@@ -268,6 +269,14 @@ def _add_figures(commands: _Commands) -> None:
     sub.add_argument("--t-end", type=float, default=700.0, metavar="T", help="end of the runs (default: %(default)g)")
     sub.add_argument("--case", action="append", metavar="CASE", help="only this case; may be repeated")
     _add_format(sub)
+
+
+def _add_export(commands: _Commands) -> None:
+    sub = _command(commands, "export", "write the signals of a saved run for other programs", "_export:export")
+    sub.add_argument("solution", metavar="FILE", type=Path, help="a solution.npz that fricmb run or sol.save wrote")
+    sub.add_argument("out", metavar="OUT", type=Path, help="file to write: .mat (MATLAB), .h5 (HDF5) or .csv")
+    sub.add_argument("--signals", metavar="NAMES", help="only these, with commas: pad.x,lining.force.x")
+    sub.add_argument("--laws", type=Path, metavar="FILE.py", help="where own laws are defined; this file is run")
 
 
 def _add_plot(commands: _Commands) -> None:

@@ -23,7 +23,7 @@ def plot(options: argparse.Namespace) -> int:
     if kind in NEED_NAME and name is None:
         raise SceneError(f"fricmb plot {kind}: --of is missing: the name of a dof, contact or signal")
     path: Path = options.out or options.solution.with_name(f"{kind}{OWN_FILE.get(kind, '.png')}")
-    sol = fm.Solution.load(options.solution, laws=_laws(options.laws))
+    sol = fm.Solution.load(options.solution, laws=own_laws(options.laws))
     make_folder(path.parent)
     with fm.plot.theme(options.theme):
         _draw(sol, kind, name, path, options)
@@ -31,7 +31,7 @@ def plot(options: argparse.Namespace) -> int:
     return 0
 
 
-def _laws(path: Path | None) -> list[type]:
+def own_laws(path: Path | None) -> list[type]:
     """The laws and elements of a Python file, which is run for that."""
     if path is None:
         return []

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from fricmb.analysis import NaturalModes
     from fricmb.equations._scene import SceneEquations
     from fricmb.plan import Plan
 
@@ -392,6 +393,19 @@ class Scene:
         return scene
 
     # -- facades ------------------------------------------------------------------------------------------------
+    @facade
+    def modes(self) -> NaturalModes:
+        """Natural modes of the structure without friction: frequencies, damping ratios, shapes; printable.
+
+        Springs, matrices, modal bodies and normal-force laws count as they stand at the start; contacts slide freely.
+        With friction: :func:`fricmb.analysis.complex_eigenvalues`.
+
+        Raises
+        ------
+        AnalysisError
+            For a scene with joints.
+        """
+
     @facade
     def equations(self, *, joint_coordinates: bool = False) -> SceneEquations:
         """The equations of motion in SymPy: ``.M``, ``.rhs``, ``.latex()``.

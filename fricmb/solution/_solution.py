@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fricmb._calls import answers
@@ -111,6 +112,22 @@ class Solution(Signals):
         from fricmb.solution._table import table
 
         return table(self, names)
+
+    @answers
+    def export(self, path: str | PathLike[str], names: Iterable[str] | None = None) -> Path:
+        """Write signals for other programs: ".mat" (MATLAB), ".h5" or ".hdf5" (needs h5py), ".csv"; returns the path.
+
+        Transitions stand beside them, but in ".csv".  In MATLAB a name has underscores for its dots: ``pad_x``.
+
+        Parameters
+        ----------
+        path : path
+        names : names, optional
+            As :meth:`columns`.
+        """
+        from fricmb.solution._export import export
+
+        return export(self, path, names)
 
     @answers
     def save(self, path: str | PathLike[str]) -> None:
