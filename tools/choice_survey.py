@@ -83,6 +83,33 @@ def tied(n: int, tie: float, damping: float = 0.0) -> fm.Scene:
     return fm.Scene("tied", [*bodies, drive, *parts, fm.Contact("c", bodies[-1], drive, law=law, normal_force=1.0)])
 
 
+def pad(contacts: int) -> fm.Scene:
+    """A body by its modes, pressed on a disc at many points."""
+    rng, modes = np.random.default_rng(1), max(40, 2 * contacts + 8)
+    shapes = {f"p{i}": rng.normal(size=(2, modes)) for i in range(contacts)}
+    omega = 2.0 * np.pi * np.linspace(300.0, 6000.0, modes)
+    body = fm.ModalBody("pad", frequencies=omega, damping_ratios=0.005, shapes=shapes, axes="xy")
+    disc, law = fm.Driven("disc", velocity={"x": 0.02, "y": 0.003}), laws.Coulomb(mu_s=0.6, mu_k=0.4)
+    rubs = [fm.Contact(f"c{i}", body.point(f"p{i}"), disc, law=law, normal_force=20.0) for i in range(contacts)]
+    return fm.Scene("pad", [body, disc, *rubs])
+
+
+def elements(contacts: int, nodes: int = 40) -> fm.Scene:
+    """A bar of linear finite elements, whose mass matrix couples; some of its nodes rub."""
+    unit = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    M, K = np.zeros((2, nodes, nodes))
+    for e in range(nodes - 1):
+        M[e : e + 2, e : e + 2] += (np.abs(unit) + np.eye(2)) / (6.0 * nodes)
+        K[e : e + 2, e : e + 2] += unit * nodes
+    K[0, 0] += 5.0
+    bodies, drive = [fm.Body(f"x{i}", mass=1e-3 / nodes) for i in range(nodes)], fm.Driven("belt", velocity={"x": 0.05})
+    matrices = fm.MatrixElement("bar", [f"x{i}.x" for i in range(nodes)], M=M, C=1e-3 * K + 0.05 * M, K=K)
+    law = laws.Stribeck(mu_s=1.2, mu_k=0.8, v_s=0.1)
+    places = np.linspace(nodes // 6, nodes - 1, contacts).round().astype(int)
+    rubs = [fm.Contact(f"c{i}", bodies[i], drive, law=law, normal_force=1.0 / contacts) for i in places]
+    return fm.Scene("bar", [*bodies, drive, matrices, *rubs])
+
+
 def belt(law: fm.FrictionLaw) -> fm.Scene:
     """The mass on a belt under any law."""
     scene: fm.Scene = models.belt_oscillator(law=law)
@@ -122,6 +149,9 @@ def scenes() -> dict[str, tuple[Callable[[], fm.Scene], float]]:
         "beam, 60, 4 contacts": (partial(beam, 60, 4), 20.0),
         "beam, 60, damped": (partial(beam, 60, 1, 0.05), 20.0),
     }
+    found |= {f"pad, {n}": (partial(pad, n), 1e-3) for n in (4, 8, 12, 16, 24, 36)}
+    found |= {f"elements, {n}": (partial(elements, n), 1.0) for n in (4, 8, 12, 16, 24, 36)}
+    found |= {f"blocks, Stribeck, {n}": (partial(falling, n), 20.0) for n in (12, 16, 24, 36)}
     return found
 
 

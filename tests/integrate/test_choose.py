@@ -51,7 +51,7 @@ def one_of_two(stiffness, *, damping):
     ])  # fmt: skip
 
 
-@pytest.mark.parametrize(("damping", "method"), [(0.0, "taylor"), (0.05, "collocation")])
+@pytest.mark.parametrize(("damping", "method"), [(0.0, "taylor"), (0.3, "radau")])
 def test_vibration_beside_a_law_of_slip_speed_costs_no_accuracy(damping, method):
     """Undamped at k = 1e4 exact structure, whose steps hold whole periods, erred by 5e-3 at rtol 1e-6."""
     scene, t = one_of_two(1e4, damping=damping), np.linspace(0.0, 10.0, 101)
@@ -72,47 +72,58 @@ def tied(stiffness):
     return fm.Scene("tied", [*bodies, belt, *parts])
 
 
+ONE, FEW, SERIES = "one contact under constant friction", "few contacts on modes", "Taylor steps"
+STIFF, OTHER = "40 times as fast as what rings", "needs a coefficient of friction and a constant normal force"
+
+
 @pytest.mark.parametrize(
-    ("scene", "rtol", "method", "why"),
+    ("scene", "method", "why"),
     [
-        (row(3, COULOMB, contacts=1), 1e-6, "collocation", "one contact under constant friction"),
-        (row(2, COULOMB, axes="xy"), 1e-6, "taylor", "2 contacts under constant friction"),
-        (row(7, STRIBECK, axes="xy"), 1e-9, "taylor", "7 contacts with friction of slip speed"),
-        (row(2, OVAL, axes="xy"), 1e-6, "collocation", r"few port rows \(4\)"),
-        (tied(1e6), 1e-6, "collocation", r"few port rows \(2\)"),
-        (tied(1e3), 1e-6, "taylor", "2 contacts under constant friction"),
-        (row(1, STRIBECK), 1e-6, "taylor", "one contact with friction of slip speed"),
-        (row(4, STRIBECK, contacts=1), 1e-6, "taylor", "one contact with friction of slip speed"),
-        (fm.models.brake4dof("2", law=STRIBECK), 1e-6, "taylor", "one contact with friction of slip speed"),
-        (one_of_two(1e4, damping=0.0), 1e-6, "taylor", "one contact with friction of slip speed"),
-        (one_of_two(1e4, damping=0.1), 1e-6, "collocation", r"few port rows \(1\)"),
-        (one_of_two(1e8, damping=0.0), 1e-6, "collocation", r"few port rows \(1\)"),
-        (row(40, STRIBECK, contacts=1), 1e-6, "taylor", "one contact on 40 degrees of freedom"),
-        (row(40, COULOMB, contacts=1), 1e-6, "collocation", "one contact under constant friction"),
-        (row(120, COULOMB, contacts=1), 1e-6, "taylor", "one contact on 120 degrees of freedom"),
-        (row(2, STRIBECK), 1e-6, "taylor", "2 contacts with friction of slip speed"),
-        (row(2, STEEP), 1e-6, "taylor", "friction of slip speed"),
-        (row(6, STRIBECK), 1e-8, "taylor", "friction of slip speed"),
-        (row(3, OVAL, axes="xy"), 1e-6, "collocation", r"few port rows \(6\)"),
-        (row(3, COULOMB, axes="xy", normal_force=1.0 + 0.2 * fm.t), 1e-4, "bdf", "9 port rows, more than 4 at this"),
-        (row(3, COULOMB, axes="xy", normal_force=1.0 + 0.2 * fm.t), 1e-6, "collocation", r"few port rows \(9\)"),
-        (row(6, OVAL, axes="xy"), 1e-3, "collocation", r"few port rows \(12\)"),
-        (row(7, OVAL, axes="xy"), 1e-4, "bdf", "14 port rows, more than 12 at this tolerance"),
-        (row(3, OVAL, axes="xy"), 1e-8, "collocation", r"few port rows \(6\)"),
-        (row(20, STRIBECK, contacts=4), 1e-6, "taylor", "4 contacts on 20 degrees of freedom"),
-        (row(9, OVAL, axes="xy"), 1e-9, "bdf", "18 port rows, more than 16"),
-        (row(6, COULOMB), 1e-6, "taylor", "6 contacts under constant friction"),
-        (row(1, fm.laws.TanhRegularised(mu=1.0, v_reg=1e-2)), 1e-6, "radau", "regularised or bristle law"),
-        (row(1, fm.laws.Dahl(mu=1.0, sigma0=100.0)), 1e-6, "radau", "regularised or bristle law"),
-        (row(1, fm.laws.Tabulated(speed=[0.0, 0.5, 2.0], mu=[1.2, 1.0, 1.0])), 1e-6, "bdf", "by table"),
-        (row(1, COULOMB, normal_force=1.0 + 0.2 * fm.t), 1e-6, "collocation", "few port rows"),
-        (row(1, STRIBECK, normal_force=1.0 + 0.2 * fm.t), 1e-6, "bdf", "normal force that is prescribed"),
+        (row(3, COULOMB, contacts=1), "collocation", ONE),
+        (row(40, COULOMB, contacts=1), "collocation", ONE),
+        (row(120, COULOMB, contacts=1), "taylor", SERIES),
+        (row(2, COULOMB, axes="xy"), "taylor", SERIES),
+        (row(7, STRIBECK, axes="xy"), "taylor", SERIES),
+        (row(1, STRIBECK), "taylor", SERIES),
+        (row(4, STRIBECK, contacts=1), "taylor", SERIES),
+        (row(2, STEEP), "taylor", SERIES),
+        (row(20, STRIBECK, contacts=4), "taylor", SERIES),
+        (row(40, STRIBECK, contacts=1), "taylor", SERIES),
+        (row(6, COULOMB), "taylor", SERIES),
+        (fm.models.brake4dof("2", law=STRIBECK), "taylor", SERIES),
+        (tied(1e3), "radau", STIFF),
+        (tied(1e6), "radau", STIFF),
+        (one_of_two(1e4, damping=0.0), "taylor", SERIES),
+        (one_of_two(1e8, damping=0.0), "radau", STIFF),
+        (row(2, OVAL, axes="xy"), "radau", "alike in all directions"),
+        (row(1, fm.laws.TanhRegularised(mu=1.0, v_reg=1e-2)), "radau", OTHER),
+        (row(1, fm.laws.Dahl(mu=1.0, sigma0=100.0)), "radau", OTHER),
+        (row(1, COULOMB, normal_force=1.0 + 0.2 * fm.t), "radau", OTHER),
+        (row(1, fm.laws.Tabulated(speed=[0.0, 0.5, 2.0], mu=[1.2, 1.0, 1.0])), "radau", "must be formulas"),
     ],
 )
-def test_the_choice_and_why(scene, rtol, method, why):
-    sol = fm.simulate(scene, t_end=0.1, rtol=rtol)
+def test_the_choice_and_why(scene, method, why):
+    sol = fm.simulate(scene, t_end=0.1, rtol=1e-6)
     assert sol.stats.method == method
     assert re.search(why, sol.stats.why)
+
+
+def test_a_row_that_dampers_calm_is_left_to_implicit_steps():
+    """Pulled slowly, twenty blocks took 92 000 Taylor steps."""
+    blocks, hand = [fm.Body(f"p{i}", mass=0.01) for i in range(20)], fm.Driven("hand", velocity={"x": 1e-3})
+    parts = [*blocks, hand, fm.Spring("h", blocks[0], hand, axis="x", stiffness=1e4)]
+    for i in range(19):
+        pair = blocks[i], blocks[i + 1]
+        parts += [fm.Spring(f"s{i}", *pair, axis="x", stiffness=1e4), fm.Damper(f"d{i}", *pair, axis="x", damping=20.0)]
+    law = fm.laws.Coulomb(mu_s=1.0)
+    parts += [fm.Contact(f"c{i}", block, law=law, normal_force=1.0) for i, block in enumerate(blocks)]
+    sol = fm.simulate(fm.Scene("peel", parts), t_end=21.42)
+    assert sol.stats.method == "radau"
+    assert sol.stats.n_steps < 2000
+    # what holds the block behind adds up: the front has come to block k when the hand is at k (k + 1) / 2 / 1e4
+    first = {e.contact: e.t for e in reversed(sol.events) if e.kind == "slip"}
+    for k in range(1, 20):
+        assert first[f"c{k}"] == pytest.approx((k * (k + 1) / 2 + k + 1) / 1e4 / 1e-3, rel=0.02)
 
 
 def test_redundant_contacts_go_to_the_general_method():
@@ -120,12 +131,12 @@ def test_redundant_contacts_go_to_the_general_method():
     law = fm.laws.Coulomb(mu_s=0.5)
     pinched = fm.Scene("pinched", [held, *(fm.Contact(f"pad{i}", held, law=law, normal_force=1.0) for i in range(2))])
     sol = fm.simulate(pinched, t_end=0.1)
-    assert sol.stats.method == "bdf"
-    assert "redundant" in sol.stats.why
+    assert sol.stats.method == "radau"
+    assert "share their forces" in sol.stats.why
 
 
 def test_a_run_that_stops_is_done_by_the_general_method_and_says_so(monkeypatch):
-    scene = row(2, OVAL, axes="xy")
+    scene = plate(40, 2)
     good = fm.simulate(scene, t_end=5.0, method="radau")
     whole = Collocation.integrate
 
@@ -160,17 +171,15 @@ TABLE = fm.laws.Tabulated(speed=[0.0, 0.5, 2.0], mu=[1.2, 1.0, 1.0])
     ("modes", "law", "method"),
     [
         (20, COULOMB, "taylor"), (40, COULOMB, "collocation"), (500, COULOMB, "collocation"),
-        (120, STRIBECK, "taylor"), (120, TABLE, "bdf"), (600, TABLE, "bdf"),
+        (120, STRIBECK, "taylor"), (120, TABLE, "radau"), (600, TABLE, "radau"),
     ],
 )  # fmt: skip
 def test_many_modes_under_few_contacts(modes, law, method):
     sol = fm.simulate(plate(modes, 3, law), t_end=0.5)
     assert sol.stats.method == method
-    if method == "bdf":
-        assert "transitions located" in sol.stats.why
 
 
-@pytest.mark.parametrize(("stiffness", "method"), [(1e10, "collocation"), (1e12, "bdf")])
+@pytest.mark.parametrize(("stiffness", "method"), [(1e10, "collocation"), (1e12, "radau")])
 def test_modes_whose_eigenproblem_leaves_no_digits_are_left_to_steps(stiffness, method):
     scene = stiff_pair(stiffness)
     sol = fm.simulate(scene, t_end=50.0, rtol=1e-6)

@@ -7,19 +7,19 @@ import math
 import numpy as np
 
 from fricmb.integrate.collocation.exact_room import free_blocks
+from fricmb.integrate.collocation.one_contact.prepare import is_single
+from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_EXPRESSION, Problem
+from fricmb.integrate.problem import LAW_CONSTANT, Problem
 
-#: Port rows up to which steps are cheaper than those of BDF and Radau: under coefficients that vary, under constant
-#: friction, where all of them are friction's, and under constant friction at tight tolerances or where there are far
-#: more degrees of freedom.  With 6 to 12 rows of friction (elliptic, stacked in the plane) collocation took 0.3 to 0.9
-#: of the time of the others at 1e-4 and 1e-6, 0.9 to 1.3 at 1e-2; with 8 to 18 rows of which a third or a half are
-#: normal forces that vary 0.5 to 0.7 at 1e-6, 0.8 to 1.2 at 1e-4, 1.7 to 2.4 at 1e-2.
-VARYING_ROWS, FEW_ROWS, FRICTION_ROWS, MOST_ROWS = 2, 4, 12, 16
-#: Tolerance that counts as tight.
-TIGHT = 1e-5
-#: Degrees of freedom per port row beyond which condensing to the ports pays at any tolerance, and largest structure.
-WIDE, LARGEST = 5, 400
+#: Degrees of freedom up to which one contact under constant friction has kernels of its own, which keep some twenty
+#: matrices of that size, and up to which if the structure is a narrow band.  In all, with what is made ready before: a
+#: bar of 200, 400 and 1000 modes 0.1, 0.5 and 4 s, by Taylor steps 0.9, 3 s and over a minute; a dense structure of
+#: 200 degrees of freedom 0.2 s and 8 s; 200 masses in a row 0.06 and 0.04 s.
+FULL_MATRICES, BAND = 1600, 100
+#: Port rows up to which a body given by modes is left to exact structure, and modes from which on also where its
+#: contacts slip in one direction: 3 to 8 contacts in the plane took ``radau`` 3 to 4.5 times as long.
+MOST_ROWS, MANY = 16, 30
 
 #: Ratio of squared frequencies above which an eigenproblem leaves too few digits of the slow ones, and from which what
 #: is left of them is round-off of zero.
@@ -66,33 +66,52 @@ def port_rows(problem: Problem) -> int:
     return problem.m + problem.n_v + int(problem.elements.f_start[-1])
 
 
-def against(problem: Problem, rtol: float) -> str | None:
-    """Why another integrator is to be preferred for a problem that collocation takes, or None.
+def takes_one_contact(problem: Problem) -> bool:
+    """Whether the kernels for one contact under constant friction are the fastest there are."""
+    if not is_single(problem):
+        return False
+    return problem.n <= (FULL_MATRICES if packed_of(problem).structure.half <= 0 else BAND)
 
-    Measured over some sixty scenes, see docs/explanation/collocation.md.
+
+def takes_few_on_modes(problem: Problem) -> bool:
+    """Whether several contacts under constant friction rub on bodies whose modes nothing else couples."""
+    contacts, rows = problem.contacts, port_rows(problem)
+    if not (problem.n_c > 1 and rows == problem.m <= MOST_ROWS and problem.n <= FULL_MATRICES):
+        return False
+    if (contacts.law != LAW_CONSTANT).any() or (problem.n < MANY and rows == problem.n_c):
+        return False
+    inside = slice(0, problem.n), slice(0, problem.n)
+    parts = [problem.linear.csr(name) for name in ("M", "Kx", "Cx")]
+    return problem.n > rows and all(part.block(*inside).is_diagonal() for part in parts)
+
+
+def against(problem: Problem, rtol: float) -> str | None:
+    """Why exact structure does not give the digits that are asked for, or None."""
+    return too_far_apart(problem) or once_per(problem.linear, ("calm and fast", rtol), lambda: _calm(problem, rtol))
+
+
+#: Damping ratio of a mode that is calm before a slower one has moved, and how many times as fast it is if it matters.
+CALM, OFTEN = 0.1, 100.0
+#: Beside such modes, the tolerance down to which exact structure is right, and the damping ratio from which on they
+#: creep back to rest.
+BEARS_CALM_MODES, CREEPS = 1e-6, 0.99
+
+
+def _calm(problem: Problem, rtol: float) -> str | None:
+    """What stands against exact structure beside modes that come to rest at once, or None.
+
+    Measured on pairs and rows of masses, some of them tied by 1e4 to 1e6 rad/s: what friction leaves in such modes at
+    each turn is beyond the polynomials of a step, 1 rtol at 1e-6, 100 at 1e-8, 10 000 at 1e-10; and where they creep
+    back without swinging, steps follow them, thousands where implicit ones took 150.
     """
-    contacts = problem.contacts
-    if problem.n_c == 0:
-        return "no contact"
-    if problem.n_z or np.any(contacts.law == LAW_SMOOTH):
-        return "a regularised or bristle law, whose own fast states hold the steps"
-    if problem.bends.table.address.size:
-        return "a force that bends with the motion, where steps of the general method end"
-    if np.any(contacts.piecewise):
-        return "a friction law by table, which polynomials through a step do not follow"
-    if np.any(contacts.normal == NORMAL_EXPRESSION) and np.any(contacts.law != LAW_CONSTANT):
-        return "a normal force that is prescribed, under a coefficient that varies"
-    rows, n = port_rows(problem), problem.n
-    if n > LARGEST:
-        return f"{n} degrees of freedom, more than {LARGEST}"
-    limit = FRICTION_ROWS if rows == problem.m else FEW_ROWS
-    if np.any(contacts.law != LAW_CONSTANT):
-        limit = VARYING_ROWS
-    elif rtol <= TIGHT:
-        limit = MOST_ROWS
-    if n >= WIDE * rows:
-        limit = MOST_ROWS
-    if rows > limit:
-        loose = " at this tolerance" if limit in (FEW_ROWS, FRICTION_ROWS) else ""
-        return f"{rows} port rows, more than {limit}{loose}"
-    return None
+    modes = free_blocks(problem)
+    omega = np.sqrt(np.abs(modes.w2))
+    if not (omega.size and modes.d.any()):
+        return None
+    zeta = 0.5 * modes.d / np.maximum(omega, 1e-300)
+    limit = OFTEN * float(omega[zeta < CALM].max(initial=omega.min(initial=math.inf)))
+    if not np.maximum(omega, np.abs(modes.d)).max() > limit > 0.0:
+        return None
+    if rtol >= BEARS_CALM_MODES and zeta[omega > limit].max(initial=0.0) < CREEPS:
+        return None
+    return f"modes that come to rest at once, more than {OFTEN:.0f} times as fast as all that vibrate"
