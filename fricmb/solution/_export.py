@@ -46,7 +46,7 @@ def _write_mat(file: Path, signals: dict[str, Any], sol: Signals) -> None:
     plain = {name: name.replace(".", "_").replace(" ", "_")[:_LONGEST] for name in signals}
     if len(set(plain.values())) < len(plain):
         raise FricmbError("export: names of signals are the same without dots; choose some of them with names=")
-    table = {plain[name]: np.asarray(values, dtype=float)[:, None] for name, values in signals.items()}
+    table: dict[str, Any] = {plain[name]: np.asarray(values, dtype=float)[:, None] for name, values in signals.items()}
     texts = {key: np.array(events[key], dtype=object)[:, None] for key in ("contact", "kind")}
     table["events"] = {"t": np.array(events["t"])[:, None], **texts}
     table["names"] = np.array(list(signals), dtype=object)[:, None]
