@@ -136,7 +136,7 @@ def is_linear(y: State) -> bool:
     linear = y.lam.shape[0] == 0
     for c in range(y.mode.shape[0]):
         linear = linear and y.mode[c] != SETTING_OUT
-    return linear
+    return bool(linear)
 
 
 @block

@@ -181,13 +181,13 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
 @kernel
 def has_joints(y: State) -> bool:
     """Whether there are constraints."""
-    return y.lam.shape[0] > 0
+    return bool(y.lam.shape[0] > 0)
 
 
 @kernel
 def order_of(y: State, st: Stages) -> int:
     """The power of the step that its estimated error goes with."""
-    return st.tab.c.shape[0] + (1 if has_joints(y) else 0)
+    return int(st.tab.c.shape[0] + (1 if has_joints(y) else 0))
 
 
 @kernel

@@ -8,6 +8,8 @@ derivatives differ by (Woodbury).
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
@@ -104,7 +106,7 @@ def spread_of_stages(mech: Mech, turns: Turns, F: Floats2, g: Floats2) -> None:
 
 
 @kernel
-def across(mech: Mech, turns: Turns, k: int, x: Floats | Complexes) -> complex:
+def across(mech: Mech, turns: Turns, k: int, x: Floats | Complexes) -> Any:
     """The turn of row k in a change x (size,) of the unknowns of a stage: force across the slip."""
     c = turns.contact[k]
     place, turn = force_place(mech, c), 0.0 * x[0]
