@@ -37,10 +37,14 @@ modes = fm.measure.identify(frfs)
 EXAMPLES = {
     "fe.FEModel": _FE + "print(fe)\nprint(fe.check())\n",
     "fe.read": """
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
-np.savez("model.npz", M=np.eye(2), stiff_r=[0, 1, 1], stiff_c=[0, 0, 1], stiff_v=[2.0, -1.0, 1.0])
-fe = fm.fe.read("model.npz", names={"M": "M", "K": "stiff"}, units="t-mm-s")
+path = Path(tempfile.mkdtemp()) / "model.npz"
+np.savez(path, M=np.eye(2), stiff_r=[0, 1, 1], stiff_c=[0, 0, 1], stiff_v=[2.0, -1.0, 1.0])
+fe = fm.fe.read(path, names={"M": "M", "K": "stiff"}, units="t-mm-s")
 print(fe)
 print(fe.frequencies(2))
 """,
@@ -53,11 +57,15 @@ right = fm.fe.FEModel(M=np.eye(2), K=spring, labels=[(2, 1), (3, 1)], name="righ
 print(fm.fe.join(left, right))
 """,
     "measure.read": """
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 t = np.arange(200) * 0.01
-np.savetxt("run.csv", np.column_stack([t, np.sin(9.0 * t)]), delimiter=",", header="time,force [N]", comments="")
-found = fm.measure.read("run.csv")
+path = Path(tempfile.mkdtemp()) / "run.csv"
+np.savetxt(path, np.column_stack([t, np.sin(9.0 * t)]), delimiter=",", header="time,force [N]", comments="")
+found = fm.measure.read(path)
 print(found)
 print(found.signals[0].name, found.signals[0].unit, found.signals[0].y.max())
 """,
