@@ -1,6 +1,7 @@
 """What strangers meet: one version everywhere, lowest versions that are said, what they are told to run."""
 
 import logging
+import os
 import re
 import subprocess
 import sys
@@ -72,3 +73,21 @@ def test_the_pages_of_a_project_are_there_and_the_checks_call_the_script():
     runs = {name: [step["run"] for step in job["steps"] if "run" in step] for name, job in jobs.items()}
     assert runs == {"all": [".ci/run"], "quick": [".ci/run quick"]}
     subprocess.run(["bash", "-n", ROOT / ".ci" / "run"], check=True)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "passed"),
+    [([], 1), (["tests"], 2), (["-m", "slow"], 1), (["tests/test_one.py"], 2), (["-k", "_"], 2)],
+)
+def test_pytest_alone_is_the_quick_part(tmp_path, arguments, passed):
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "pyproject.toml").write_text((ROOT / "pyproject.toml").read_text())
+    (tmp_path / "tests" / "conftest.py").write_text((ROOT / "tests" / "conftest.py").read_text())
+    marked = "import pytest\n@pytest.mark.slow\ndef test_slow(): pass\ndef test_quick(): pass\n"
+    (tmp_path / "tests" / "test_one.py").write_text(marked)
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *arguments]
+    env = {name: held for name, held in os.environ.items() if not name.startswith(("PYTEST_", "FRICMB_"))}
+    out = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=300).stdout
+    assert re.search(rf"\b{passed} passed", out), out
+    assert ("without slow tests" in out) == (not arguments)
+    assert ("2 workers" in out) == (not arguments), out
