@@ -15,7 +15,7 @@ from fricmb.audit._gather import LIMIT, Gathered
 from fricmb.audit._points import Points
 from fricmb.audit._result import Audit
 from fricmb.audit._transitions import Changes
-from fricmb.audit._units import ROUND_OFF, Units, at_rest, units_of
+from fricmb.audit._units import DENSE, ROUND_OFF, Units, at_rest, units_of
 from fricmb.audit._weak import NODES, Weak
 from fricmb.errors import SceneError, shown
 from fricmb.field._statements import Statements
@@ -27,8 +27,6 @@ from fricmb.integrate.trajectory import Samples
 FIXED = 1e-3
 #: Steps that are looked at: at most so many, and so many numbers at the nodes within them.
 STEPS, NUMBERS, STEPS_OF_MECHANISMS = 250, 6_000_000, 60
-#: A dense output may be off by so many times more than the ends of steps: in many methods it is of a lower order.
-DENSE = 10.0
 
 
 def audit(sol: Any, *, rtol: float | None = None, atol: Any = None, seed: int = 0) -> Audit:

@@ -14,7 +14,7 @@ from fricmb.audit._gather import Gathered
 from fricmb.audit._points import row_unit
 from fricmb.audit._release import _matrix
 from fricmb.audit._transitions import opening
-from fricmb.audit._units import Units
+from fricmb.audit._units import DENSE, Units
 from fricmb.field._contacts import Rubs
 from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats
@@ -71,7 +71,8 @@ def _one(
     unit = float(row_unit(found.rows[k][0], units.v, (1,))[0])
     size = np.maximum(np.abs(change[1:]), np.abs(np.cumsum(stated)))
     relative = np.abs(np.diff(change) - stated) / (size + 1e-300)
-    gathered.add("growth of slip", relative * speed / (2.0 * unit + 1e-300), at[1:], law.name)
+    # the times lie within steps
+    gathered.add("growth of slip", relative * speed / (2.0 * DENSE * unit + 1e-300), at[1:], law.name)
 
 
 def _belt(s: Statements, k: int, at: Floats, sample: Any) -> Floats:

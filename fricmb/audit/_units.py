@@ -18,6 +18,8 @@ from fricmb.integrate.trajectory import Samples
 ROUND_OFF = 4e-15
 #: What moves by less than this share of what friction could do in a step rests.
 RESTS = 1e-3
+#: A dense output may be off by so many times more than the ends of steps: in many methods it is of a lower order.
+DENSE = 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
