@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from fricmb.integrate import OneStepMethod
@@ -97,3 +98,16 @@ def test_more_contacts_set_out_than_directions_are_found_for():
 def test_few_contacts_on_many_modes_stay_condensed():
     assert not in_a_band(build(pad(4, 400)).problem, None)
     assert not in_a_band(build(pad(18, 44)).problem, 4)  # an even number of stages
+
+
+def test_one_contact_whose_law_has_many_states_is_condensed():
+    """A plate as good as fixed, whose joint of twenty sliders is shaken: in a band it stopped."""
+    n = 20
+    law = fm.laws.Iwan(stiffness=(1.0,) * n, limits=tuple((np.arange(n) + 0.5) / n), corner=1e-3)
+    plate, shaker = fm.Body("plate", mass=1e9), fm.Driven("shaker", position={"x": 0.9 * sympy.sin(6.0 * fm.t)})
+    scene = fm.Scene("joint", [plate, shaker, fm.Contact("bolt", plate, shaker, law=law, normal_force=1.0)])
+    period = np.pi / 3.0
+    sol = fm.simulate(scene, t_end=2.0 * period, rtol=1e-5, method="radau", t_eval=[period, 2.0 * period])
+    limits = (np.arange(n) + 0.5) / n
+    loss = np.sum(4.0 * limits * np.maximum(0.9 - limits, 0.0))
+    assert np.diff(sol.energy.friction_loss)[0] == pytest.approx(loss, rel=1e-2)
