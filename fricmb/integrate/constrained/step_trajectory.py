@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.constrained.instants import instants
-from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.constrained.problem_structs import masses, mech_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
-from fricmb.integrate.output.step_energies import integrate_between, integrate_powers
+from fricmb.integrate.output.step_energies import integrate_between, integrate_powers, scale_of
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
@@ -134,8 +134,9 @@ class StepTrajectory(Trajectory):
 
     @cached_property
     def _scale(self) -> Floats:
-        scale: Floats = np.abs(self._said).sum(axis=0)
-        return scale
+        n = self.problem.n
+        moved = 0.5 * np.max(self._values[:, -1, n : 2 * n] ** 2 @ masses(mechanism_of(self.problem)), initial=0.0)
+        return scale_of(self._said, moved, self._rtol)
 
     @cached_property
     def _spent(self) -> Floats:

@@ -16,7 +16,7 @@ from fricmb.integrate.model.instant_workspace import InstantWorkspace, instant_w
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.hermite_output import sample_rows
 from fricmb.integrate.output.recorder import AFTER, INSIDE
-from fricmb.integrate.output.step_energies import integrate_between, integrate_powers
+from fricmb.integrate.output.step_energies import integrate_between, integrate_powers, scale_of
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Codes2, Floats, Floats2, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
@@ -143,8 +143,9 @@ class RowTrajectory(Trajectory):
 
     @cached_property
     def _scale(self) -> Floats:
-        scale: Floats = np.abs(np.diff(self._recorded, axis=0)).sum(axis=0)
-        return scale
+        n, structure = self.problem.n, packed_of(self.problem).structure
+        moved = 0.5 * np.max(self._values[:, 1 + n : 1 + 2 * n] ** 2 @ structure.M[structure.own], initial=0.0)
+        return scale_of(np.diff(self._recorded, axis=0), moved, self.rtol)
 
     @cached_property
     def _spent(self) -> Floats:

@@ -19,6 +19,8 @@ Powers = Callable[[Floats, Ints], Floats]
 NODES, HALVINGS = 4, 8
 #: Part of rtol, and of the largest energy that is exchanged, to which an interval is known.
 PART = 1e-2
+#: Round-off of an energy, relative to the kinetic energy.
+ROUND_OFF = 1e-16
 
 
 def integrate_powers(
@@ -58,6 +60,15 @@ def integrate_powers(
         low, high = np.concatenate([low[open_], middle[open_]]), np.concatenate([middle[open_], high[open_]])
         value = np.concatenate([half[open_] for half in halves])
     return total
+
+
+def scale_of(said: Floats, moved: float, rtol: float) -> Floats:
+    """Size of each energy in a run (w,), from what its steps say (k, w).
+
+    What is below the round-off of the kinetic energy, ``moved``, is none: a body that turns freely exchanges nothing
+    else, and would be looked at ever more finely.
+    """
+    return np.maximum(np.abs(said).sum(axis=0), ROUND_OFF * moved / (PART * rtol))
 
 
 def _gauss(powers: Powers, low: Floats, high: Floats, step: Ints) -> Floats:
