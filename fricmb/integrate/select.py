@@ -42,7 +42,8 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
         series = GuardedTaylor()
         reason = series.refuses(problem)
         if reason is None:
-            return series, f"{problem.n_c} contact(s) whose friction follows formulas: Taylor steps, local corrections"
+            contacts = "one contact" if problem.n_c == 1 else f"{problem.n_c} contacts"
+            return series, f"{contacts} whose friction follows formulas: Taylor steps, local corrections"
     return Radau(), f"the general method: {reason}"
 
 

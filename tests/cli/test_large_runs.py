@@ -98,6 +98,7 @@ def test_the_end_of_a_job_keeps_what_was_computed(tmp_path, how):
 
 ENDED = """
 import os, pathlib, signal, sys, threading, time
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # what is started by nohup is told to ignore it
 import fricmb as fm
 from fricmb.cli import main
 folder = pathlib.Path(sys.argv[1])

@@ -100,7 +100,7 @@ def scene_of(law, d):
         (Driving(), 1, "Contact 'sole': its law Driving drives the slip: the force at v = "),
         (Driving(), 2, "its law Driving drives the slip"),
         (Singular(), 1, "its law Singular is not finite at v = "),
-        (Exploding(), 1, r"its law Exploding is not finite at v = \[1e\+300\]"),
+        (Exploding(), 1, r"its law Exploding is not finite at v = \[1000"),
         (OneShort(), 2, "OneShort: define_force must return 2 expressions for this contact, got 1"),
         (RateMissing(), 1, "RateMissing: define_rate must return 2 expressions for this contact, got 1"),
         (Compiled(function=too_much), 1, r"Compiled writes more than the 3 numbers \[force, rates"),

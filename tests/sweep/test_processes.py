@@ -178,6 +178,7 @@ SWEEP = """
     import os, signal, sys, time
     # as in the background of a shell: Ctrl-C is ignored there
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # what is started by nohup is told to ignore it
     import fricmb as fm
     from fricmb._sweep import _processes, _workers
 

@@ -93,7 +93,7 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
             st.w[i, :] = 0.0
             st.w[i, row] = 1.0
             solve_system(mech, st, i)
-            turns.answer[k, i, :] = st.w[i]
+            turns.answer[k, i] = st.w[i]
             for q in range(near):
                 turn = across(mech, turns, q, st.w[i])
                 for j in range(s):

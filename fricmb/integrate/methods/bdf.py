@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from fricmb.integrate.methods.backward_differences import differences
 from fricmb.integrate.methods.bdf_stability import guard_of, spectrum
 from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.one_step import run_one_step
-from fricmb.integrate.methods.radau import in_a_band
+from fricmb.integrate.methods.radau import condensed_after, in_a_band, stopped_in_a_band
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import drive
@@ -82,7 +82,17 @@ class Bdf(Integrator):
             from fricmb.integrate import constrained
 
             count = self.stages or constrained.MULTISTEP_STAGES
-            return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory, multistep=True)
+            options: dict[str, Any] = {"progress": progress, "memory": memory}
+            run = constrained.run_mechanism(problem, start, t_end, tolerance, count, **options, multistep=True)
+            if not stopped_in_a_band(problem, run):
+                return run
+            return condensed_after(run, self._condensed(problem, start, t_end, tolerance, **options))
+        return self._condensed(problem, start, t_end, tolerance, progress=progress, memory=memory)
+
+    def _condensed(
+        self, problem: Problem, start: Start, t_end: float, tolerance: Tolerance, *,
+        progress: Callable[[float], None] | None, memory: float | None,
+    ) -> Trajectory:  # fmt: skip
         formula = radau(stages_for(problem, tolerance.rtol, self.stages))
         if np.any(problem.contacts.law == LAW_SMOOTH):
             # a steep law turns the force within a step, and with it the power, which no error test of BDF watches:

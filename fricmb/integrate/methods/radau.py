@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 from fricmb.integrate.integrator import Tolerance, odd_stages
 from fricmb.integrate.methods.one_step import OneStepMethod
 from fricmb.integrate.methods.run_setup import stages_for
 from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
 
 #: Rows of contacts (slip, normal forces that vary) below which steps are condensed to them.  States of laws
 #: count beside them alone: a heavy plate on one joint of twenty sliders, which hardly moves, stops in a band.
-FEW = 8
+FEW = 16
 
 
 def in_a_band(problem: Problem, stages: int | None) -> bool:
@@ -27,6 +28,18 @@ def in_a_band(problem: Problem, stages: int | None) -> bool:
     from fricmb.integrate.constrained import has_many_rows
 
     return has_many_rows(problem)
+
+
+def stopped_in_a_band(problem: Problem, run: Trajectory) -> bool:
+    """Whether a scene without joints could not be run in a band, as where contacts are nearly redundant."""
+    return problem.mechanism is None and run.failure is not None and not run.of_scene and ended() is None
+
+
+def condensed_after(stopped: Trajectory, run: Trajectory) -> Trajectory:
+    """The run by steps that are condensed to the contacts, which says that those in a band stopped."""
+    why = f"steps in a band stopped at t = {stopped.end.t:.6g}: {stopped.failure}; condensed ones did the run"
+    run.counters = replace(run.counters, notes=(*run.counters.notes, why))
+    return run
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +83,11 @@ class Radau(OneStepMethod):
             from fricmb.integrate import constrained
 
             count = self.stages or constrained.stages_for(problem, tolerance.rtol)
-            return constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
+            run = constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
+            if not stopped_in_a_band(problem, run):
+                return run
+            options: dict[str, Any] = {"progress": progress, "memory": memory}
+            return condensed_after(run, super().integrate(problem, start, t_end, tolerance=tolerance, **options))
         return super().integrate(
             problem, start, t_end, tolerance=tolerance, t_eval=t_eval, progress=progress, memory=memory
         )

@@ -68,7 +68,8 @@ def scale_of(said: Floats, moved: float, rtol: float) -> Floats:
     What is below the round-off of the kinetic energy, ``moved``, is none: a body that turns freely exchanges nothing
     else, and would be looked at ever more finely.
     """
-    return np.maximum(np.abs(said).sum(axis=0), ROUND_OFF * moved / (PART * rtol))
+    found: Floats = np.maximum(np.abs(said).sum(axis=0), ROUND_OFF * moved / (PART * rtol))
+    return found
 
 
 def _gauss(powers: Powers, low: Floats, high: Floats, step: Ints) -> Floats:

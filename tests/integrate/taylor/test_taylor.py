@@ -151,7 +151,7 @@ def test_rows_hold_both_sides_of_a_transition():
 def test_auto_takes_it_and_says_why():
     sol = fm.simulate(fm.models.stick_slip_chain(12), t_end=20.0)
     assert sol.stats.method == "taylor"
-    assert sol.stats.why.startswith("12 contacts under constant friction")
+    assert sol.stats.why.startswith("12 contacts whose friction follows formulas")
 
 
 TABLE = fm.laws.Tabulated(speed=[0.0, 1.0], mu=[1.2, 1.0])
