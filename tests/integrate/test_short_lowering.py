@@ -94,5 +94,7 @@ def test_references_are_given_back():
 
 
 def test_rows_of_another_length_are_refused():
-    with pytest.raises(ValueError, match=r"another shape|cannot assign slice of shape"):  # the second: by numba's own
+    # numba's own passes say "cannot assign slice", and from the cache that they cannot say what they wanted to
+    said = r"another shape|cannot assign slice of shape|runtime exception arguments"
+    with pytest.raises((ValueError, RuntimeError), match=said):
         copy_row(np.zeros((2, 3)), np.zeros(2))
