@@ -9,7 +9,6 @@ pulse is too short to be seen.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -50,7 +49,8 @@ def steps_of_run(problem: Problem, t_start: float, t_end: float, tolerance: Tole
     return LongestSteps(found.edge, np.minimum(found.longest, tolerance.max_step))
 
 
-def longest_steps(inputs: Sequence[Input], t_start: float, t_end: float, *, tol: float, nodes: int) -> LongestSteps:
+@lru_cache(maxsize=256)
+def longest_steps(inputs: tuple[Input, ...], t_start: float, t_end: float, *, tol: float, nodes: int) -> LongestSteps:
     """The longest steps under all of these inputs from ``t_start`` to ``t_end``, to ``tol`` of each one's size.
 
     ``nodes``: at how many times of a step a method looks.
@@ -61,7 +61,6 @@ def longest_steps(inputs: Sequence[Input], t_start: float, t_end: float, *, tol:
     return found
 
 
-@lru_cache(maxsize=256)
 def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) -> LongestSteps:
     if not t_end > t_start:
         return LongestSteps.none()

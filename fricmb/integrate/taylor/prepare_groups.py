@@ -70,12 +70,6 @@ def _plain_contacts(problem: Problem) -> NDArray[np.bool_]:
     return np.asarray(plain & (np.bincount(label)[label] == 1))
 
 
-def coupled_or_rate_dependent(problem: Problem) -> bool:
-    """Whether contacts touch each other, or friction depends on slip speed."""
-    count, _ = once_per(problem, "taylor labels", lambda: _labels(problem))
-    return count < problem.n_c or bool((problem.contacts.law != LAW_CONSTANT).any())
-
-
 def against_groups(problem: Problem) -> str | None:
     """What stands against taking the contacts in groups, or None."""
     parts = group_statics(problem)

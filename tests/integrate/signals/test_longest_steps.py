@@ -35,7 +35,7 @@ FUNCTIONS = {
 def test_polynomials_through_the_nodes_of_such_steps_follow_the_function(name, tol, nodes):
     """Steps as long as they may be, wherever they begin: what lies between the nodes is off by ``tol`` at most."""
     expression = FUNCTIONS[name]
-    found = longest_steps([input_of(expression)], 0.0, 10.0, tol=tol, nodes=nodes)
+    found = longest_steps((input_of(expression),), 0.0, 10.0, tol=tol, nodes=nodes)
     function = sympy.lambdify(T, expression)
     scale = np.abs(function(np.linspace(0.0, 10.0, 2_000_001))).max()
     c, between = radau(nodes).c, np.linspace(0.0, 1.0, 40)
@@ -48,14 +48,14 @@ def test_polynomials_through_the_nodes_of_such_steps_follow_the_function(name, t
 
 
 def test_a_sine_of_a_billion_periods_has_one_stretch():
-    found = longest_steps([input_of(sympy.sin(20 * T))], 0.0, 1e9, tol=1e-6, nodes=7)
+    found = longest_steps((input_of(sympy.sin(20 * T)),), 0.0, 1e9, tol=1e-6, nodes=7)
     inside = np.isfinite(found.longest)
     assert inside.sum() == 1
     assert 0.02 < found.longest[inside][0] < 0.2
 
 
 def test_where_nothing_happens_steps_are_free():
-    found = longest_steps([input_of(FUNCTIONS["pulse"])], 0.0, 10.0, tol=1e-6, nodes=7)
+    found = longest_steps((input_of(FUNCTIONS["pulse"]),), 0.0, 10.0, tol=1e-6, nodes=7)
     assert longest_from(found.edge, found.longest, 3.8) > 0.5
     assert longest_from(found.edge, found.longest, 0.0) < 3.7123  # not over the pulse
     assert longest_from(found.edge, found.longest, 3.7123) < 1e-3
@@ -65,17 +65,17 @@ def test_where_nothing_happens_steps_are_free():
 def test_rates_of_a_position_count(rates):
     """A position that hardly moves may have a speed that does."""
     expression = T**2 + 1e-4 * sympy.sin(1000 * T)
-    found = longest_steps([input_of(expression, rates)], 0.0, 10.0, tol=1e-6, nodes=7)
+    found = longest_steps((input_of(expression, rates),), 0.0, 10.0, tol=1e-6, nodes=7)
     step = longest_from(found.edge, found.longest, 5.0)
     assert (step < 0.02) == (rates == 1 or step < 0.02)
     if rates:
-        other = longest_steps([input_of(expression, 0)], 0.0, 10.0, tol=1e-6, nodes=7)
+        other = longest_steps((input_of(expression, 0),), 0.0, 10.0, tol=1e-6, nodes=7)
         assert step < 0.5 * longest_from(other.edge, other.longest, 5.0)
 
 
 def test_linear_functions_and_scenes_without_any_limit_nothing():
     assert time_inputs(2 + A * T, T, [A]) == []
-    found = longest_steps([], 0.0, 1.0, tol=1e-6, nodes=7)
+    found = longest_steps((), 0.0, 1.0, tol=1e-6, nodes=7)
     assert longest_from(found.edge, found.longest, 0.5) == np.inf
 
 
@@ -98,5 +98,5 @@ def test_a_function_without_bounds_is_sampled():
 
     (given,) = build(scene).problem.signals.inputs
     assert given.tape is None
-    steps = longest_steps([given], 0.0, 10.0, tol=1e-6, nodes=7)
+    steps = longest_steps((given,), 0.0, 10.0, tol=1e-6, nodes=7)
     assert longest_from(steps.edge, steps.longest, 5.0) < 0.01
