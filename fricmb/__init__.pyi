@@ -55,6 +55,7 @@ from .scene import ground_point as ground_point
 from .scene import parameter as parameter
 from .scene import speed as speed
 from .scene import t as t
+from .signal import Signal as Signal
 from .solution import Solution as Solution
 from .values import Hz as Hz
 from .values import Units as Units

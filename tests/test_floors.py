@@ -14,7 +14,10 @@ ROOT = Path(__file__).parents[1]
 #: A module imports only from its own floor or a lower one, imports inside functions counted; what users expect on a
 #: low floor and a higher one does is named in `fricmb/_facade.py`.
 FLOORS = (
-    {"calls", "dae", "errors", "facade", "fe", "integrate", "measure", "reduction", "solution", "values", "version"},
+    {
+        "calls", "dae", "errors", "facade", "fe", "integrate", "measure", "reduction", "signal", "solution", "values",
+        "version",
+    },
     {"laws", "normal"},
     {"scene", "space"},
     {"equations"},

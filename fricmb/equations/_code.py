@@ -9,6 +9,7 @@ import sympy
 from sympy.printing.pycode import PythonCodePrinter
 
 from fricmb.errors import SceneError
+from fricmb.signal._symbols import Series
 
 #: Norms and absolute values never fall below this in a kernel: v/|v| is 0 at v = 0 and |v|**5 does not underflow.
 FLOOR = 1e-60
@@ -21,7 +22,7 @@ _KNOWN = (
     sympy.acos, sympy.acosh, sympy.asin, sympy.asinh, sympy.atan, sympy.atan2, sympy.atanh, sympy.ceiling, sympy.cos,
     sympy.cosh, sympy.erf, sympy.erfc, sympy.exp, sympy.floor, sympy.gamma, sympy.loggamma, sympy.log, sympy.sin,
     sympy.sinh, sympy.tan, sympy.tanh, sympy.Abs, sympy.sign, sympy.Heaviside, sympy.DiracDelta, sympy.Max, sympy.Min,
-    sympy.Mod, sympy.Piecewise,
+    sympy.Mod, sympy.Piecewise, Series,
 )  # fmt: skip
 
 
@@ -70,6 +71,10 @@ class _Printer(PythonCodePrinter):  # type: ignore[misc]
 
     def _print_Min(self, expr: Any) -> str:
         return "min(" + ", ".join(f"1.0*({self._print(arg)})" for arg in expr.args) + ")"
+
+    def _print_Series(self, expr: Any) -> str:
+        x, table, order = (self._print(arg) for arg in expr.args)
+        return f"series(1.0*({x}), {table}, {order})"
 
     def _print_loggamma(self, expr: Any) -> str:
         return f"lgamma({self._print(expr.args[0])})"
@@ -225,6 +230,8 @@ def module(title: str, lines: Sequence[str]) -> str:
     text = "\n    ".join(lines) or "pass"
     used = [f for f in _FUNCTIONS if any(f"{f}(" in line for line in lines)]
     imports = f"from math import {', '.join(used)}\n\n" if used else ""
+    if any("series(" in line for line in lines):
+        imports += "from fricmb.integrate.compile.series_call import series\n"
     return (
         f"{head}{imports}"
         f"from fricmb.integrate.compile.template import template\n\n\n@template\ndef kernel(x, p, out):\n    {text}\n"

@@ -95,7 +95,7 @@ class Collector:
         for symbol in value.free_symbols:
             if isinstance(symbol, CoordinateSymbol | SpeedSymbol):
                 replacement[symbol] = self.motion(self.scene.motion(symbol.motion))[isinstance(symbol, SpeedSymbol)]
-            elif isinstance(symbol, ParameterSymbol):
+            elif isinstance(symbol, ParameterSymbol) and symbol.named:
                 replacement[symbol] = parameter_symbol(symbol.name)
                 self.values[replacement[symbol]] = symbol.value
         return value.xreplace(replacement)

@@ -11,8 +11,9 @@ import sympy
 
 from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
-from fricmb.equations._inputs import time_inputs
+from fricmb.equations._inputs import series_in, time_inputs
 from fricmb.equations._split import affine, split
+from fricmb.signal._symbols import Series
 
 
 def derive_value(
@@ -39,8 +40,9 @@ def derive_force(
 
 def _timed_facts(value: Any, parameters: Sequence[Any]) -> dict[str, Any]:
     """When an expression switches in time, and its parts that depend on time alone."""
-    inputs = time_inputs(without_mod(sympy.sympify(value)), sympy.Symbol("t", real=True), parameters)
-    return {"switches": time_switches(value, parameters), "inputs": inputs}
+    plain, t = without_mod(sympy.sympify(value)), sympy.Symbol("t", real=True)
+    inputs, series = time_inputs(plain, t, parameters), series_in(plain, t, parameters)
+    return {"switches": time_switches(value, parameters), "inputs": inputs, "series": series}
 
 
 def derive_bends(
@@ -56,18 +58,19 @@ def derive_bends(
 def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], title: str) -> tuple[dict[str, Any], str]:
     """Kernel of a prescribed signal: x = [t], out = [u, u', u''].
 
-    ``given`` is what the expression states: "value" (u itself) or "rate" (u'; then u is its integral from t = 0, by
+    ``given`` is what the expression states: "value" (u itself), "force" (the same of what acts by its value alone) or
+    "rate" (u'; then u is its integral from t = 0, by
     quadrature in the kernel where it has no closed form and does not switch).  One parameter more than the expression
     has is added to u: where the motion stood when a run went on from another.
     """
     value = without_mod(sympy.sympify(value))
     offset = sympy.Dummy("offset", real=True)
     closed = True
-    if given == "value":
+    if given != "rate":
         outputs = [value + offset, slope(value, t), slope(slope(value, t), t)]
     else:
         integral = integrate(value, t)
-        if integral is None and not switches(value, t, parameters):
+        if integral is None and not switches(value, t, parameters) and not value.has(Series):
             facts = {"closed": True, "switches": [], "inputs": time_inputs(value, t, parameters)}
             return facts, _quadrature_kernel(value, t, [*parameters, offset], title)
         closed = integral is not None
@@ -75,9 +78,11 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
     for expression in outputs:
         _code.check(expression, title)
     # of a motion that is given by its position the speed acts, too
-    inputs = time_inputs(value, t, parameters, rates=1 if given == "value" else 0)
+    inputs = time_inputs(value, t, parameters, rates=0 if given == "rate" else 1)
+    series = series_in(value, t, parameters, rates={"value": 2, "rate": 1, "force": 0}[given])
     uniform = bool(outputs[2] == 0)
     facts = {"closed": closed, "switches": switches(value, t, parameters), "uniform": uniform, "inputs": inputs}
+    facts["series"] = series
     return facts, _code.kernel([t], [*parameters, offset], outputs, title)
 
 
@@ -117,6 +122,8 @@ def integrate(value: Any, t: Any) -> Any | None:
 
     Of what switches without end, as ``Abs(sin(t))`` does, SymPy knows integrals of the pieces; put together they jump.
     """
+    if value.has(Series):
+        return _integral_of_series(value, t)
     if not all(function.is_polynomial(t) for function in switching_functions(value) if function.has(t)):
         return None
     plain = sympy.piecewise_fold(value.rewrite(sympy.Heaviside, sympy.Piecewise).replace(sympy.Heaviside, _step))
@@ -128,6 +135,23 @@ def integrate(value: Any, t: Any) -> Any | None:
         return None
     start = result.subs(t, 0)
     return None if start.has(sympy.nan, sympy.zoo, sympy.oo) else result - start
+
+
+def _integral_of_series(value: Any, t: Any) -> Any | None:
+    """Of a sum of series, each with a constant factor, and of what else has an integral."""
+    found, rest = sympy.S.Zero, sympy.S.Zero
+    for term in sympy.Add.make_args(sympy.expand(value)):
+        factor, core = term.as_independent(t, as_Add=False)
+        if isinstance(core, Series):
+            x, table, order = core.args
+            whole = Series(x, table, order - 1)
+            found += factor / sympy.diff(x, t) * (whole - whole.xreplace({t: sympy.S.Zero}))
+        elif core.has(Series):
+            return None
+        else:
+            rest += term
+    other = sympy.S.Zero if rest == 0 else integrate(rest, t)
+    return None if other is None else found + other
 
 
 def without_mod(value: Any) -> Any:

@@ -149,7 +149,7 @@ def _derive_uniform() -> tuple[dict[str, Any], str | None]:
 
 
 def signal_expression(value: Any, given: str, offset: float, what: str) -> Signal:
-    """A signal from an expression of time; ``given``: "value" or "rate"."""
+    """A signal from an expression of time; ``given``: "value", "force" or "rate"."""
     import sympy
 
     from fricmb.equations._expression import derive_signal
@@ -220,4 +220,4 @@ def _parameter_symbols(expression: Any) -> list[tuple[Any, Any]]:
     from fricmb.values._symbols import ParameterSymbol
 
     held = {p.name: p for p in parameters_in(expression)}
-    return [(s, held[s.name]) for s in expression.free_symbols if isinstance(s, ParameterSymbol)]
+    return [(s, held[s.name]) for s in expression.free_symbols if isinstance(s, ParameterSymbol) and s.named]

@@ -13,6 +13,7 @@ import sympy
 
 from fricmb.equations._element import parameter_source
 from fricmb.integrate.signals.jets import OPERATIONS
+from fricmb.signal._symbols import Series
 
 #: Functions of SymPy under names of their own; others stand under their lower-case name, or have no bounds.
 _NAMES = {sympy.Max: "max", sympy.Min: "min", sympy.Abs: "abs", sympy.sign: "sign", sympy.Heaviside: "heaviside"}
@@ -37,6 +38,18 @@ def time_inputs(value: Any, t: Any, parameters: Sequence[Any], rates: int = 0) -
             found.append({"tape": tape.entries, "rates": rates})
         except _Unbounded:
             found.append({"source": parameter_source(part, parameters, (t,)), "rates": rates})
+    return found
+
+
+def series_in(value: Any, t: Any, parameters: Sequence[Any], rates: int = 0) -> list[dict[str, Any]]:
+    """Series in an expression: slope and shift of what they are taken at, the parameter of the table, what acts."""
+    place = {symbol: i for i, symbol in enumerate(parameters)}
+    found = []
+    for node in sorted(value.atoms(Series), key=sympy.default_sort_key):
+        x, table, order = node.args
+        at = [sympy.diff(x, t), x.xreplace({t: sympy.S.Zero})]
+        texts = [parameter_source(part, parameters) for part in at]
+        found.append({"at": texts, "table": place[table], "order": int(order) + rates})
     return found
 
 
@@ -101,6 +114,8 @@ class _Tape:
             return ("exp", self.of(e.args[0]))
         if isinstance(e, sympy.Piecewise):
             return ("pieces", *(self.of(part) for value, condition in e.args for part in (condition, value)))
+        if isinstance(e, Series):
+            return ("series", self.of(e.args[0]), self._number[e.args[1]], int(e.args[2]))
         name = _NAMES.get(e.func, e.func.__name__.lower())
         arguments = e.args[:1] if isinstance(e, sympy.Heaviside) else e.args
         return (name, *(self.of(arg) for arg in arguments))

@@ -10,8 +10,9 @@ from typing import Any
 
 from fricmb.equations import _store
 from fricmb.equations._values import fingerprint, source_fingerprint, structure
+from fricmb.integrate.signals.pieces import series_value
 
-_NAMES = {name: getattr(math, name) for name in dir(math) if not name.startswith("_")}
+_NAMES = {name: getattr(math, name) for name in dir(math) if not name.startswith("_")} | {"series": series_value}
 
 #: Derivations made in this process (for tests and ``fricmb plan``): kind of template and key.
 derivations: list[str] = []

@@ -147,12 +147,15 @@ class Input:
         Of the parameters followed by time: what has no tape is sampled.
     rates : int
         How many of its derivatives act as well: 1 for a position that is given.
+    tables : tuple
+        Series that it reads (:class:`~fricmb.integrate.signals.pieces.Table`): they live as long.
     """
 
     tape: tuple[tuple[Any, ...], ...] | None
     parameters: tuple[float, ...]
     function: Callable[[Sequence[float]], float] | None = None
     rates: int = 0
+    tables: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,13 +165,16 @@ class Signals:
     A signal of a driven body is its position, velocity and acceleration; of a time-dependent force the force as u; of a
     ``slide`` the slide velocity as u' (its u is unused).  ``breakpoints`` are stepped to exactly; integrators evaluate
     on the inner side of the interval between two of them.  ``uniform`` (n_u,): 1 where a signal is known to be linear
-    in time (empty: nothing is known).  ``inputs``: all functions of time, those in normal forces and elements as well.
+    in time (empty: nothing is known).  ``kinks``: times at which functions of time are continuous and bend, to which
+    steps go without anything else that is done at a breakpoint.  ``inputs``: all functions of time, those in normal
+    forces and elements as well.
     """
 
     table: Templates = field(default_factory=Templates)
     breakpoints: Floats = field(default_factory=lambda: _f(0))
     uniform: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     inputs: tuple[Input, ...] = ()
+    kinks: Floats = field(default_factory=lambda: _f(0))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fricmb.errors import LawError
+from fricmb.integrate.signals.pieces import series_value
 from fricmb.laws._without_sympy import alike, numbers_of
 from fricmb.values import Declaration, Symbolic, ask, expressions, held, one_expression, symbolic
 
@@ -129,7 +130,7 @@ def _least(values: Any, axis: int = 0) -> Any:
 
 
 #: Functions of the numpy code; Max and Min take numbers beside arrays.
-_MODULES = [{"vector_length": _length, "amax": _largest, "amin": _least}, "numpy"]
+_MODULES = [{"vector_length": _length, "amax": _largest, "amin": _least, "Series": series_value}, "numpy"]
 
 
 def _function(law: Any, what: str, d: int = 0) -> Callable[..., Any]:

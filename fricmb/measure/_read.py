@@ -10,8 +10,9 @@ from fricmb.errors import FileError, FricmbError, SceneError, shown
 from fricmb.measure import _results, _tables, _uff
 from fricmb.measure._types import Measured
 
-#: Reader of each format; ``spacing``: first value and step of files without times or frequencies.
-FORMATS: dict[str, Callable[[Path, tuple[float, float] | None], Measured]] = {
+#: Reader of each format; ``over``: first value and step of files without times or
+#: frequencies, or the name of their column.
+FORMATS: dict[str, Callable[[Path, _tables.Over], Measured]] = {
     "uff": _uff.read,
     "csv": _tables.read_csv,
     "wav": _tables.read_wav,
@@ -28,8 +29,9 @@ SUFFIXES = {
 
 
 def read(
-    path: str | PathLike[str], *, format: str | None = None, step: float | None = None, start: float = 0.0
-) -> Measured:
+    path: str | PathLike[str], *, format: str | None = None, step: float | None = None, start: float = 0.0,
+    time: str | None = None,
+) -> Measured:  # fmt: skip
     """Signals, frequency responses and modes, with their points and units.
 
     Parameters
@@ -41,6 +43,8 @@ def read(
         "uff", "csv", "wav", "npz", "mat", "hdf5", "tdms", "rst"; by default told by the ending.
     step, start : float
         Spacing and first value of times, or of frequencies where values are complex, in a table without such a column.
+    time : str, optional
+        Name of the column of times in a table; by default what is called t or time.
 
     Returns
     -------
@@ -65,8 +69,10 @@ def read(
         raise FileError(f"{file}: its ending is of no format that is read; say format=, one of {', '.join(FORMATS)}")
     if step is not None and not (isinstance(step, int | float) and step > 0.0):
         raise SceneError(f"measure.read: step must be a number > 0, got {shown(step)}")
+    if time is not None and not isinstance(time, str):
+        raise SceneError(f"measure.read: time must be the name of a column, got {shown(time)}")
     try:
-        found = FORMATS[kind](file, None if step is None else (float(start), float(step)))
+        found = FORMATS[kind](file, time if step is None else (float(start), float(step)))
     except FricmbError:
         raise
     except MemoryError:

@@ -11,7 +11,7 @@ from fricmb.fe import _ansys
 from fricmb.measure._types import Measured, Modes
 
 
-def read_rst(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_rst(path: Path, over: tuple[float, float] | str | None) -> Measured:
     """Of a modal run of Ansys: frequencies, shapes of unit modal mass, coordinates."""
     result = _ansys.reader(f"measure.read of {path.name}").read_binary(str(path))
     if not hasattr(result, "nodal_solution"):

@@ -11,16 +11,18 @@ from typing import Any
 import numpy as np
 import scipy.io
 
-from fricmb.errors import FileError, MissingExtraError
+from fricmb.errors import FileError, MissingExtraError, unknown_name
 from fricmb.measure._types import Frf, Measured, TimeSeries
 
 #: Names of columns that hold times and frequencies.
 TIMES = re.compile(r"^(t|time|zeit|x_time)\b", re.IGNORECASE)
 FREQUENCIES = re.compile(r"^(f|freq|frequency|frequenz|hz)\b", re.IGNORECASE)
+#: First value and step of times or frequencies, or the name of their column.
+Over = tuple[float, float] | str | None
 _UNIT = re.compile(r"^(.*?)\s*[\[(]\s*([^\])]*)\s*[\])]\s*$")
 
 
-def read_csv(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_csv(path: Path, over: Over) -> Measured:
     """Text in columns, with or without a line of names; complex numbers as ``(1+2j)``."""
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -51,7 +53,7 @@ def read_csv(path: Path, spacing: tuple[float, float] | None) -> Measured:
     columns = {
         name: values[:, j] if values[:, j].imag.any() else values[:, j].real for j, name in enumerate(names[:width])
     }
-    return _measured(path, columns, spacing)
+    return _measured(path, columns, over)
 
 
 def _delimiter(lines: list[str]) -> str:
@@ -74,13 +76,14 @@ def _names(rows: list[list[str]], decimal_comma: bool) -> tuple[list[str], int]:
     """Names of columns, and the first row of numbers."""
     for first, row in enumerate(rows[:20]):
         if all(_number(cell, decimal_comma) is not None for cell in row if cell.strip()):
-            head = rows[first - 1] if first else []
-            names = [cell.strip().strip('"') for cell in head] if len(head) >= len(row) else []
+            # of several lines above the numbers the first has the names, those below units and the like
+            heads = [head for head in rows[:first] if len(head) >= len(row) - (not row[-1].strip())]
+            names = [cell.strip().strip('"') for cell in heads[0]] if heads else []
             return [*names, *(f"column {j + 1}" for j in range(len(names), len(row)))], first
     return [], len(rows)
 
 
-def read_wav(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_wav(path: Path, over: Over) -> Measured:
     """Sound, integers over their full scale."""
     try:
         rate, data = scipy.io.wavfile.read(path)
@@ -93,29 +96,29 @@ def read_wav(path: Path, spacing: tuple[float, float] | None) -> Measured:
     return Measured(signals=tuple(TimeSeries(t=t, y=y, name=f"channel {i + 1}") for i, y in enumerate(values)))
 
 
-def read_npz(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_npz(path: Path, over: Over) -> Measured:
     """Vectors of numpy."""
     try:
         with np.load(path, allow_pickle=False) as file:
-            return _measured(path, {key: file[key] for key in file.files}, spacing)
+            return _measured(path, {key: file[key] for key in file.files}, over)
     except (ValueError, OSError, EOFError) as error:
         raise FileError(f"{path}: expected an npz file of numbers ({error})") from error
 
 
-def read_mat(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_mat(path: Path, over: Over) -> Measured:
     """Vectors of MATLAB."""
     with path.open("rb") as file:
         head = file.read(128)
     if head[:8] == b"\x89HDF\r\n\x1a\n" or b"MATLAB 7.3" in head:
-        return read_hdf5(path, spacing)
+        return read_hdf5(path, over)
     try:
         found = scipy.io.loadmat(path, squeeze_me=True)
     except Exception as error:
         raise FileError(f"{path}: expected a MAT-file of MATLAB ({error})") from error
-    return _measured(path, {key: value for key, value in found.items() if not key.startswith("__")}, spacing)
+    return _measured(path, {key: value for key, value in found.items() if not key.startswith("__")}, over)
 
 
-def read_hdf5(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_hdf5(path: Path, over: Over) -> Measured:
     """Datasets of one dimension."""
     try:
         import h5py
@@ -127,10 +130,10 @@ def read_hdf5(path: Path, spacing: tuple[float, float] | None) -> Measured:
             file.visititems(lambda key, item: found.update({key: item[()]}) if isinstance(item, h5py.Dataset) else None)
     except OSError as error:
         raise FileError(f"{path}: expected an HDF5 file ({error})") from error
-    return _measured(path, {key: np.squeeze(value) for key, value in found.items()}, spacing)
+    return _measured(path, {key: np.squeeze(value) for key, value in found.items()}, over)
 
 
-def read_tdms(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read_tdms(path: Path, over: Over) -> Measured:
     """Channels of LabVIEW, each with its own times."""
     try:
         from nptdms import TdmsFile
@@ -147,8 +150,8 @@ def read_tdms(path: Path, spacing: tuple[float, float] | None) -> Measured:
             continue
         if "wf_increment" in channel.properties:
             t = channel.time_track()
-        elif spacing is not None:
-            t = spacing[0] + spacing[1] * np.arange(y.size)
+        elif isinstance(over, tuple):
+            t = over[0] + over[1] * np.arange(y.size)
         else:
             raise FileError(f"{path}: channel {channel.name!r} has no times; give step=")
         unit = str(channel.properties.get("unit_string", ""))
@@ -156,30 +159,32 @@ def read_tdms(path: Path, spacing: tuple[float, float] | None) -> Measured:
     return Measured(signals=tuple(signals))
 
 
-def _measured(path: Path, columns: Mapping[str, Any], spacing: tuple[float, float] | None) -> Measured:
+def _measured(path: Path, columns: Mapping[str, Any], over: Over) -> Measured:
     """Signals, and frequency responses of complex columns, over a column of times or frequencies."""
     vectors = {key: np.asarray(v) for key, v in columns.items() if np.ndim(v) == 1 and np.size(v) > 1}
     vectors = {key: v for key, v in vectors.items() if v.dtype.kind in "iufc"}
     if not vectors:
         raise FileError(f"{path}: expected columns of numbers, found none")
-    over = None
-    if spacing is None:
-        over = next((key for key in vectors if TIMES.match(key)), None)
-        over = over or next((key for key in vectors if FREQUENCIES.match(key)), None)
-        if over is None and len(vectors) > 1 and next(iter(vectors)).startswith("column"):
-            over = next(iter(vectors))  # of a table without names the first
-        if over is None:
+    times = over if isinstance(over, str) else None
+    if times is not None and times not in vectors:
+        raise unknown_name(f"column of {path}", times, vectors)
+    if over is None:
+        times = next((key for key in vectors if TIMES.match(key)), None)
+        times = times or next((key for key in vectors if FREQUENCIES.match(key)), None)
+        if times is None and len(vectors) > 1 and next(iter(vectors)).startswith("column"):
+            times = next(iter(vectors))  # of a table without names the first
+        if times is None:
             there = ", ".join(list(vectors)[:8])
             raise FileError(f"{path}: expected a column of times or frequencies among {there}; or give step=")
     signals, frfs = [], []
     for key, values in vectors.items():
-        if key == over:
+        if key == times:
             continue
-        x = vectors[over].real if over is not None else spacing[0] + spacing[1] * np.arange(values.size)  # type: ignore[index]
+        x = over[0] + over[1] * np.arange(values.size) if isinstance(over, tuple) else vectors[times].real  # type: ignore[index]
         if x.shape != values.shape:
-            raise FileError(f"{path}: {key}: expected {x.size} values, as many as of {over}, got {values.size}")
+            raise FileError(f"{path}: {key}: expected {x.size} values, as many as of {times}, got {values.size}")
         if not (np.diff(x) > 0.0).all():
-            raise FileError(f"{path}: {over}: expected rising values; they do not rise at place {_falls(x)}")
+            raise FileError(f"{path}: {times}: expected rising values; they do not rise at place {_falls(x)}")
         match = _UNIT.match(key)
         name, unit = (match[1], match[2]) if match else (key, "")
         if np.iscomplexobj(values):

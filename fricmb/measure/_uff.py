@@ -24,7 +24,7 @@ _MARK = re.compile(rb"^ {4}-1 *\r?$", re.MULTILINE)
 TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
 
 
-def read(path: Path, spacing: tuple[float, float] | None) -> Measured:
+def read(path: Path, over: tuple[float, float] | str | None) -> Measured:
     """All datasets that are known."""
     try:
         import pyuff

@@ -15,6 +15,7 @@ from fricmb.scene._axes import Direction, check_axis, check_ends, direction, fro
 from fricmb.scene._bodies import Driven
 from fricmb.scene._expressions import check_expression, expression_uses
 from fricmb.scene._part import GROUND, LETTERS, End, Part
+from fricmb.signal import is_series
 from fricmb.values import is_list
 
 
@@ -234,7 +235,7 @@ class Contact(Part):
 
     # -- slide --------------------------------------------------------------------------------------------------
     def _checked_slide(self, d: int) -> tuple[Any, ...]:
-        given = tuple(self.slide) if is_list(self.slide) else (self.slide,)
+        given = tuple(self.slide) if is_list(self.slide) and not is_series(self.slide) else (self.slide,)
         if len(given) != d:
             held = "".join(self.labels())
             self._refuse(

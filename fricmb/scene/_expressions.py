@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fricmb.errors import SceneError
+from fricmb.signal import is_series, signal_of
 from fricmb.values import Declaration, Parameter, is_expression, is_plain, parameters_in
 
 
@@ -52,6 +53,7 @@ def check_expression(
     SceneError
         Naming the symbols that are not known, or what else is wrong.
     """
+    value = _of_series(owner, argument, value)
     accepted = "fm.t, fm.coordinate(...), fm.speed(...) and parameters" if motions else "fm.t and parameters"
     if isinstance(value, Parameter) or is_plain(value) or (is_expression(value) and expression_is_number(value)):
         return owner._number(argument, value, minimum=minimum)
@@ -75,6 +77,29 @@ def check_expression(
         or value.is_real is False
     ):
         owner._refuse(argument, value, f"a real and finite expression in {accepted}")
+    return _with_tables(owner, argument, value)
+
+
+def _of_series(owner: Declaration, argument: str, value: Any) -> Any:
+    """The expression of a measured series; anything else as it is."""
+    if not is_series(value):
+        return value
+    try:
+        return signal_of(value)._sympy_()
+    except SceneError as error:
+        raise SceneError(f"{owner._label()}: {argument}: {error}") from None
+
+
+def _with_tables(owner: Declaration, argument: str, value: Any) -> Any:
+    """An expression with long rows of pieces as tables; series in it are of time alone."""
+    from fricmb.signal._symbols import Series, with_tables
+    from fricmb.values._symbols import TIME
+
+    value = with_tables(value)
+    for node in value.atoms(Series) if value.has(Series) else ():
+        x = node.args[0]
+        if x.free_symbols != {TIME} or not x.is_polynomial(TIME) or x.diff(TIME).free_symbols:
+            owner._refuse(argument, value, f"a series at fm.t, or at a line in it with numbers, not at {x}")
     return value
 
 

@@ -12,6 +12,7 @@ from fricmb.scene._joint import kept_distance
 from fricmb.scene._one_sided import OneSided
 from fricmb.scene._plane_joint import BetweenPoints, PlaneJoint
 from fricmb.scene._rigid import angle_of
+from fricmb.signal import is_series
 from fricmb.values import is_list
 
 
@@ -54,11 +55,12 @@ class RollerOnLine(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._settle("angle")
-        given = tuple(self.slide) if is_list(self.slide) else (self.slide,)
+        several = is_list(self.slide) and not is_series(self.slide)
+        given = tuple(self.slide) if several else (self.slide,)
         if len(given) > 2:
             self._refuse("slide", self.slide, "one value, or two: along the line and across the plane")
         checked = tuple(check_expression(self, "slide", value, motions=False) for value in given)
-        self._set("slide", checked if is_list(self.slide) else checked[0])
+        self._set("slide", checked if several else checked[0])
         self.local_coordinates()
 
     @property

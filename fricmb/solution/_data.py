@@ -73,7 +73,7 @@ class Writer:
         if getattr(kind, "_is_ground", False):
             return ["ground"]
         if hasattr(value, "free_symbols"):
-            return ["formula", write_formula(value)]
+            return ["formula", write_formula(value, self.write)]
         if is_data(kind):
             return self._object(value)
         raise NotStored(f"a {kind.__module__}.{kind.__qualname__} is no data")
@@ -147,7 +147,7 @@ class Reader:
         if word == "float":
             return float({"nan": "nan", "inf": "inf", "-inf": "-inf"}[rest[0]])
         if word == "formula":
-            return read_formula(rest[0])
+            return read_formula(rest[0], self.read)
         if word == "ground":
             return find(WORDS[word])
         if word == "objects":

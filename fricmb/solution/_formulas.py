@@ -10,6 +10,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from fricmb.errors import FricmbError
 
 #: Nodes that are made of others.
@@ -19,7 +21,7 @@ _OPERATIONS = (
     "sinh", "cosh", "tanh", "coth", "sech", "csch", "asinh", "acosh", "atanh", "acoth", "asech", "acsch",
     "Heaviside", "DiracDelta", "erf", "erfc", "erfi", "gamma", "loggamma", "besselj", "bessely", "besseli",
     "besselk", "Piecewise", "ExprCondPair", "Equality", "Unequality", "StrictLessThan", "LessThan",
-    "StrictGreaterThan", "GreaterThan", "And", "Or", "Not", "Xor", "ITE", "re", "im", "conjugate",
+    "StrictGreaterThan", "GreaterThan", "And", "Or", "Not", "Xor", "ITE", "re", "im", "conjugate", "Series",
 )  # fmt: skip
 #: Numbers and words that stand alone: name of the class -> attribute of sympy.S.
 _CONSTANTS = {
@@ -34,7 +36,7 @@ _CONSTANTS = {
     "BooleanFalse": "false",
 }
 #: Classes that refuse ``evaluate=False``.
-_PLAIN = ("ExprCondPair", "And", "Or", "Not", "Xor", "ITE", "conjugate")
+_PLAIN = ("ExprCondPair", "Series", "And", "Or", "Not", "Xor", "ITE", "conjugate")
 _SYMBOLS = ("Symbol", "CoordinateSymbol", "SpeedSymbol", "ParameterSymbol")
 #: Digits, bits and exponents beyond these are no formula's.
 _DIGITS, _BITS, _EXPONENT = 400, 4096, 100_000
@@ -44,11 +46,22 @@ class NotStored(FricmbError):
     """Something that a file cannot hold as data."""
 
 
-def write_formula(expression: Any) -> list[Any]:
-    """The expression as lists, text and numbers; raises :class:`NotStored` for what is not on the list."""
+def _no_arrays(value: Any) -> Any:
+    raise NotStored("a measured series has no place here")
+
+
+def write_formula(expression: Any, write: Callable[[Any], Any] = _no_arrays) -> list[Any]:
+    """The expression as lists, text and numbers; raises :class:`NotStored` for what is not on the list.
+
+    ``write``: puts the arrays of a measured series away.
+    """
     import sympy
 
     name = type(expression).__name__
+    if name == "TableSymbol":
+        from fricmb.signal._symbols import table_data
+
+        return [name, expression.label, *map(write, table_data(expression.table))]
     if isinstance(expression, sympy.Symbol):
         return _write_symbol(expression, name)
     if isinstance(expression, sympy.Integer):
@@ -63,7 +76,7 @@ def write_formula(expression: Any) -> list[Any]:
     if name in _CONSTANTS:
         return [name]
     if name in _OPERATIONS and type(expression) is _operation(name):
-        return [name, *(write_formula(argument) for argument in expression.args)]
+        return [name, *(write_formula(argument, write) for argument in expression.args)]
     raise NotStored(f"{name} in the formula {str(expression)[:80]} is not among the functions that a file can hold")
 
 
@@ -75,13 +88,15 @@ def _write_symbol(symbol: Any, name: str) -> list[Any]:
     return [name, symbol.name, held, *([symbol.value] if name == "ParameterSymbol" else [])]
 
 
-def read_formula(node: Any) -> Any:
+def read_formula(node: Any, read: Callable[[Any], Any] = _no_arrays) -> Any:
     """The expression of :func:`write_formula`; raises ValueError or TypeError for anything else."""
     import sympy
 
     if not isinstance(node, list) or not node or not isinstance(node[0], str):
         raise ValueError("a formula is a list that begins with a name")
     name, *arguments = node
+    if name == "TableSymbol":
+        return _read_table(arguments, read)
     if name in _SYMBOLS:
         return _read_symbol(name, arguments)
     if name == "Integer":
@@ -96,8 +111,22 @@ def read_formula(node: Any) -> Any:
     if name in _CONSTANTS and not arguments:
         return getattr(sympy.S, _CONSTANTS[name])
     if name in _OPERATIONS:
-        return _build(name, [read_formula(argument) for argument in arguments])
+        return _build(name, [read_formula(argument, read) for argument in arguments])
     raise ValueError(f"{name!r} is not among the functions that a file can hold")
+
+
+def _read_table(arguments: list[Any], read: Callable[[Any], Any]) -> Any:
+    """A measured series."""
+    from fricmb.signal._symbols import symbol_of
+
+    label, edge, coefficient, domain = arguments[0], *map(read, arguments[1:])
+    good = isinstance(label, str) and isinstance(domain, tuple) and len(domain) == 2
+    good = good and all(isinstance(part, np.ndarray) and part.dtype == np.float64 for part in (edge, coefficient))
+    if not good or edge.ndim != 1 or not edge.size or coefficient.ndim != 2 or len(coefficient) != edge.size + 1:
+        raise ValueError("a measured series is a name, edges, coefficients of one piece more, and a domain")
+    if not (np.isfinite(edge).all() and np.isfinite(coefficient).all() and (np.diff(edge) > 0.0).all()):
+        raise ValueError("a measured series has rising edges and finite coefficients")
+    return symbol_of(edge, coefficient, (float(domain[0]), float(domain[1])), label)
 
 
 def _build(name: str, arguments: list[Any]) -> Any:
@@ -138,6 +167,10 @@ def _whole(text: Any) -> int:
 def _operation(name: str) -> Callable[..., Any]:
     import sympy
 
+    if name == "Series":
+        from fricmb.signal._symbols import Series
+
+        return Series
     if name == "ExprCondPair":
         from sympy.functions.elementary.piecewise import ExprCondPair
 

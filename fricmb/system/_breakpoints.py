@@ -16,6 +16,7 @@ _FIRST, _MOST = 512, 2**18
 #: It goes beyond the ends of a run by this part of it: what switches at an end does so as exactly as elsewhere.
 #: Round-off of a time, relative to the ends.
 _BEYOND, _SAME = 1e-7, 1e-14
+NOWHERE = np.zeros(0)
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,13 @@ class Switch:
         except (ArithmeticError, ValueError):
             return 0.0
 
-    def instants(self, t_start: float, t_end: float) -> Floats:
-        """Sign changes from one time to another, both included, rising."""
+    def instants(self, t_start: float, t_end: float, bends: Floats = NOWHERE) -> Floats:
+        """Sign changes from one time to another, both included, rising; ``bends``: times at which series bend."""
         count, found = _FIRST, np.zeros(0)
         beyond = _BEYOND * (t_end - t_start)
         while count <= _MOST:
-            brackets = self.brackets(np.linspace(t_start - beyond, t_end + beyond, count + 1))
+            grid = np.linspace(t_start - beyond, t_end + beyond, count + 1)
+            brackets = self.brackets(np.union1d(grid, bends) if bends.size else grid)
             if len(brackets) == len(found) and count > _FIRST:
                 break
             found = np.array([self.root(low, high) for low, high in brackets])

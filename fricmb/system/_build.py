@@ -25,6 +25,7 @@ from fricmb.system._leaps import leaps_of
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._same_parts import half_of
+from fricmb.system._series import series_of
 from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
 from fricmb.system._structure import Structure, check_initial
@@ -192,6 +193,7 @@ def _system(
         stores=tuple(structure.stores),
         lined=tuple(structure.lined.stores),
         switches=searched,
+        series=series_of(timed, scene),
         leaps=leaps_of(scene, signals.index),
     )
     if structure.nonlinear:

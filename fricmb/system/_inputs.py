@@ -6,16 +6,20 @@ from collections.abc import Sequence
 
 from fricmb.equations import Template, formula
 from fricmb.integrate.problem import Input
+from fricmb.integrate.signals.pieces import table_at
 
 
 def inputs_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Input, ...]:
     """Every function of time in templates with their parameters, each once."""
     found: dict[Input, None] = {}
     for template, parameters in timed:
+        tables = tuple(table_at(parameters[fact["table"]]) for fact in template.facts.get("series", ()))
         for fact in template.facts.get("inputs", ()):
             tape = fact.get("tape")
             function = formula(fact["source"]) if tape is None else None
             entries = None if tape is None else tuple(map(tuple, tape))
-            given = Input(tape=entries, parameters=tuple(parameters), function=function, rates=fact["rates"])
+            given = Input(
+                tape=entries, parameters=tuple(parameters), function=function, rates=fact["rates"], tables=tables
+            )
             found[given] = None
     return tuple(found)

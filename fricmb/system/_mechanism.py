@@ -35,6 +35,7 @@ from fricmb.system._inputs import inputs_of
 from fricmb.system._joints import JointArrays, Kept
 from fricmb.system._leaps import leaps_of
 from fricmb.system._mechanism_system import MechanismSystem
+from fricmb.system._series import series_of
 from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._structure import Structure
 
@@ -109,6 +110,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         state_names=tuple(contacts.states),
         stores=tuple(structure.stores),
         switches=searched,
+        series=series_of(timed, scene),
         leaps=leaps_of(scene, signals.index),
         joint_forms=dict(zip(joints.names, joints.forms, strict=True)),
     )

@@ -229,7 +229,7 @@ class Structure:
         nonlinear = None
         if terms.signal is not None:
             signal = terms.signal
-            j = self.motions.signals.add(force.name, lambda: signal_expression(signal, "value", 0.0, what))
+            j = self.motions.signals.add(force.name, lambda: signal_expression(signal, "force", 0.0, what))
             self.B.extend((i, j, c) for i, c in row.q)
         if terms.rest is not None:
             nonlinear = self._moving_force(row, terms.rest, what)

@@ -15,6 +15,7 @@ from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._breakpoints import Switch
 from fricmb.system._leaps import Leap, leap_times
 from fricmb.system._lined import LinedStores
+from fricmb.system._series import SeriesUse, stops_of
 from fricmb.system._stored import Stored, stored_of
 from fricmb.system._structure import Store
 from fricmb.system._tables import Row
@@ -40,6 +41,8 @@ class System:
         Those of elements along letters, many at a time.
     switches : tuple of Switch
         Functions of time whose sign changes have to be searched: see :meth:`problem_for`.
+    series : tuple of SeriesUse
+        Measured series, which runs stop at: see :meth:`problem_for`.
     leaps : tuple of Leap
         Prescribed positions that may jump: see :meth:`leaps_between`.
     """
@@ -52,6 +55,7 @@ class System:
     stores: tuple[Store, ...]
     lined: tuple[LinedStores, ...] = ()
     switches: tuple[Switch, ...] = ()
+    series: tuple[SeriesUse, ...] = ()
     leaps: tuple[Leap, ...] = ()
 
     @property
@@ -72,13 +76,16 @@ class System:
         Raises
         ------
         SceneError
-            If a prescribed position jumps on which something depends that its speed acts on.
+            If a prescribed position jumps on which something depends that its speed acts on, or a measured series does
+            not reach over the run.
         """
         problem = self.problem
-        if self.switches:
+        if self.switches or self.series:
             signals = problem.signals
-            found = [signals.breakpoints, *(s.instants(t_start, t_end) for s in self.switches)]
-            problem = replace(problem, signals=replace(signals, breakpoints=np.unique(np.concatenate(found))))
+            stops, kinks = stops_of(self.series, t_start, t_end)
+            inside = [s.instants(t_start, t_end, np.concatenate([stops, kinks])) for s in self.switches]
+            stops = np.unique(np.concatenate([signals.breakpoints, stops, *inside]))
+            problem = replace(problem, signals=replace(signals, breakpoints=stops, kinks=kinks))
         leap_times(self.leaps, problem, t_start, t_end)
         return problem
 

@@ -73,7 +73,7 @@ def symbol_values(value: Any) -> list[Parameter]:
     """Parameters in a SymPy expression, by name."""
     from fricmb.values._symbols import ParameterSymbol
 
-    found = [s for s in value.free_symbols if isinstance(s, ParameterSymbol)]
+    found = [s for s in value.free_symbols if isinstance(s, ParameterSymbol) and s.named]
     return [Parameter(s.name, s.value) for s in sorted(found, key=lambda s: (s.name, s.value))]
 
 

@@ -12,6 +12,8 @@ class ParameterSymbol(sympy.Symbol):  # type: ignore[misc]
     """A named parameter inside an expression; two of one name are equal if their values are."""
 
     __slots__ = ("value",)
+    #: Whether users know it by its name: not what stands for a table of a series.
+    named = True
 
     def __new__(cls, name: str, value: float, **assumptions: Any) -> ParameterSymbol:
         """Not cached by SymPy: its cache knows the name alone."""

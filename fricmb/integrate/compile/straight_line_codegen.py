@@ -17,6 +17,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from fricmb.integrate.compile.series_call import write_series
+
 _DOUBLE = ir.DoubleType()
 #: Functions of ``math`` of one and two arguments, from numba's own library.
 _ONE = (
@@ -30,7 +32,7 @@ _COMPARED: dict[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: 
 _FOLDED: dict[type, Callable[[float, float], float]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
 }  # fmt: skip
-_CALLS = {*_ONE, *_TWO, *_ROUNDED, "abs", "max", "min"}
+_CALLS = {*_ONE, *_TWO, *_ROUNDED, "abs", "max", "min", "series"}
 _NODES = (
     ast.Module, ast.Assign, ast.Name, ast.Load, ast.Store, ast.Subscript, ast.Constant, ast.BinOp, ast.UnaryOp,
     ast.USub, ast.UAdd, ast.Not, ast.Compare, ast.BoolOp, ast.And, ast.Or, ast.IfExp, ast.Call, ast.Pow,
@@ -142,6 +144,8 @@ class _Writer:
         name, parts = node.func.id, [self._value(arg) for arg in node.args]
         if name == "abs":
             return self._intrinsic("llvm.fabs", parts)
+        if name == "series":
+            return write_series(self._builder, *parts)
         if name in _ROUNDED:
             return self._intrinsic(_ROUNDED[name], parts)
         if name not in ("max", "min"):
@@ -185,7 +189,7 @@ def straight(text: str) -> Any:
     ----------
     text : str
         Lines of the form ``name = expression`` and ``out[i] = expression`` in floats, other names, ``x[i]``, ``p[i]``,
-        ``+ - * / **``, comparisons, ``and or not``, ``a if c else b``, ``abs``, ``max``, ``min`` and ``math``.
+        ``+ - * / **``, comparisons, ``and or not``, ``a if c else b``, ``abs``, ``max``, ``min``, ``series``, ``math``.
     """
 
     def statements(typingctx: Any, x: Any, p: Any, out: Any) -> Any:

@@ -39,7 +39,7 @@ from fricmb.integrate.run.outcomes import (
     SLICE_OVER,
 )
 from fricmb.integrate.run.slices import slice_over, ticks
-from fricmb.integrate.signals.longest_steps import OF_BDF, longest_from
+from fricmb.integrate.signals.longest_steps import OF_BDF, kink_from, longest_from
 
 
 @run_entry
@@ -102,6 +102,7 @@ def drive(
     begun = ticks()
     while True:
         seen = longest_from(edge, limit, y.t)
+        goal = min(stop, y.t + kink_from(edge, limit, y.t, seen))
         c.longest = min(c.bound, seen)
         # a stop is kept until it has been gone through: a step may end on it to the last digit
         if reached(y.t, stop):
@@ -113,7 +114,7 @@ def drive(
         elif crowded(rec, y.mode.shape[0]):
             return FULL
         elif past.on == 1:
-            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, min(stop - y.t, OF_BDF * seen))
+            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, min(goal - y.t, OF_BDF * seen))
             if code == ACCEPTED and is_slower(past, formula.usual):
                 c.h = formula.usual
             elif code == HANDOVER:
@@ -121,7 +122,7 @@ def drive(
                 hand_over(past)
         else:
             t = y.t
-            code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, stop)
+            code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, goal)
             h = y.t - t
             if may_begin(past, code) and h > 0.0:
                 formula.usual = max(h, c.wanted)

@@ -20,7 +20,7 @@ from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.breakpoints import reached, set_window
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FULL, HANDOVER, SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks
-from fricmb.integrate.signals.longest_steps import OF_BDF, longest_from
+from fricmb.integrate.signals.longest_steps import OF_BDF, kink_from, longest_from
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.step_matrix import forget
 
@@ -62,8 +62,8 @@ def drive(
     while True:
         if crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
             return FULL
-        left = stop - y.t
         seen = longest_from(edge, limit, y.t)
+        left = min(stop - y.t, kink_from(edge, limit, y.t, seen))
         clock.longest = min(clock.bound, seen)
         if reached(y.t, stop):
             code = arrive(packed, s, y, r, old, out, clock, stop)

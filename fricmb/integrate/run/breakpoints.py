@@ -12,12 +12,24 @@ EPS = 2.220446049250313e-16
 
 
 @kernel
+def stops_until(stops: Floats, t: float) -> int:
+    """How many breakpoints, which rise, are at or before t."""
+    low, high = 0, stops.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if stops[middle] <= t:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@kernel
 def next_stop(times: Times, t: float) -> float:
     """The next time that has to be stepped to exactly."""
-    stop = times.span[1]
-    for i in range(times.stops.shape[0]):
-        if times.stops[i] > t + 4.0 * EPS * abs(t) and times.stops[i] < stop:
-            stop = times.stops[i]
+    stop, i = times.span[1], stops_until(times.stops, t + 4.0 * EPS * abs(t))
+    if i < times.stops.shape[0]:
+        stop = min(stop, times.stops[i])
     return float(stop)
 
 
@@ -29,12 +41,13 @@ def set_window(times: Times, window: Floats, t: float) -> float:
     """
     stop = next_stop(times, t)
     low, high = times.span[0] + 2.0 * EPS * abs(times.span[0]) + 1e-300, np.inf
-    for i in range(times.stops.shape[0]):
+    i = stops_until(times.stops, t + 4.0 * EPS * abs(t))
+    if i > 0:
+        edge = times.stops[i - 1]
+        low = max(low, edge + 2.0 * EPS * abs(edge) + 1e-300)
+    if i < times.stops.shape[0]:
         edge = times.stops[i]
-        if edge <= t + 4.0 * EPS * abs(t):
-            low = max(low, edge + 2.0 * EPS * abs(edge) + 1e-300)
-        else:
-            high = min(high, edge - 2.0 * EPS * abs(edge) - 1e-300)
+        high = edge - 2.0 * EPS * abs(edge) - 1e-300
     window[0] = low
     window[1] = high
     return float(stop)
@@ -44,11 +57,11 @@ def set_window(times: Times, window: Floats, t: float) -> float:
 def set_window_around(stops: Floats, window: Floats, t: float) -> None:
     """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
     low, high = -np.inf, np.inf
-    for i in range(stops.shape[0]):
-        if stops[i] <= t:
-            low = max(low, stops[i] + 2.0 * EPS * abs(stops[i]) + 1e-300)
-        else:
-            high = min(high, stops[i] - 2.0 * EPS * abs(stops[i]) - 1e-300)
+    i = stops_until(stops, t)
+    if i > 0:
+        low = stops[i - 1] + 2.0 * EPS * abs(stops[i - 1]) + 1e-300
+    if i < stops.shape[0]:
+        high = stops[i] - 2.0 * EPS * abs(stops[i]) - 1e-300
     window[0] = low
     window[1] = high
 

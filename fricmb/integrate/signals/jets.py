@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.integrate.problem import Floats
+from fricmb.integrate.signals.pieces import Table, table_at
 
 #: An entry of a tape: the name of an operation and its arguments.
 Entry = Sequence[Any]
@@ -192,6 +193,16 @@ def _erf(u: Jet) -> Jet:
     return _integral_of(bell, u, _rising(erf, u.at(0)))
 
 
+def _series(u: Jet, table: Table, order: int) -> Jet:
+    """Pieces of polynomials of u, which is linear in time: between kinks, to which steps go."""
+    parts, factor = [], (np.ones_like(u.low[0]), np.ones_like(u.low[0]))
+    for k in range(len(u.low)):
+        found = table.ranges(u.low[0], u.high[0], order + k)
+        parts.append(_scaled(_times(found, factor), 1.0 / math.factorial(k)))
+        factor = _times(factor, u.at(1))
+    return Jet.filled(parts)
+
+
 def _power(u: Jet, a: float) -> Jet:
     if a == int(a) and 0 <= a <= 16:
         found = Jet.constant(1.0, u.low.shape)
@@ -288,7 +299,7 @@ _MANY: dict[str, Callable[[Sequence[Any]], Any]] = {
     "less": lambda parts: _less(*parts), "not": lambda parts: (parts[0][1], parts[0][0]),
 }  # fmt: skip
 #: Operations of tapes.
-OPERATIONS = frozenset({*_PLAIN, *_MANY, "t", "p", "c", "add", "mul", "div", "pow", "true"})
+OPERATIONS = frozenset({*_PLAIN, *_MANY, "t", "p", "c", "add", "mul", "div", "pow", "series", "true"})
 
 
 def bounds(tape: Sequence[Entry], p: Sequence[float], low: Floats, high: Floats, order: int) -> Jet:
@@ -306,6 +317,8 @@ def bounds(tape: Sequence[Entry], p: Sequence[float], low: Floats, high: Floats,
                 found.append(Jet.constant(float(p[given[0]] if name == "p" else given[0]), shape))
             elif name == "true":
                 found.append((np.ones(low.size, dtype=bool), np.zeros(low.size, dtype=bool)))
+            elif name == "series":
+                found.append(_series(found[given[0]], table_at(p[given[1]]), int(given[2])))
             elif name == "pow":
                 found.append(_power(found[given[0]], float(given[1])))
             else:

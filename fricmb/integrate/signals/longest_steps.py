@@ -17,6 +17,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.problem import Floats, Input, Problem
+from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.signals.jets import bounds
 
 #: Stretches that are looked at first; most of all; halvings of one.
@@ -31,7 +32,10 @@ SAMPLED, ROUND_OFF = 2048, 1e-12
 
 @dataclass(frozen=True, eq=False)
 class LongestSteps:
-    """``edge`` (k + 1,) times, rising, and the longest step ``longest`` (k,) from any time between two of them."""
+    """``edge`` (k + 1,) times, rising, and the longest step ``longest`` (k,) from any time between two of them.
+
+    Where a function bends between two of them steps end: the longest step from there on is given with a minus sign.
+    """
 
     edge: Floats
     longest: Floats
@@ -45,8 +49,21 @@ class LongestSteps:
 def steps_of_run(problem: Problem, t_start: float, t_end: float, tolerance: Tolerance) -> LongestSteps:
     """The longest steps of a run of a problem."""
     rtol = tolerance.rtol
-    found = longest_steps(problem.signals.inputs, t_start, t_end, tol=rtol, nodes=5 if rtol > 1e-5 else 7)
-    return LongestSteps(found.edge, np.minimum(found.longest, tolerance.max_step))
+    inputs, kinks = problem.signals.inputs, problem.signals.kinks
+    # series of a million numbers are not kept
+    find = longest_steps.__wrapped__ if any(given.tables for given in inputs) else longest_steps
+    found = find(inputs, t_start, t_end, tol=rtol, nodes=5 if rtol > 1e-5 else 7)
+    found = LongestSteps(found.edge, np.minimum(found.longest, tolerance.max_step))
+    return _with_kinks(found, kinks[(kinks > t_start) & (kinks < t_end)]) if kinks.size else found
+
+
+def _with_kinks(steps: LongestSteps, kinks: Floats) -> LongestSteps:
+    """The same where steps end at kinks as well."""
+    edge = np.unique(np.concatenate([steps.edge, kinks]))
+    longest = _at(steps, edge[:-1])
+    place = np.searchsorted(edge, kinks)
+    longest[place] *= -1.0
+    return LongestSteps(edge, longest)
 
 
 @lru_cache(maxsize=256)
@@ -171,7 +188,7 @@ def _at(steps: LongestSteps, t: Floats) -> Floats:
 
 @kernel
 def longest_from(edge: Floats, longest: Floats, t: float) -> float:
-    """The longest step from t: none reaches into a stretch farther than that allows."""
+    """The longest step from t: none reaches into a stretch farther than that allows; it may go over the next kink."""
     low, high = 0, longest.shape[0] - 1
     while low < high:
         middle = (low + high + 1) // 2
@@ -179,9 +196,30 @@ def longest_from(edge: Floats, longest: Floats, t: float) -> float:
             low = middle
         else:
             high = middle - 1
-    h = longest[low]
+    h = abs(longest[low])
     for j in range(low + 1, longest.shape[0]):
-        if edge[j] >= t + h:
+        if edge[j] >= t + h or longest[j] < 0.0:
             break
         h = max(edge[j] - t, min(h, longest[j]))
     return float(h)
+
+
+@kernel
+def kink_from(edge: Floats, longest: Floats, t: float, within: float) -> float:
+    """How far the next kink is from t; infinity where there is none as near as ``within``."""
+    low, high = 0, longest.shape[0] - 1
+    if high == 0:
+        return np.inf
+    later = t + 4.0 * EPS * abs(t)
+    while low < high:
+        middle = (low + high + 1) // 2
+        if edge[middle] <= later:
+            low = middle
+        else:
+            high = middle - 1
+    for j in range(low + 1, longest.shape[0]):
+        if edge[j] > t + within:
+            break
+        if longest[j] < 0.0:
+            return float(edge[j] - t)
+    return np.inf

@@ -124,7 +124,8 @@ def set_start(
     net.top[:] = np.abs(start.v)
     if tolerance.atol_v is not None:
         np.maximum(net.top, tolerance.atol_v / tolerance.rtol, out=net.top)
-    breaks = problem.signals.breakpoints
+    # series of functions that bend are made on one side, as at a breakpoint
+    breaks = np.concatenate([problem.signals.breakpoints, problem.signals.kinks])
     inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
     limits = steps_of_run(problem, start.t, t_end, tolerance)
     net = with_arrays(net, stops=np.append(inside, t_end), edge=limits.edge, within=limits.longest)
