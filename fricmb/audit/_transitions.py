@@ -8,7 +8,7 @@ import numpy as np
 
 from fricmb.audit._gather import Gathered
 from fricmb.audit._points import row_unit
-from fricmb.audit._release import holding
+from fricmb.audit._release import group_spare, holding
 from fricmb.audit._units import ROUND_OFF, Units
 from fricmb.field._contacts import Rubs
 from fricmb.field._motions import Moment
@@ -19,6 +19,8 @@ from fricmb.integrate.trajectory import Samples
 
 #: Changes of mode that are looked at in all contacts, and places within a step at which a release is tried.
 _CHANGES, _PLACES = 80, 5
+#: What a group may have to spare when it lets go, in parts of its limits, beside what the tolerance makes of that.
+_GROUP = 1e-6
 #: Part of a jump of velocities that is round-off of the equations it is split with.
 _DIGITS = 1e-12
 
@@ -57,6 +59,12 @@ class Changes:
             jump = np.abs(values[:, twice + 1] - values[:, twice])
             if name == "v" and self.statements.joints:
                 jump = np.abs(self._without_impulses(values[:, twice + 1] - values[:, twice], twice))
+            # what never moves jumps by the round-off of what does
+            weight = np.where(self.statements.weight > 0.0, self.statements.weight, np.inf)[:, None]
+            grain = (
+                ROUND_OFF * np.sqrt((weight * rows.v**2).sum(axis=0).max(initial=0.0) / weight) if name == "v" else 0.0
+            )
+            jump = np.where(jump > grain, jump, 0.0)
             ratio = np.where(jump > 0.0, jump / (2.0 * unit[:, None] + 1e-300), 0.0)
             if twice.size:
                 i = int(np.argmax(ratio.max(axis=1)))
@@ -106,6 +114,8 @@ class Changes:
         """A contact that slips from now on could not have been held."""
         s, rows = self.statements, self.rows
         before, after = take(rows, [i]), take(rows, [j])
+        if self._group_released(law, i, j):
+            return
         own = slice(int(s.names.row[k]), int(s.names.row[k + 1]))
         if i != j and self._at_limit(law, k, before, own):
             return
@@ -132,6 +142,30 @@ class Changes:
             if least <= 0.0:
                 break
         self.gathered.add("release from stick", [max(least, 0.0)], float(rows.t[j]), law.name)
+
+    def _group_released(self, law: Rubs, i: int, j: int) -> bool:
+        """What rested with others could not have been held by them, whatever share each bears.
+
+        True where several let go as one, so that each alone could perhaps be held beside the slip of the others.
+        """
+        s, rows = self.statements, self.rows
+        group = [c for c in s.contacts if rows.mode[c, i] == STICK and not s.contacts[c].smooth]
+        if i == j or len(group) < 2 or rows.t[i] != rows.t[j]:
+            return False
+        last = int(np.searchsorted(rows.t, rows.t[j], side="right"))
+        h = float(rows.t[min(last, rows.t.size - 1)] - rows.t[j])
+        moment = s.moment(take(rows, [i]))
+        found = s.found(moment)
+        for c in group:
+            unit = np.array([row_unit(row, self.units.v, (1,)) for row in found.rows[c]])
+            if h <= 0.0 or (np.abs(found.g[c]) > 2.0 * unit + 1e-300).any():
+                return False
+        spare = group_spare(s, moment, group, h)
+        if spare is None:
+            return False
+        unit_of_spare = _GROUP + self.units.rtol
+        self.gathered.add("release of a group", [max(spare, 0.0) / unit_of_spare], float(rows.t[j]), law.name)
+        return sum(int(rows.mode[c, j] == SLIP) for c in group) > 1
 
     def _at_limit(self, law: Rubs, k: int, before: Samples, own: slice) -> bool:
         size = law.size(before.F[own] * self.statements.names.row_scale[own])

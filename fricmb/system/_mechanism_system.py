@@ -95,7 +95,8 @@ class MechanismSystem(System):
         # just after a contact has opened it is no distance away yet, but its friction knows
         rubs = np.flatnonzero((joints.hands_over != 0) & (joints.port >= 0))
         opened[:, rubs] |= (samples.mode[joints.port[rubs]] == OPEN).T
-        found = complete_open(self.problem, opened, samples.t, q, v, z, samples.mode.T, force)
+        # friction tells the direction of slip also where velocities are round-off
+        found = complete_open(self.problem, opened, samples.t, q, v, z, samples.mode.T, force, still=np.inf)
         lam = self._least_norm(samples, found[3])
         return {name: lam[a:b] for name, (a, b) in zip(joints.names, pairwise(joints.row), strict=True)}
 

@@ -1,9 +1,8 @@
-"""Contacts in loops that hold a load together: shares of it within their cones, and what gives way where none are.
+"""Ports in loops that hold a load together: shares of it within their cones, and what gives way where none are.
 
-As in scenes without joints, only what is determined is decided on (``model/friction_discs``).  Contacts and pads take
-part, by forces that together move nothing; reactions of joints without friction follow.  Where a loop closes through
-dry joints, or what may open, loads depend on how contacts share: there they do so only by forces that together do
-nothing to any body, so that reactions stay, and a dry joint at its limit counts as slipping.
+As in scenes without joints, only what is determined is decided on, by forces that together move nothing; reactions
+follow.  Contacts and pads alone have loads that do not depend on how they share (``model/friction_discs``); where dry
+joints take part, or what may not pull, loads may (``group_cones``, ``model/cone_shares``).
 """
 
 from __future__ import annotations
@@ -13,17 +12,22 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
-from fricmb.integrate.constrained.forces import move
-from fricmb.integrate.constrained.loop_mobility import as_if_free, may_share, rank, reactions_are_free, with_joints
+from fricmb.integrate.constrained.forces import is_open, move
+from fricmb.integrate.constrained.group_cones import cones_of, keep_loads, load_of, load_slopes, shares_of
+from fricmb.integrate.constrained.loop_mobility import holds, may_share, mobility, rank
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import slip_speed
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
+from fricmb.integrate.model.cone_shares import ENOUGH, Cones, most_spare, nearest_enough, shared
 from fricmb.integrate.model.friction_cone import friction_size, stick_limit
 from fricmb.integrate.model.friction_discs import NEARLY, least_slip, share
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Codes, Floats, Floats2, Ints
+
+#: Times that loads which bend are drawn as straight lines anew, and what is left then, in their size.
+ROUNDS, CURVED = 40, 1e-14
 
 
 class Loops(Layout):
@@ -34,26 +38,41 @@ class Loops(Layout):
 
 
 @kernel
-def overloaded(mech: Mech, k: Moving, mode: Codes, N: Floats, F: Floats, part: float) -> bool:
-    """Whether a contact in a loop sticks beyond this part of its cone."""
+def overloaded(mech: Mech, k: Moving, mode: Codes, N: Floats, F: Floats, lam: Floats, part: float) -> bool:
+    """Whether a port in a loop sticks beyond this part of its cone, or a joint beside it would have to pull."""
+    some = False
     for c in range(mode.shape[0]):
         if mode[c] == STICK and may_share(mech, c):
+            some = True
             limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(N[c], 0.0))
             if friction_size(mech.port.row, c, F) > part * limit:
                 return True
+    joint = mech.joint
+    for j in range(joint.port.shape[0] if some else 0):
+        if joint.one_sided[j] != 0 and lam[joint.row[j]] < 0.0 and not is_open(mech, j):
+            return True
     return False
+
+
+@kernel
+def reactions_are_free(mech: Mech) -> bool:
+    """Whether no cone hangs on reactions: nothing that may not pull, no dry joint."""
+    for j in range(mech.joint.port.shape[0]):
+        if mech.joint.one_sided[j] != 0 or (mech.joint.port[j] >= 0 and holds(mech, mech.joint.port[j])):
+            return False
+    return True
 
 
 @block
 def share_load(
     mech: Mech, k: Moving, w: Instant, y: State, mode: Codes, N: Floats, F: Floats, lam: Floats, part: float
 ) -> float:
-    """Share what contacts in loops hold so that none is beyond ``part`` of its cone: see ``friction_discs.share``.
+    """Share what ports in loops hold so that none is beyond ``part`` of its cone; above 1 where no shares do that.
 
-    ``lam``: reactions, which follow.  ``k.way`` (m_p,) becomes the motion in which contacts would give way.  The place
-    must have been evaluated.
+    ``N``, ``lam``: loads and reactions, which follow.  ``k.way`` (m_p,) becomes the motion in which ports would give
+    way: of those that would, where loads depend on shares.  The place must have been evaluated.
     """
-    if not overloaded(mech, k, mode, N, F, part):
+    if not overloaded(mech, k, mode, N, F, lam, part):
         return 0.0
     n_c = mode.shape[0]
     held, limit = np.full(n_c, SLIP, np.int8), np.zeros(n_c)
@@ -72,6 +91,8 @@ def share_load(
         count += moves
     if rank(D) == count:
         return 0.0
+    if not reactions_are_free(mech):
+        return share_cones(mech, k, held, N, F, lam, part, answers, D)
     before = F.copy()
     load = float(share(Loops(mech.port.row, D), held, limit, F, k.way))
     for a in range(F.shape[0]):
@@ -81,11 +102,53 @@ def share_load(
 
 
 @kernel
-def mobility(mech: Mech, k: Moving, w: Instant, y: State, held: Codes, answers: Floats2) -> Floats2:
-    """D of the contacts that are STICK in ``held``; with joints holding (``answers``) where nothing hangs on that."""
-    if reactions_are_free(mech):
-        return with_joints(mech, k, w, y, held, answers)
-    return as_if_free(mech, k, y, held)
+def share_cones(
+    mech: Mech, k: Moving, held: Codes, N: Floats, F: Floats, lam: Floats, part: float, answers: Floats2, D: Floats2
+) -> float:  # fmt: skip
+    """The same where loads may follow the shares, by the cones with the most to spare."""
+    keep_loads(mech, k, held, lam, answers, D)
+    Z = shares_of(D)
+    x, weight, most = np.zeros(Z.shape[1]), np.zeros(held.shape[0] + mech.joint.port.shape[0]), 0.0
+    cones, top = cones_of(mech, k, held, N, F, lam, part, answers, Z)
+    for _ in range(ROUNDS if Z.shape[1] > 0 and cones.held.any() else 0):
+        most = most_spare(cones, top, x, weight)
+        nearest_enough(cones, most, x)
+        for c in range(held.shape[0]):
+            for a in range(mech.port.row[c], mech.port.row[c + 1]):
+                k.way[a] = -weight[c] / cones.size[c] * shared(cones, x, a)
+        if apply_shares(mech, k, held, N, F, lam, answers, cones, x) <= CURVED or most > ENOUGH:
+            break
+        cones, top = cones_of(mech, k, held, N, F, lam, part, answers, Z)
+    return float(1.0 - most) if x.any() or weight.any() else 0.0
+
+
+@kernel
+def apply_shares(
+    mech: Mech, k: Moving, held: Codes, N: Floats, F: Floats, lam: Floats, answers: Floats2, cones: Cones, x: Floats
+) -> float:  # fmt: skip
+    """Give every port its share, with loads and reactions; what loads differ by from straight lines, in their size.
+
+    The load of a pin is a length, so that the straight line leaves out shares that would hold as well.
+    """
+    change, by_force, bent = np.zeros(F.shape[0]), np.zeros(F.shape[0]), 0.0
+    for a in range(F.shape[0]):
+        change[a] = shared(cones, x, a) - F[a]
+    before = lam.copy()
+    for i in range(lam.shape[0]):
+        for a in range(change.shape[0]):
+            lam[i] += answers[a, i] * change[a]
+    for c in range(held.shape[0]):
+        if held[c] != STICK or not holds(mech, c):
+            continue
+        straight = N[c]
+        load_slopes(mech, k, c, before, answers, by_force)
+        for a in range(F.shape[0]):
+            straight += by_force[a] * change[a]
+        N[c] = load_of(mech, k, c, lam)
+        bent = max(bent, abs(N[c] - straight) / max(abs(N[c]), abs(straight), 1e-300))
+    for a in range(F.shape[0]):
+        F[a] += change[a]
+    return float(bent)
 
 
 @kernel
@@ -93,7 +156,7 @@ def share_stages(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: St
     """The same of the stages of a step from y to ``end``; whether there was anything to share."""
     some = False
     for i in range(st.tab.c.shape[0]):
-        if overloaded(mech, k, end.mode, st.N[i], st.F[i], 1.0):
+        if overloaded(mech, k, end.mode, st.N[i], st.F[i], st.lam[i], 1.0):
             time = y.t + st.tab.c[i] * (end.t - y.t)
             move(mech, k, time, st.Q[i], st.V[i])
             share_load(mech, k, w, y, end.mode, st.N[i], st.F[i], st.lam[i], 1.0)
@@ -165,7 +228,7 @@ def join_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, small: f
             continue
         if whole < 0:
             move(mech, k, y.t, y.q, y.v)
-            D = with_joints(mech, k, w, y, every, none)
+            D = mobility(mech, k, w, y, every, none)
             whole = rank(of_ports(mech, D, held))
         held[c] = STICK
         if rank(of_ports(mech, D, held)) > whole:

@@ -6,6 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import is_open
+from fricmb.integrate.constrained.group_release import start_group
 from fricmb.integrate.constrained.load_share import mark_loops
 from fricmb.integrate.constrained.mode_enumeration import FOUND, NO_SOLUTION, enumerate_modes
 from fricmb.integrate.constrained.mode_trial import (
@@ -58,6 +59,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
                 release(mech, k, y, c)
             elif freely or y.mode[c] == STICK or plane(mech, c):
                 hold(mech, y, c, anew)
+    if not freely:
+        start_group(mech, k, w, y)
     for _ in range(4 * count + 4):
         if not ease(mech, k, w, y):
             break

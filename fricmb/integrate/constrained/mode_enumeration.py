@@ -6,6 +6,7 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.friction_share import react_by_shares
 from fricmb.integrate.constrained.mode_trial import (
+    CREEP_IN_LOOPS,
     LETS_GO,
     at_rest,
     ease,
@@ -18,9 +19,9 @@ from fricmb.integrate.constrained.mode_trial import (
 )
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import plane
+from fricmb.integrate.constrained.slip_rows import plane, slip_speed
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.problem import SLIP, Codes
+from fricmb.integrate.problem import SLIP, STICK, Codes
 
 #: Outcomes of a decision.
 FOUND, NO_SOLUTION, SEVERAL = 0, 1, 2
@@ -52,14 +53,18 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
     """Try every combination of stick and the two directions of slip; the state is left at the first that holds.
 
     Combinations that give the same accelerations are one solution: of joints that hold more than there is to hold,
-    forces alone are not determined.  ``patient``: where Newton's method does not converge, friction is let grow; counts
+    forces alone are not determined.  Where a group has let go at mu_s and slips at mu_k several may hold: of those in
+    which some of it moves the one with the most at rest counts.  ``patient``: where Newton's method does not converge,
+    friction is let grow; counts
     of these tries are left in ``k.furthest``, ``k.unsolved``.
     """
     k.furthest, k.unsolved = 0.0, 0
     if count > ENUMERATED:
         return NO_SOLUTION
     n_c = y.mode.shape[0]
-    found, kept = 0, -1
+    found, kept, most, released = 0, -1, -1, False
+    for c in range(n_c):
+        released = released or part[c] == LETS_GO
     for number in range(3**count + 1):
         # the last round returns to what was found
         code, twice = number, False
@@ -82,12 +87,20 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
         if twice or not (ease(mech, k, w, y) or (patient and solved_by_shares(mech, k, w, y))):
             continue
         scale = largest_acceleration(mech, k, w, y)
-        holds = True
+        holds, stuck, moves = True, 0, not released
         for c in range(n_c):
             if not at_rest(mech, y, c, part):
                 continue
+            stuck += 1 if y.mode[c] == STICK else 0
+            if part[c] == LETS_GO and y.mode[c] != STICK:
+                moves = moves or slip_speed(mech.port.row, c, y.n, y.F, y.ga) > CREEP_IN_LOOPS * scale
             if wrong(mech, k, y, c, scale) > 0.0 or (part[c] != LETS_GO and still(mech, k, y, c, scale)):
                 holds = False
+        holds = holds and moves
+        if holds and number < 3**count and released and stuck != most:
+            if stuck < most:
+                continue
+            found, most = 0, stuck
         if holds and number < 3**count and not (found > 0 and moves_alike(w, y, scale)):
             found += 1
             kept = number

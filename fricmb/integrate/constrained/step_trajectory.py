@@ -209,12 +209,12 @@ def with_open(problem: Problem, opened: Codes) -> Problem:
 
 def complete_open(
     problem: Problem, opened: Codes, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats,
-    *, project: bool = False, side: Floats | None = None,
+    *, project: bool = False, side: Floats | None = None, still: float | None = None,
 ) -> tuple[Floats, ...]:  # fmt: skip
     """As :func:`complete_at`, ``opened`` (n_t, n_j) saying which joints are open."""
     side = t if side is None else side
     if not opened.any():
-        return complete_at(problem, t, q, v, z, mode, force, project=project, side=side)
+        return complete_at(problem, t, q, v, z, mode, force, project=project, side=side, still=still)
     patterns, which = np.unique(opened, axis=0, return_inverse=True)
     found: list[Floats] = []
     for i, pattern in enumerate(patterns):
@@ -222,7 +222,7 @@ def complete_open(
         q_here, v_here = q[mine], v[mine]
         part = complete_at(
             with_open(problem, pattern), t[mine], q_here, v_here, z[mine], mode[mine], force[mine], project=project,
-            side=side[mine],
+            side=side[mine], still=still,
         )  # fmt: skip
         q[mine], v[mine] = q_here, v_here
         found = found or [np.zeros((len(x), len(t))) for x in part]
@@ -233,21 +233,23 @@ def complete_open(
 
 def complete_at(
     problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False,
-    side: Floats | None = None,
+    side: Floats | None = None, still: float | None = None,
 ) -> tuple[Floats, ...]:  # fmt: skip
     """F (m_p, n_t), N (n_c, n_t), g (m_p, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
 
     The last two are energies (1, n_t) that contacts with damping store, and powers (n_c + 2, n_t).
 
     ``project``: q and v are first moved onto the constraints, in place.  ``side`` (n_t,): a time on the side of a
-    breakpoint on which each state is, where that is not the right-hand one.
+    breakpoint on which each state is, where that is not the right-hand one.  ``still``: slip slower than this keeps the
+    direction that ``force`` gives it (default: round-off of these velocities).
     """
     m, nc, rows, count = mechanism_of(problem).n_rows, problem.n_c, problem.m, len(t)
     F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
     lam, a, stored = np.zeros((count, m)), np.zeros((count, problem.n)), np.zeros(count)
     power = np.zeros((count, nc + 2))
     mech = mech_of(problem)
-    solid, still = np.ascontiguousarray, 1e-11 * float(np.abs(v).max(initial=0.0))
+    solid = np.ascontiguousarray
+    still = 1e-11 * float(np.abs(v).max(initial=0.0)) if still is None else still
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),

@@ -1,0 +1,164 @@
+"""The cones of a group of dry joints and contacts that hold together: what shares of their forces do to each.
+
+Shares are forces that together do nothing to the motion, joints holding; reactions answer them, and with these the
+loads of dry joints and what may not pull.  Loads of what slips on must not change: friction there would.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, is_open, load_place
+from fricmb.integrate.constrained.loop_mobility import DEPENDENT, holds
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.model.cone_shares import Cones
+from fricmb.integrate.model.friction_cone import friction_size, stick_limit
+from fricmb.integrate.problem import STICK, Codes, Floats, Floats2
+
+#: Least size of a cone, beside the largest force of the group, and load under which a coefficient is taken then.
+LEAST = 1e-6
+#: What a share changes in a cone, in its size, that is round-off.
+NOTHING = 1e-9
+
+
+@kernel
+def load_slopes(mech: Mech, k: Moving, c: int, lam: Floats, answers: Floats2, slope: Floats) -> None:
+    """Change of the load of dry joint c by unit forces (m_p,), whose reactions are ``answers`` (m_p, m)."""
+    j = mech.port.joint[c]
+    n_x = call_joint(mech, k, j, lam)
+    rows = mech.joint.row[j + 1] - mech.joint.row[j]
+    at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
+    for a in range(slope.shape[0]):
+        slope[a] = 0.0
+        for i in range(rows):
+            slope[a] += k.out[at + 1 + i] * answers[a, mech.joint.row[j] + i]
+
+
+@kernel
+def load_of(mech: Mech, k: Moving, c: int, lam: Floats) -> float:
+    """Load of dry joint c under reactions."""
+    j = mech.port.joint[c]
+    n_x = call_joint(mech, k, j, lam)
+    return float(
+        k.out[load_place(n_x, friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]), directions(mech, c))]
+    )
+
+
+@kernel
+def keep_loads(mech: Mech, k: Moving, held: Codes, lam: Floats, answers: Floats2, D: Floats2) -> None:
+    """Count changes of the loads of dry joints that are not ``held`` as motion in D (m_p, m_p)."""
+    m = D.shape[0]
+    slope, most = np.zeros(m), 0.0
+    for a in range(m):
+        most = max(most, D[a, a])
+    for c in range(held.shape[0]):
+        if held[c] == STICK or not holds(mech, c):
+            continue
+        load_slopes(mech, k, c, lam, answers, slope)
+        top = 0.0
+        for a in range(m):
+            slope[a] = slope[a] if D[a, a] > 0.0 else 0.0
+            top = max(top, abs(slope[a]))
+        for a in range(m if top > 0.0 else 0):
+            for b in range(m):
+                D[a, b] += most * (slope[a] / top) * (slope[b] / top)
+
+
+@kernel
+def shares_of(D: Floats2) -> Floats2:
+    """Forces (m_p, r) that together do nothing: a basis of the null space of a Gram matrix, by elimination."""
+    m = D.shape[0]
+    size, A = np.zeros(m), D.copy()
+    for a in range(m):
+        size[a] = 1.0 / np.sqrt(D[a, a]) if D[a, a] > 0.0 else 0.0
+    for a in range(m):
+        for b in range(m):
+            A[a, b] *= size[a] * size[b]
+    pivots, taken, count = np.full(m, -1), np.zeros(m, np.bool_), 0
+    for _ in range(m):
+        best, most = -1, DEPENDENT
+        for a in range(m):
+            if size[a] > 0.0 and not taken[a] and A[a, a] > most:
+                best, most = a, A[a, a]
+        if best < 0:
+            break
+        taken[best] = True
+        pivots[count] = best
+        count += 1
+        line = A[best] / A[best, best]
+        for a in range(m):
+            factor = A[a, best]
+            if a != best:
+                for b in range(m):
+                    A[a, b] -= factor * line[b]
+        A[best] = line
+    free = 0
+    for a in range(m):
+        free += 1 if size[a] > 0.0 and not taken[a] else 0
+    Z, j = np.zeros((m, free)), 0
+    for a in range(m):
+        if size[a] == 0.0 or taken[a]:
+            continue
+        Z[a, j] = size[a]
+        for i in range(count):
+            Z[pivots[i], j] = -A[pivots[i], a] * size[pivots[i]]
+        top = 0.0
+        for b in range(m):
+            top = max(top, abs(Z[b, j]))
+        Z[:, j] /= top
+        j += 1
+    return Z
+
+
+@kernel
+def cones_of(
+    mech: Mech, k: Moving, held: Codes, N: Floats, F: Floats, lam: Floats, part: float, answers: Floats2, Z: Floats2
+) -> tuple[Cones, float]:
+    """Cones of the held ports, to ``part``, then of joints that may not pull; and the largest force among them."""
+    port, joint, n_c, n_j, r = mech.port, mech.joint, held.shape[0], mech.joint.port.shape[0], Z.shape[1]
+    row, some = np.full(n_c + n_j + 1, port.row[n_c]), np.zeros(n_c + n_j, np.int8)
+    limit, slope, size = np.zeros(n_c + n_j), np.zeros((n_c + n_j, r)), np.ones(n_c + n_j)
+    by_force, top = np.zeros(F.shape[0]), 0.0
+    for c in range(n_c):
+        row[c] = port.row[c]
+        if held[c] == STICK:
+            some[c] = 1
+            top = max(top, friction_size(port.row, c, F), abs(stick_limit(port, port.laws, c, k.s, max(N[c], 0.0))))
+    for c in range(n_c):
+        if some[c] == 0:
+            continue
+        load = max(abs(N[c]), LEAST * top)
+        per_load = part * stick_limit(port, port.laws, c, k.s, load) / load
+        limit[c] = per_load * N[c] if holds(mech, c) else part * stick_limit(port, port.laws, c, k.s, max(N[c], 0.0))
+        if holds(mech, c):
+            load_slopes(mech, k, c, lam, answers, by_force)
+            for i in range(r):
+                for a in range(F.shape[0]):
+                    slope[c, i] += per_load * by_force[a] * Z[a, i]
+        size[c] = max(abs(limit[c]), friction_size(port.row, c, F), LEAST * top)
+    for j in range(n_j):
+        if joint.one_sided[j] == 0 or is_open(mech, j):
+            continue
+        some[n_c + j] = 1
+        limit[n_c + j] = lam[joint.row[j]]
+        for i in range(r):
+            for a in range(F.shape[0]):
+                slope[n_c + j, i] += answers[a, joint.row[j]] * Z[a, i]
+        size[n_c + j] = max(abs(limit[n_c + j]), LEAST * top)
+    cones = Cones(row, some, F, Z, limit, slope, size)
+    for c in range(n_c + n_j):
+        some[c] = 1 if some[c] != 0 and follows(cones, c, top) else 0
+    return cones, top
+
+
+@kernel
+def follows(cones: Cones, c: int, top: float) -> bool:
+    """Whether shares of the size of the largest force change anything in cone c."""
+    most = 0.0
+    for j in range(cones.Z.shape[1]):
+        most = max(most, abs(cones.slope[c, j]))
+        for a in range(cones.row[c], cones.row[c + 1]):
+            most = max(most, abs(cones.Z[a, j]))
+    return bool(most * top > NOTHING * cones.size[c])
