@@ -12,6 +12,10 @@ author = "The fricmb developers"
 copyright = "2026, The fricmb developers"
 release = version = installed_version("fricmb")
 
+# Pages solve many small problems: threads of BLAS would cost a finite element page four times its processor time.
+for library in ("OPENBLAS", "MKL", "OMP"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
 sys.path.insert(0, os.path.dirname(__file__))  # _api, _described, _examples, _layers, _pages, _pictures
 
 import _api  # noqa: E402
@@ -136,10 +140,17 @@ def reference_pages(app):
         (here / f"_{name}.md").write_text(text, encoding="utf-8")
 
 
+def leave_out_decisions(app, doctree):
+    """Decisions are for contributors: a user's search does not find them."""
+    if app.env.docname.startswith("decisions/"):
+        app.env.metadata[app.env.docname]["nosearch"] = True
+
+
 def setup(app):
     app.connect("builder-inited", reference_pages)
     app.connect("builder-inited", benchmark_pages)
     app.connect("doctree-read", _described.check)
+    app.connect("doctree-read", leave_out_decisions)
     app.connect("autodoc-process-docstring", keep_bars, priority=400)
     # after numpydoc, so that an example stands below the sections that it makes
     app.connect("autodoc-process-docstring", _api.add_example(_api.Shown(Path(app.srcdir) / MADE)), priority=900)

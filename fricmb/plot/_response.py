@@ -78,4 +78,4 @@ class ResponsePlots:
         ):  # fmt: skip
             ax.fill_between(found.values, 0.0, share, color=colour, alpha=0.35, linewidth=0.0, label=label)
         ax.set_ylim(0.0, 1.0)
-        finish(ax, x=over, y=f"share of stick, {found.contacts[k]}")
+        finish(ax, x=over, y=f"stick, {found.contacts[k]}")

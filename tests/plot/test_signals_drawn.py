@@ -128,7 +128,7 @@ def test_sticking_and_cycles_of_a_response():
     assert found.branch.cycles[0].amplitude("mass.x") == pytest.approx(found.up[0], rel=1e-3)
     figure = found.plot.amplitude()
     assert len(figure.axes) == 2
-    assert figure.axes[1].get_ylabel() == "share of stick, sole"
+    assert figure.axes[1].get_ylabel() == "stick, sole"
     with pytest.raises(UnknownNameError, match="unknown parameter 'omga'"):
         fm.analysis.frequency_response(scene, over="omga", values=[1.0], measure="mass.x")
     with pytest.raises(AnalysisError, match="contact must be one of sole"):
