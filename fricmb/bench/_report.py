@@ -75,54 +75,103 @@ def _inside(name: str, content: str, words: str) -> str:
 
 
 def _parts(result: dict[str, Any], put: Put) -> Iterator[str]:
-    about = result["about"]
-    versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
-    yield f"<p>{html.escape(about['date'])}, {html.escape(about['machine'])}; {html.escape(versions)}.</p>"
-    yield "<h2>Who is ahead</h2>" + _AHEAD
+    """What one reads first, then all else, folded."""
+    yield _summary(_board(result))
     yield put("ahead.svg", plots.svg(plots.ahead(_board(result))), "time of the best peer over that of auto, by scene")
-    yield _NOTES
-    yield "<h2>Time to reach an error</h2>" + scoreboard_table(result)
-    yield "<h2>What a tolerance means</h2>" + _tolerance(result)
-    yield "<h2>Work and precision</h2>"
-    for case in dict.fromkeys(cell["case"] for cell in [*result["cells"], *result["daes"]]):
-        rows = [cell for cell in [*result["cells"], *result["daes"]] if cell["case"] == case]
+    yield _AHEAD + "<h2>Time to reach an error</h2>" + short_table(result)
+    yield "<h2>Details</h2>"
+    yield fold("All errors, with the fastest program for each", scoreboard_table(result))
+    yield fold("How errors and times are measured, on which machine", _measured(result["about"]))
+    yield fold("How far the error is the tolerance", _tolerance(result))
+    yield fold("Error against time, scene by scene", "".join(_cases(result, put)))
+    yield fold("Orders of convergence", _ORDERS + "".join(_formulas(result, put)))
+    yield fold("Cost against size", "".join(_sizes(result, put)))
+    not_run = ((row["case"], row["method"], (row["why"], "text")) for row in result["refusals"])
+    yield fold("Not run", table(("scene", "method", "why"), not_run))
+
+
+def fold(title: str, content: str) -> str:
+    """Content below a title that opens it."""
+    return f"<details><summary>{html.escape(title)}</summary>{content}</details>"
+
+
+def _summary(board: list[dict[str, Any]]) -> str:
+    """In how many scenes fricmb is ahead, for each error."""
+    lines = []
+    for level in LEVELS:
+        entries = [entry for entry in board if entry["level"] == level]
+        reached = [(entry["auto"] or entry["own"], entry["peer"]) for entry in entries if entry["auto"] or entry["own"]]
+        both = [(mine, peer) for mine, peer in reached if peer is not None]
+        ahead = sum(mine["seconds"] <= peer["seconds"] for mine, peer in both)
+        alone = len(reached) - len(both)
+        lines.append(
+            f"<li>an error of {level:g}: fricmb is faster than every other program in {ahead} of {len(both)} scenes;"
+            f" in {alone} more no other program reaches this error</li>"
+        )
+    return "<ul>" + "".join(lines) + "</ul>"
+
+
+def short_table(result: dict[str, Any]) -> str:
+    """Milliseconds to a loose and a tight error, and who else comes nearest."""
+    rows = []
+    board = _board(result)
+    for case in dict.fromkeys(entry["case"] for entry in board):
+        row: list[Any] = [(result["titles"].get(case, case).partition(" (")[0], "text")]
+        for entry in (entry for entry in board if entry["case"] == case and entry["level"] in (1e-2, 1e-6)):
+            mine, peer = entry["auto"] or entry["own"], entry["peer"]
+            first = mine is not None and (peer is None or mine["seconds"] <= peer["seconds"])
+            row += [(_ms(mine), "good" if first else ""), _ms(peer), (peer["method"] if peer else "", "text")]
+        rows.append(row)
+    head = ("scene", "error 1e-2: fricmb", "best other", "which", "error 1e-6: fricmb", "best other", "which")
+    return table(head, rows) + "<p class='note'>Milliseconds of processor time; - : no setting reached this error.</p>"
+
+
+def _measured(about: dict[str, Any]) -> str:
+    versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
+    machine = f"{html.escape(about['date'])}, {html.escape(about['machine'])}; {html.escape(versions)}."
+    return f"{_NOTES}<p>{machine}</p>"
+
+
+def _cases(result: dict[str, Any], put: Put) -> Iterator[str]:
+    """Each scene: its picture, and its runs."""
+    cells = [*result["cells"], *result["daes"]]
+    for case in dict.fromkeys(cell["case"] for cell in cells):
+        rows = [cell for cell in cells if cell["case"] == case]
         title = result["titles"].get(case, case)
         yield f"<h3>{html.escape(title)}</h3>"
         if any(row["metrics"] for row in rows):
             yield put(f"{case}.svg", plots.svg(plots.work_precision(rows)), f"error against processor time: {title}")
         yield put(f"{case}.html", _runs(rows), "all runs")
-    yield "<h2>Order of convergence</h2>" + _ORDERS
+
+
+def _formulas(result: dict[str, Any], put: Put) -> Iterator[str]:
+    """A picture for each family of formulas."""
     formulas = [row for row in result["orders"] if "steps" in row]
     for family in dict.fromkeys(row["method"].partition(",")[0] for row in formulas):
         rows = [row for row in formulas if row["method"].partition(",")[0] == family]
         picture = plots.svg(plots.convergence(rows, family))
         yield put(f"order_{family}.svg", picture, f"error against steps, {family}: {_SLOPES}")
-    yield "<h2>Cost against size</h2>" + "".join(_sizes(result, put))
-    yield "<h2>Not run</h2>" + table(
-        ("scene", "method", "why"), ((row["case"], row["method"], (row["why"], "text")) for row in result["refusals"])
-    )
 
 
-_AHEAD = """<p class="note">For each scene, the processor time of the fastest other program over that of
-<code>auto</code>, where both reach an error of 1e-2 to 1e-8. To the right of the line fricmb is ahead; an open
-mark at the edge: no other program that was tried reaches that error.</p>"""
+_AHEAD = """<p class="note">For each scene: processor time of the fastest other program over that of <code>auto</code>,
+for errors of 1e-2 to 1e-8 that both reach. Right of the line fricmb is ahead; an open mark at the edge: no other
+program reaches this error.</p>"""
 
-_NOTES = """<p class="note">State error: largest error of a position or velocity over the grid of the reference, each
-signal over its largest value. References: event-driven solutions in 30-digit arithmetic, closed forms, published
-digits. Peers run the same scene with friction smoothed over a slip speed eps (times the largest speed), with a
-compiled right-hand side and the analytic Jacobian; eps goes from 1e-2 to 1e-7, the tolerance a hundredth of it.
-Their transitions are where the slip speed crosses 10 eps. Times: processor time, the least of several runs in one
-process, compilation apart.</p>"""
+_NOTES = """<p>The state error is the largest error of a position or velocity over the grid of the reference, each
+signal over its largest value. References are event-driven solutions in 30-digit arithmetic, closed forms, or published
+digits. Other programs run the same scene with friction smoothed over a slip speed eps (times the largest speed), with
+a compiled right-hand side and the analytic Jacobian; eps goes from 1e-2 to 1e-7, the tolerance is a hundredth of eps.
+Their transitions are where the slip speed crosses 10 eps. Times are processor times, the least of several runs in one
+process, without compilation.</p>"""
 
 
 _SLOPES = (
-    "each line is one formula with steps of one length each; a formula of order p falls by p decades while the "
-    "steps grow by one, until round-off ends it, and the legend says the slope that was fitted"
+    "each line is one formula with fixed steps; the error of order p falls by p decades while the number of steps "
+    "rises by one, down to round-off; the legend has the fitted slope"
 )
-_ORDERS = """<p class="note">Error against number of steps where nothing sticks: the largest over the run, also between
-steps, where the order of the dense output counts (for Radau IIA that of its stages, about s, not the 2 s - 1 at the
-ends of steps). bdf leaves the run to Radau IIA at tight tolerances, with fewer steps: orders are fitted up to
-there.</p>"""
+_ORDERS = """<p>The largest error over a run without stick against the number of steps. It includes times between
+steps, where the order is that of the dense output (for Radau IIA about s, not the 2 s - 1 at the ends of steps). bdf
+leaves the run to Radau IIA at tight tolerances, with fewer steps; orders are fitted up to there.</p>"""
 
 
 def _board(result: dict[str, Any]) -> list[dict[str, Any]]:
@@ -154,11 +203,11 @@ def _tolerance(result: dict[str, Any]) -> str:
     if not found["runs"]:
         return "<p>no runs</p>"
     text = (
-        f"<p>error / (rtol growth) of auto lies within 0.01 to 100 in {100 * found['within']:.0f} % of {found['runs']} "
-        f"runs, and is not above 100 in {100 * found['not_above']:.0f} %. With the runs that are more accurate than "
-        f"asked at no cost it is {100 * found['fair']:.0f} %: they take as many steps as at the loosest tolerance, for "
-        "these end at transitions, at the hundredth of a run that every step is within, or where the fastest mode ends "
-        "them, and between they are exact to more digits. All that is not within:</p>"
+        f"<p>The error of auto, over rtol times the growth of errors in the scene, is from 0.01 to 100 in "
+        f"{100 * found['within']:.0f} % of {found['runs']} runs, and not above 100 in {100 * found['not_above']:.0f} %. "
+        f"With the runs that are more accurate at no cost it is {100 * found['fair']:.0f} %: they take as many steps as "
+        "at the loosest tolerance, because transitions, the fastest mode or the length of the run limit their steps. The "
+        "runs outside:</p>"
     )
     rows = ((x["case"], x["rtol"], x["used"], x["ratio"], (x["why"], "text")) for x in found["exceptions"])
     return text + table(("scene", "rtol", "integrator", "ratio", "what"), rows)

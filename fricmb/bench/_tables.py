@@ -43,13 +43,13 @@ def scoreboard(cells: Rows) -> list[dict[str, Any]]:
 
 #: A run is no dearer than the loosest of its scene up to so many times its steps.
 NO_DEARER = 1.25
-FREE = "more accurate than asked, in as many steps as at the loosest tolerance"
+FREE = "more accurate than rtol, in as many steps as at the loosest tolerance"
 
 
 def tolerance_statistic(cells: Rows) -> dict[str, Any]:
     """How often error / (rtol growth) of "auto" lies within its bounds, and the runs where it does not.
 
-    ``fair``: with those that are more accurate than asked at no cost, as where steps end at transitions or are exact in
+    ``fair``: with those that are more accurate than ``rtol`` at no cost, as where steps end at transitions or are exact in
     between.
     """
     runs, outside = 0, []
@@ -65,7 +65,7 @@ def tolerance_statistic(cells: Rows) -> dict[str, Any]:
         if not LOW <= ratio <= HIGH:
             steps, least = _steps(cell), fewest[cell["case"]]
             free = ratio < LOW and steps is not None and least is not None and steps <= NO_DEARER * least
-            why = FREE if free else "more accurate than asked" if ratio < LOW else "less accurate than asked"
+            why = FREE if free else "more accurate than rtol" if ratio < LOW else "less accurate than rtol"
             outside.append({**_named(cell), "ratio": ratio, "why": why})
     too_large = sum(row["ratio"] is None or row["ratio"] > HIGH for row in outside)
     return {
