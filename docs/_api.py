@@ -5,6 +5,7 @@ import hashlib
 import inspect
 import io
 import json
+import re
 import sys
 import types
 from pathlib import Path
@@ -53,6 +54,20 @@ def shown(module: str, name: str, members: list[str]) -> list[str]:
 def _declared() -> type:
     """What all declarations share: parts, laws, normal-force laws."""
     return next(base for base in fm.FrictionLaw.__mro__ if base in fm.Body.__mro__)
+
+
+def type_links(reference: Path) -> dict[str, str]:
+    """Names of types in docstrings, and what they link to: public names of the reference that are no two things.
+
+    Names of other packages (numpydoc's own list) link to nothing: their pages are not on this machine.
+    """
+    from numpydoc.xref import DEFAULT_LINKS
+
+    listed = [line.strip() for page in ("api.md", "laws.md") for line in (reference / page).read_text().splitlines()]
+    public = [name for name in listed if re.fullmatch(r"(\w+\.)?[A-Z]\w+", name)]
+    last = [name.rpartition(".")[2] for name in public]
+    links = {short: f"fricmb.{name}" for short, name in zip(last, public, strict=True) if last.count(short) == 1}
+    return {**{name: name for name in DEFAULT_LINKS}, **links}
 
 
 #: Characters of LaTeX.

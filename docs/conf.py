@@ -50,7 +50,9 @@ autosummary_context = {"shown": _api.shown}  # members that a page shows
 autodoc_typehints = "none"  # types stand in the numpydoc sections
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
-numpydoc_xref_param_type = False
+numpydoc_xref_param_type = True
+numpydoc_xref_aliases = _api.type_links(Path(__file__).parent / "reference")
+numpydoc_xref_ignore = "all"  # only the names above are links
 
 html_theme = "furo"
 html_title = f"fricmb {release}"
