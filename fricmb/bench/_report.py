@@ -203,11 +203,11 @@ def _tolerance(result: dict[str, Any]) -> str:
     if not found["runs"]:
         return "<p>no runs</p>"
     text = (
-        f"<p>The error of auto, over rtol times the growth of errors in the scene, is from 0.01 to 100 in "
-        f"{100 * found['within']:.0f} % of {found['runs']} runs, and not above 100 in {100 * found['not_above']:.0f} %. "
-        f"With the runs that are more accurate at no cost it is {100 * found['fair']:.0f} %: they take as many steps as "
-        "at the loosest tolerance, because transitions, the fastest mode or the length of the run limit their steps. The "
-        "runs outside:</p>"
+        "<p>The error of auto, over rtol times the growth of errors in the scene, is from 0.01 to 100 in "
+        f"{100 * found['within']:.0f} % of {found['runs']} runs, and not above 100 in {100 * found['not_above']:.0f} %."
+        f" With the runs that are more accurate at no cost it is {100 * found['fair']:.0f} %: they take as many steps"
+        " as at the loosest tolerance, because transitions, the fastest mode or the length of the run limit their"
+        " steps. The runs outside:</p>"
     )
     rows = ((x["case"], x["rtol"], x["used"], x["ratio"], (x["why"], "text")) for x in found["exceptions"])
     return text + table(("scene", "rtol", "integrator", "ratio", "what"), rows)

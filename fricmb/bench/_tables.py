@@ -49,8 +49,8 @@ FREE = "more accurate than rtol, in as many steps as at the loosest tolerance"
 def tolerance_statistic(cells: Rows) -> dict[str, Any]:
     """How often error / (rtol growth) of "auto" lies within its bounds, and the runs where it does not.
 
-    ``fair``: with those that are more accurate than ``rtol`` at no cost, as where steps end at transitions or are exact in
-    between.
+    ``fair``: with those that are more accurate than ``rtol`` at no cost, as where steps end at transitions or are exact
+    in between.
     """
     runs, outside = 0, []
     fewest = {cell["case"]: _steps(cell) for cell in sorted(cells, key=_rtol) if cell["method"] == "auto"}
