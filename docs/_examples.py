@@ -147,6 +147,9 @@ print(sol.events[0])  # at rest after sqrt(2)
 """,
     "RigidBody": _swing('fm.Revolute("pin", arm.point("pin"))'),
     "Revolute": _swing('fm.Revolute("pin", arm.point("pin"), radius=0.05, friction=fm.laws.Coulomb(mu_s=0.4))', 8.0),
+    "DryFriction": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
+        'disc, pin, fm.DryFriction("seal", disc, axis=pin, static=0.4, kinetic=0.3)', 'sol.events', before="")
+        + 'figure = scene.draw()\n',
     "TorsionSpring": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
         'disc, pin, fm.TorsionSpring("spring", disc, stiffness=2.0),\n    fm.TorsionDamper("loss", disc, damping=0.01)',
         'sol["disc.angle"]', before="") + 'figure = scene.draw()\n',

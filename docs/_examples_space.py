@@ -90,6 +90,10 @@ EXAMPLES = {
     + "seen = sol.at(np.linspace(0.0, 0.005, 600))\n"
     + 'for name in ("upper", "lower"):\n    ax.plot(1e3 * seen.t, seen.normal_force(name) / 1e3, label=name)\n'
     + 'ax.set(xlabel="time, ms", ylabel="normal force, kN")\nax.legend()\n',
+    "space.DryFriction": 'wheel = fm.space.Rotor("wheel", mass=1.0, inertia_across=0.1, inertia_axial=0.2, spin=3.0)\n'
+    'hub = fm.space.Revolute("hub", wheel, axis=(0, 0, 1))\n'
+    'seal = fm.space.DryFriction("seal", wheel, axis=hub, static=0.8, kinetic=0.6)\n'
+    + _run("wheel, hub, seal", "sol.events[0]", 2.0),
     "space.DrivenSpin": 'wheel = fm.space.Rotor("wheel", mass=1.0, inertia_across=0.1, inertia_axial=0.2)\n'
     'drive = fm.space.DrivenSpin("drive", wheel, speed=3.0 * fm.t)\n'
     + _run("wheel, drive", 'sol.reaction("drive")[0, -1].round(6)'),

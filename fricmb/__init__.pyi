@@ -28,6 +28,7 @@ from .scene import Damper as Damper
 from .scene import Driven as Driven
 from .scene import DrivenAngle as DrivenAngle
 from .scene import DrivenSlide as DrivenSlide
+from .scene import DryFriction as DryFriction
 from .scene import Element as Element
 from .scene import Fixed as Fixed
 from .scene import Force as Force

@@ -8,6 +8,7 @@ from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._contact import Contact
 from fricmb.scene._damper import Damper
 from fricmb.scene._driven_joints import DrivenAngle, DrivenSlide
+from fricmb.scene._dry_friction import DryFriction
 from fricmb.scene._element import Element
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._force import Force
@@ -41,6 +42,7 @@ __all__ = [
     "Driven",
     "DrivenAngle",
     "DrivenSlide",
+    "DryFriction",
     "Element",
     "End",
     "Fixed",

@@ -4,6 +4,7 @@ from fricmb.space._ball import Ball
 from fricmb.space._creep import LinearCreep, Polach, ShenHedrickElkins
 from fricmb.space._directors import RigidBody
 from fricmb.space._driven_spin import DrivenSpin
+from fricmb.space._dry_friction import DryFriction
 from fricmb.space._ground import ground_point
 from fricmb.space._guides import Cylindrical, Prismatic
 from fricmb.space._in_cylinder import InCylinder
@@ -22,6 +23,7 @@ __all__ = [
     "Ball",
     "Cylindrical",
     "DrivenSpin",
+    "DryFriction",
     "Fixed",
     "InCylinder",
     "KalkerCoefficients",

@@ -172,6 +172,19 @@ def turning() -> Case:
     return rotor(lambda wheel: [torque(wheel)], lambda t, q, v: [0.9 * math.sin(1.3 * t)], "Torque")
 
 
+def dry_friction() -> Case:
+    """A wheel with a seal, held by a spring; the pin is free."""
+    wheel = fm.RigidBody("w", mass=2.0, inertia=0.5, angle=0.4, angular_velocity=0.3)
+    pin = fm.Revolute("pin", wheel)
+    parts = [
+        wheel, pin, torque(wheel), fm.TorsionSpring("k", wheel, stiffness=1.2, angle=0.1),
+        fm.DryFriction("c", wheel, axis=pin, static=0.35, kinetic=0.25),
+    ]  # fmt: skip
+    contact = on_ground(1, mu_s=constant(0.35), mu=constant(0.25))
+    act = lambda t, q, v: [0.9 * math.sin(1.3 * t) - 1.2 * (q[0] - 0.1)]  # noqa: E731
+    return made("DryFriction", parts, ("w.angle",), numbers([0.4], [0.3], 8.0, (contact,), act, [[0.5]]))
+
+
 # -- normal laws ----------------------------------------------------------------------------------------------------
 def pressed(normal: Any, N: Callable[[float, float], float], name: str, preload: float, stored: bool = True) -> Case:
     """A block that bounces on its own contact while it is shaken along it."""
@@ -415,7 +428,8 @@ def welded() -> Case:
 CASES: dict[str, Callable[[], Case]] = {
     "Spring": spring, "Damper": damper, "Force": force, "PointSpring": point_spring, "PointDamper": point_damper,
     "MatrixElement": matrices, "Gravity": gravity, "TorsionSpring": torsion_spring, "TorsionDamper": torsion_damper,
-    "Torque": turning, "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
+    "Torque": turning, "DryFriction": dry_friction,
+    "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
     "normal.Prescribed": prescribed, "Fixed": welded, "Prismatic": prismatic, "RollerOnLine": on_line,
     "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,
 }  # fmt: skip

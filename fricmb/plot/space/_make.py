@@ -46,6 +46,7 @@ def space_sketch_of_run(sol: Solution, times: Floats) -> SpaceSketch:
             touch.force = force / (most or 1.0)
     return making.sketch
 
+
 #: Lines that show a tube.
 LINES = 16
 
@@ -60,7 +61,8 @@ def _directions(part: Any) -> Floats | None:
         along = np.zeros((len(part.directions()), 3))
         for k, row in enumerate(part.directions()):
             for letter, share in row.vector:
-                along[k, "xyz".index(letter)] += share
+                if letter in "xyz":  # about an angle it is a moment
+                    along[k, "xyz".index(letter)] += share
         return along
     return None
 
