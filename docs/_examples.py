@@ -150,6 +150,26 @@ print(sol.events[0])  # at rest after sqrt(2)
     "DryFriction": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
         'disc, pin, fm.DryFriction("seal", disc, axis=pin, static=0.4, kinetic=0.3)', 'sol.events', before="")
         + 'figure = scene.draw()\n',
+    "Stop": """
+block = fm.Body("block", mass=1.0, velocity={"x": 2.0})
+floor = fm.Contact("floor", block, law=fm.laws.Coulomb(mu_s=0.1), normal_force=9.81)
+ends = fm.Stop("ends", block, axis="x", lower=-0.3, upper=0.3, stiffness=1e4, hunt_crossley=0.2)
+scene = fm.Scene("a block between stops", [block, floor, ends])
+sol = fm.simulate(scene, t_end=3.0)
+print(sol.touches("ends").begin.round(4), sol.touches("ends").side)
+figure = scene.draw()
+""",
+    "Backlash": """
+import sympy
+
+motor, load = fm.Body("motor", mass=0.01), fm.Body("load", mass=0.05)
+mesh = fm.Backlash("mesh", motor, load, axis="x", gap=0.1, stiffness=2000.0, hunt_crossley=0.5)
+torque = fm.Force("torque", motor, axis="x", value=sympy.sin(2 * sympy.pi * fm.t))
+dry = fm.DryFriction("dry", load, axis="x", static=0.3)
+sol = fm.simulate(fm.Scene("a drive with play", [motor, load, mesh, torque, dry]), t_end=1.0)
+print(len(sol.touches("mesh")), [event.kind for event in sol.events])
+figure = sol.plot.velocities()
+""",
     "TorsionSpring": _DISC + 'pin = fm.Revolute("pin", disc)\n' + _mechanism(
         'disc, pin, fm.TorsionSpring("spring", disc, stiffness=2.0),\n    fm.TorsionDamper("loss", disc, damping=0.01)',
         'sol["disc.angle"]', before="") + 'figure = scene.draw()\n',

@@ -22,6 +22,7 @@ from .errors import SceneError as SceneError
 from .integrate import integrators as integrators
 from .laws import FrictionLaw as FrictionLaw
 from .scene import GROUND as GROUND
+from .scene import Backlash as Backlash
 from .scene import Body as Body
 from .scene import Contact as Contact
 from .scene import Damper as Damper
@@ -48,6 +49,7 @@ from .scene import RollerOnCircle as RollerOnCircle
 from .scene import RollerOnLine as RollerOnLine
 from .scene import Scene as Scene
 from .scene import Spring as Spring
+from .scene import Stop as Stop
 from .scene import Torque as Torque
 from .scene import TorsionDamper as TorsionDamper
 from .scene import TorsionSpring as TorsionSpring

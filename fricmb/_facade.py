@@ -39,6 +39,7 @@ TARGETS = {
     "fricmb.solution._solution:Solution._repr_html_": "fricmb.plot._view:solution_notebook",
     "fricmb.solution._solution:Solution.audit": "fricmb.audit:audit",
     "fricmb.solution._solution:Solution.plot": "fricmb.plot:SolutionPlots",
+    "fricmb.solution._solution:Solution.touches": "fricmb.field:touches",
 }
 #: Objects of higher layers that files have a word for.
 WORDS = {

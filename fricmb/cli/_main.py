@@ -189,8 +189,8 @@ def _add_run(commands: _Commands) -> None:
 
 
 def _add_list(commands: _Commands) -> None:
-    sub = _command(commands, "list", "list models, laws and integrators, built in and published", "_show:show_list")
-    sub.add_argument("what", nargs="?", choices=("models", "laws", "integrators"), help="only these")
+    sub = _command(commands, "list", "list models, parts, laws and integrators", "_show:show_list")
+    sub.add_argument("what", nargs="?", choices=("models", "parts", "laws", "integrators"), help="only these")
 
 
 def _add_law(commands: _Commands) -> None:

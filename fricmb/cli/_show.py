@@ -7,10 +7,12 @@ import dataclasses
 import inspect
 import sys
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any
 
 import fricmb as fm
 from fricmb.cli._load import load
+from fricmb.cli._parts import PURPOSES
 from fricmb.models import catalogue
 
 
@@ -25,6 +27,8 @@ def show_list(options: argparse.Namespace) -> int:
         for name, build in found.items():
             _show_model(name, _summary(build), build)
         _complain(broken)
+    if wanted in (None, "parts"):
+        _show_parts(summaries=wanted is not None)
     if wanted == "laws":
         _show_laws()
     elif wanted is None:
@@ -41,6 +45,18 @@ def _show_model(name: str, summary: str, build: Callable[..., Any]) -> None:
     arguments = inspect.signature(build).parameters.values()
     held = (a.name if a.default is inspect.Parameter.empty else f"{a.name}={a.default!r}" for a in arguments)
     print("      " + ", ".join(held))
+
+
+def _show_parts(*, summaries: bool) -> None:
+    """Parts by what they are for, each with its first line if wanted."""
+    print("parts (fm.NAME), by what they are for")
+    for purpose, names in PURPOSES.items():
+        if not summaries:
+            print(f"  {purpose}: {', '.join(names)}")
+            continue
+        print(f"  {purpose}")
+        for name in names:
+            print(f"    {name}\n        {_summary(attrgetter(name)(fm))}")
 
 
 def _show_laws() -> None:

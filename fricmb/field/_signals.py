@@ -25,7 +25,7 @@ def from_scene(sol: Solution, quantity: str, owner: str) -> Floats:
     Parameters
     ----------
     sol : Solution
-    quantity : {"acceleration", "force", "elongation"}
+    quantity : {"acceleration", "force", "elongation", "rate"}
     owner : str
         An element, whose components are (k, n_t) in the order of :func:`element_axes`.  For "acceleration" "" for all
         degrees of freedom (n, n_t), or a driven motion (n_t,).
@@ -71,8 +71,8 @@ def _of_piece(sol: Any, piece: Any, samples: Any, quantity: str, owner: str) -> 
     frame = frame_of(sol.names, piece)
     part: Any = frame.scene[owner]
     moment = _moment(frame, samples, sol.names)
-    if quantity == "elongation":
-        found = [moment.form(form)[0] for form in part.local_coordinates()]
+    if quantity in ("elongation", "rate"):
+        found = [moment.form(form)[int(quantity == "rate")] for form in part.local_coordinates()]
     else:
         found = (Pushes(part) if isinstance(part, Force) else Acts(part)).forces(moment)
     return np.array([np.broadcast_to(np.asarray(x, dtype=float), samples.t.shape) for x in found])

@@ -18,7 +18,7 @@ from fricmb.analysis import AnalysisError
 from fricmb.plot._contact import OPEN, SLIP, STICK
 from fricmb.plot._figure import new_picture
 from fricmb.plot._make_sketch import in_space, shown_span, sketch_of_run, sketch_of_scene
-from fricmb.plot._sketch import Floats, Link, Mark, Shape, Sketch, Touch, coil, pot
+from fricmb.plot._sketch import Floats, Link, Mark, Shape, Sketch, Touch, coil, plates, pot
 from fricmb.plot._style import Paint, drawn, figure_of, name_figure, paint
 
 if TYPE_CHECKING:
@@ -172,12 +172,14 @@ def strokes(sketch: Sketch, shape: int, i: int) -> list[Floats]:
 
 
 def link_lines(sketch: Sketch, link: Link, i: int) -> list[Floats]:
-    """A spring as a coil, a damper as a pot, a rod as a line."""
+    """A spring as a coil, a damper as a pot, play as two plates apart, a rod as a line."""
     a, b = sketch.where(link.a, i), sketch.where(link.b, i)
     if link.kind == "rod":
         return [np.array([a, b])]
     if link.kind == "damper":
         return pot(a, b, sketch.unit, link.side)
+    if link.kind == "play":
+        return plates(a, b, sketch.unit, link.side)
     return [coil(a, b, sketch.unit, link.side, link.coils)]
 
 

@@ -7,7 +7,21 @@ from typing import Any
 import numpy as np
 
 from fricmb.plot._layout import HEIGHT, ROW, Layout, layout, owner
-from fricmb.plot._sketch import GROUND_SHAPE, Floats, Link, Mark, Motion, Shape, Sketch, Spot, Touch, box, disc, is_idle
+from fricmb.plot._sketch import (
+    GROUND_SHAPE,
+    Floats,
+    Link,
+    Mark,
+    Motion,
+    Shape,
+    Sketch,
+    Spot,
+    Touch,
+    box,
+    disc,
+    is_idle,
+    link_kind,
+)
 from fricmb.scene import Contact, ModalBody
 
 #: A body that travels this many times farther than the one that travels least, nearly all in one direction, is drawn
@@ -137,7 +151,6 @@ class _Boxes:
         a, b = getattr(part, "a", None), getattr(part, "b", None)
         if a is None or b is None or owner(a) == owner(b):
             return
-        kind = "damper" if "Damper" in type(part).__name__ else "spring"
         along = self._direction(part)
         first, second = owner(a), owner(b)
         if first == "ground":
@@ -146,7 +159,7 @@ class _Boxes:
             start, end = self._to_ground(first, along)
         else:
             start, end = self._between(first, second, along)
-        self.sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end, idle=is_idle(part)))
+        self.sketch.links.append(Link(kind=link_kind(part), name=part.name, a=start, b=end, idle=is_idle(part)))
         if second == "ground":
             angle = float(np.arctan2(end[2] - self._world(start)[1], end[1] - self._world(start)[0]))
             self.sketch.marks.append(Mark(kind="wall", at=end, angle=angle))

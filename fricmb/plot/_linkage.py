@@ -19,6 +19,7 @@ from fricmb.plot._sketch import (
     Touch,
     box,
     disc,
+    link_kind,
     rounded,
 )
 from fricmb.scene import (
@@ -243,7 +244,11 @@ class _Linkage:
         if "Torsion" in name:
             self._torsion(part, start, end)
             return
-        kind = "damper" if "Damper" in name else "spring"
+        kind = link_kind(part)
+        if kind == "play" and part.local_coordinates()[0].motions[0].endswith(".angle"):
+            if end[0] != GROUND_SHAPE:
+                sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end))
+            return
         if end[0] == GROUND_SHAPE:
             end = self._anchor(part, start, end)
             here = self.sketch.where(start, 0)

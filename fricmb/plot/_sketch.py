@@ -54,7 +54,7 @@ class Shape:
 
 @dataclass(kw_only=True)
 class Link:
-    """A spring, damper, rod or torsional spring between two spots; ``side``: shifted across, in units.
+    """A spring, damper, play, rod or torsional spring between two spots; ``side``: shifted across, in units.
 
     ``idle``: of value 0, drawn pale: it is declared, and left out of runs.
     """
@@ -66,6 +66,12 @@ class Link:
     side: float = 0.0
     coils: int = 5
     idle: bool = False
+
+
+def link_kind(part: Any) -> str:
+    """As what an element is drawn: "damper", "play" of stops and flanks, "spring"."""
+    name = type(part).__name__
+    return "damper" if "Damper" in name else "play" if name in ("Stop", "Backlash") else "spring"
 
 
 def is_idle(part: Any) -> bool:
@@ -239,3 +245,16 @@ def pot(a: Floats, b: Floats, unit: float, side: float) -> list[Floats]:
     cup = [middle + half + wide * n, middle - half + wide * n, middle - half - wide * n, middle + half - wide * n]
     plate = [middle + 0.75 * wide * n, middle - 0.75 * wide * n]
     return [np.array([start, middle - half]), np.array(cup), np.array(plate), np.array([middle, end])]
+
+
+def plates(a: Floats, b: Floats, unit: float, side: float) -> list[Floats]:
+    """A stop, or play, between b and a: two plates that may touch."""
+    along = a - b
+    length = max(float(np.hypot(*along)), 1e-12)
+    e = along / length
+    n = np.array([-e[1], e[0]])
+    start, end, wide = b + side * unit * n, a + side * unit * n, 0.3 * unit * n
+    middle, half = 0.5 * (start + end), min(0.12 * unit, 0.2 * length) * e
+    near, far = middle - half, middle + half
+    lines = (start, near), (near + wide, near - wide), (far + wide, far - wide), (far, end)
+    return [np.array(line) for line in lines]

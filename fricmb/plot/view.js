@@ -220,6 +220,10 @@
         stroke([go(0, 0), go(0.5 - half, 0)]); stroke([go(0.5, 0), go(1, 0)]);
         stroke([go(0.5 + half, wide), go(0.5 - half, wide), go(0.5 - half, -wide), go(0.5 + half, -wide)]);
         stroke([go(0.5, 0.75 * wide), go(0.5, -0.75 * wide)]);
+      } else if (l.kind === "play") {
+        const half = Math.min(0.12 * unit / long, 0.2), wide = 0.3 * unit;
+        stroke([go(0, 0), go(0.5 - half, 0)]); stroke([go(0.5 + half, 0), go(1, 0)]);
+        for (const s of [0.5 - half, 0.5 + half]) stroke([go(s, wide), go(s, -wide)]);
       } else stroke([a, b]);
     }
     p.strokeStyle = colour.line;

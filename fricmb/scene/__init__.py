@@ -26,6 +26,7 @@ from fricmb.scene._rollers import RollerOnCircle, RollerOnLine
 from fricmb.scene._scene import Scene
 from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.scene._spring import Spring
+from fricmb.scene._stops import Backlash, Stop
 from fricmb.scene._symbols import coordinate, speed
 from fricmb.scene._tree import Branch, Loop, Topology, topology
 from fricmb.scene._turning import Gravity, Torque, TorsionDamper, TorsionSpring
@@ -34,6 +35,7 @@ from fricmb.values import Parameter, parameter
 __all__ = [
     "GROUND",
     "AxialElement",
+    "Backlash",
     "Body",
     "Branch",
     "Contact",
@@ -72,6 +74,7 @@ __all__ = [
     "SpaceBody",
     "SpacePoint",
     "Spring",
+    "Stop",
     "Topology",
     "Torque",
     "TorsionDamper",

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import pandas
 
     from fricmb.audit import Audit
+    from fricmb.field import Touches
     from fricmb.plot import SolutionPlots
 
 
@@ -93,6 +94,26 @@ class Solution(Signals):
         fricmb.audit.Audit
             ``.ok``, ``.checks``, ``.table()``; printed, three lines.
         """
+
+    @facade
+    def touches(self, name: str) -> Touches:
+        """When a :class:`Stop` or the flanks of a :class:`Backlash` pushed.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Touches
+            Times ``.begin`` and ``.end`` (n,), and ``.side``, "lower" or "upper" for each; ``len`` counts them.
+
+        Raises
+        ------
+        SceneError
+            For the name of another part.
+        """
+
     @answers
     def columns(self, names: Iterable[str] | None = None) -> dict[str, Floats | Codes]:
         """Signals (n_t,) by name, as in :meth:`to_pandas`.

@@ -10,6 +10,7 @@ import pytest
 
 import fricmb as fm
 from fricmb.cli import main
+from fricmb.scene import Part
 
 
 def run(capsys, *arguments):
@@ -183,11 +184,25 @@ def test_a_failed_run_keeps_its_files_and_ends_with_3(capsys, tmp_path):
     assert np.isfinite(fm.Solution.load(tmp_path / "out" / "solution.npz").q).all()
 
 
+def test_every_part_is_listed_by_what_it_is_for():
+    from fricmb.cli._parts import PURPOSES
+
+    listed = [name for names in PURPOSES.values() for name in names]
+    places = (("", fm), ("space.", fm.space))
+    public = {(prefix + name): getattr(home, name) for prefix, home in places for name in home.__all__}
+    bases = (fm.Element, fm.Joint)
+    parts = {name for name, kind in public.items() if isinstance(kind, type) and issubclass(kind, Part)}
+    assert sorted(listed) == sorted(parts - {kind.__name__ for kind in bases})
+
+
 def test_list_equations_plan(capsys):
     status, text, _ = run(capsys, "list")
     assert status == 0
-    for name in ("brake4dof", "stick_slip_chain", "Coulomb", "bdf"):
+    for name in ("brake4dof", "stick_slip_chain", "Coulomb", "bdf", "ends of a way, and play: Stop, Backlash"):
         assert name in text
+    status, text, _ = run(capsys, "list", "parts")
+    assert status == 0
+    assert "friction\n    Contact\n        Friction between two ends" in text
     status, text, _ = run(capsys, "equations", "belt_oscillator", "--latex")
     assert status == 0
     assert "\\" in text

@@ -185,6 +185,43 @@ def dry_friction() -> Case:
     return made("DryFriction", parts, ("w.angle",), numbers([0.4], [0.3], 8.0, (contact,), act, [[0.5]]))
 
 
+def pushed_back(depth: float, rate: float, k: float, hunt_crossley: float, damping: float, over: float) -> float:
+    """What a stop of stiffness k pushes back with."""
+    if depth <= 0.0:
+        return 0.0
+    u = min(1.0, depth / over)
+    return max(0.0, k * depth * (1.0 + hunt_crossley * rate) + damping * u**2 * (3.0 - 2.0 * u) * rate)
+
+
+def stop() -> Case:
+    body, parts = block(2.5 * sympy.sin(1.3 * T))
+    parts.append(fm.Stop("ends", body, axis="x", lower=-0.4, upper=0.5, stiffness=40.0, hunt_crossley=0.3))
+
+    def act(t: float, q: Any, v: Any) -> Any:
+        ends = pushed_back(-0.4 - q[0], -v[0], 40.0, 0.3, 0.0, 1.0) - pushed_back(q[0] - 0.5, v[0], 40.0, 0.3, 0.0, 1.0)
+        return [2.5 * math.sin(1.3 * t) + ends]
+
+    return made("Stop", parts, ("m.x",), numbers([0.3], [0.2], 8.0, (on_ground(1),), act))
+
+
+def backlash() -> Case:
+    """A motor drives a dry load through play."""
+    body, parts = block(0.0)
+    motor = fm.Body("motor", mass=0.3, position={"x": 0.3})
+    parts += [
+        motor, fm.Force("torque", motor, axis="x", value=2.5 * sympy.sin(1.3 * T)),
+        fm.Backlash("mesh", motor, body, axis="x", gap=0.2, stiffness=60.0, damping=0.8, damping_depth=0.02),
+    ]  # fmt: skip
+
+    def act(t: float, q: Any, v: Any) -> Any:
+        x, rate = q[1] - q[0], v[1] - v[0]
+        mesh = pushed_back(x - 0.1, rate, 60.0, 0.0, 0.8, 0.02) - pushed_back(-x - 0.1, -rate, 60.0, 0.0, 0.8, 0.02)
+        return [mesh, 2.5 * math.sin(1.3 * t) - mesh]
+
+    problem = numbers([0.3, 0.3], [0.2, 0.0], 6.0, (on_ground(2),), act, [[1.0, 0.0], [0.0, 0.3]])
+    return made("Backlash", parts, ("m.x", "motor.x"), problem)
+
+
 # -- normal laws ----------------------------------------------------------------------------------------------------
 def pressed(normal: Any, N: Callable[[float, float], float], name: str, preload: float, stored: bool = True) -> Case:
     """A block that bounces on its own contact while it is shaken along it."""
@@ -428,7 +465,7 @@ def welded() -> Case:
 CASES: dict[str, Callable[[], Case]] = {
     "Spring": spring, "Damper": damper, "Force": force, "PointSpring": point_spring, "PointDamper": point_damper,
     "MatrixElement": matrices, "Gravity": gravity, "TorsionSpring": torsion_spring, "TorsionDamper": torsion_damper,
-    "Torque": turning, "DryFriction": dry_friction,
+    "Torque": turning, "DryFriction": dry_friction, "Stop": stop, "Backlash": backlash,
     "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
     "normal.Prescribed": prescribed, "Fixed": welded, "Prismatic": prismatic, "RollerOnLine": on_line,
     "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,

@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.plot._contact import static_limit
 from fricmb.plot._layout import owner
 from fricmb.plot._make_sketch import check_drawn
-from fricmb.plot._sketch import Floats, Motion, motions_at_start, motions_of
+from fricmb.plot._sketch import Floats, Motion, link_kind, motions_at_start, motions_of
 from fricmb.plot.space._shapes import axle, ball, cone, cuboid, cylinder_of, disc, edges_of
 from fricmb.plot.space._sketch import FIXED, Floor, Solid, SpaceLink, SpaceSketch, SpaceTouch, Spot
 from fricmb.plot.space._turns import turns_of
@@ -275,7 +275,7 @@ class _Making:
     def _link(self, part: Any) -> None:
         """A spring or a damper."""
         a, b = getattr(part, "a", None), getattr(part, "b", None)
-        kind = "damper" if "Damper" in type(part).__name__ else "spring"
+        kind = link_kind(part)
         if a is None or b is None or "Torsion" in type(part).__name__ or not a.letters:
             return
         start = self._spot(a)

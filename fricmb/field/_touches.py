@@ -1,0 +1,97 @@
+"""When stops and flanks touch: beginnings and ends, located on the dense output of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fricmb.errors import SceneError
+from fricmb.field._signals import from_scene
+from fricmb.integrate.problem import Floats
+from fricmb.scene import Backlash, Scene, Stop
+
+if TYPE_CHECKING:
+    from fricmb.solution import Solution
+
+#: Places within each step that are looked at.
+WITHIN = 16
+#: Halvings of such a place.
+HALVINGS = 60
+
+
+@dataclass(frozen=True, kw_only=True)
+class Touches:
+    """When a stop or a flank pushed.
+
+    Attributes
+    ----------
+    begin, end : (n,)
+        Times, rising in ``begin``; those of the run where it begins or ends in touch.
+    side : list of str
+        "lower" or "upper", the limit that was pressed.
+    """
+
+    begin: Floats
+    end: Floats
+    side: list[str]
+
+    def __len__(self) -> int:
+        return len(self.side)
+
+
+def touches(sol: Solution, name: str) -> Touches:
+    """See :meth:`fricmb.Solution.touches`."""
+    part = sol.scene[name] if isinstance(sol.scene, Scene) else None
+    if not isinstance(part, Stop | Backlash):
+        raise SceneError(f"touches: {name!r} must be a Stop or a Backlash")
+    sides = [side for side, limit in zip(("lower", "upper"), part.limits(), strict=True) if limit is not None]
+    steps = np.unique(sol.run.row_motion().samples.t)
+    t = np.unique(np.concatenate([steps[:-1] + share * np.diff(steps) for share in np.arange(WITHIN) / WITHIN]))
+    t = np.append(t, steps[-1])
+    found: list[tuple[float, float, str]] = []
+    for i, side in enumerate(sides):
+        pushes = _pushes(sol, part, i)
+        found += [(begin, end, side) for begin, end in _spans(pushes, t)]
+    found.sort()
+    begin, end = (np.array([span[i] for span in found], dtype=float) for i in (0, 1))
+    return Touches(begin=begin, end=end, side=[span[2] for span in found])
+
+
+def _pushes(sol: Solution, part: Any, i: int) -> Callable[[Floats], Floats]:
+    """A function of times (n_t,) that is above 0 where limit ``i`` of those there are is pressed and pushes."""
+    own = part.numeric()
+    ratio = getattr(own, "ratio", None)
+
+    def of(t: Floats) -> Floats:
+        seen = sol.at(t)
+        x, rate = (from_scene(seen, quantity, part.name) for quantity in ("elongation", "rate"))
+        if ratio is not None:
+            x, rate = (rows[0] + ratio * rows[1] for rows in (x, rate))
+        else:
+            x, rate = x[0], rate[0]
+        depth, speed = own.depths(x, rate)[i]
+        share = np.clip(depth / own.damping_depth, 0.0, 1.0) if own.damping_depth is not None else 0.0 * depth
+        grip = own.stiffness * depth * own.hunt_crossley + own.damping * share**2 * (3.0 - 2.0 * share)
+        return np.asarray(np.minimum(depth, depth + grip * speed / own.stiffness))
+
+    return of
+
+
+def _spans(pushes: Callable[[Floats], Floats], t: Floats) -> list[tuple[float, float]]:
+    """Beginnings and ends of where a function is above 0, from its signs at rising times."""
+    on = pushes(t) > 0.0
+    turned = np.flatnonzero(on[1:] != on[:-1])
+    low, high, before = t[turned], t[turned + 1], on[turned]
+    for _ in range(HALVINGS if turned.size else 0):
+        middle = 0.5 * (low + high)
+        same = (pushes(middle) > 0.0) == before
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    times = high.tolist()
+    if on[0]:
+        times.insert(0, float(t[0]))
+    if on[-1]:
+        times.append(float(t[-1]))
+    return list(zip(times[::2], times[1::2], strict=True))

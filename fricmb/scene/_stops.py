@@ -1,0 +1,274 @@
+"""Springs that cannot pull: stops at the ends of a way, and the play between teeth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar
+
+from fricmb.errors import SceneError
+from fricmb.scene._axes import check_axis, check_ends, direction
+from fricmb.scene._dry_friction import ANGLE, joint_ends
+from fricmb.scene._element import Element
+from fricmb.scene._forms import LinearForm
+from fricmb.scene._joint import Joint
+from fricmb.scene._joints import Prismatic, Revolute
+from fricmb.scene._part import GROUND, End
+from fricmb.scene._rigid import RigidBody, angle_of
+from fricmb.scene._turning import relative_angle
+from fricmb.values import is_list, value_of
+
+#: What an axis may be.
+_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute or Prismatic of the plane"
+
+
+@dataclass(frozen=True, eq=False)
+class _Touching(Element):
+    """What pushes back where a coordinate goes beyond limits."""
+
+    bends: ClassVar[bool] = True
+    positive: ClassVar[tuple[str, ...]] = ("stiffness",)
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axis")
+
+    a: End
+    b: End = GROUND
+    _: KW_ONLY
+    axis: Any = None
+    stiffness: Any
+    hunt_crossley: Any = 0.0
+    damping: Any = 0.0
+    damping_depth: Any = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.axis, Joint):
+            self._take_joint(self.axis)
+        check_ends(self, self.a, self.b)
+        self._check_axis()
+        super().__post_init__()
+        for argument in ("damping", "hunt_crossley"):
+            self._set(argument, self._number(argument, getattr(self, argument), minimum=0.0))
+        if self.damping_depth is not None:
+            self._set("damping_depth", self._number("damping_depth", self.damping_depth, above=0.0))
+        elif value_of(self.damping) > 0.0:
+            accepted = "given beside damping, the depth over which that comes in: without it the force would jump"
+            self._refuse("damping_depth", None, accepted)
+        self._check_limits()
+        self.local_coordinates()
+
+    def _take_joint(self, joint: Joint) -> None:
+        """Ends and axis that a joint stands for."""
+        _, other = joint_ends(self, self.a, self.b, joint)
+        self._set("b", other)
+        if isinstance(joint, Revolute):
+            self._set("axis", ANGLE)
+        elif isinstance(joint, Prismatic) and not isinstance(joint.b.owner, RigidBody):
+            angle = value_of(joint.angle)
+            self._set("axis", (math.cos(angle), math.sin(angle)))
+        else:
+            accepted = "a Revolute, or a Prismatic of the plane whose guide does not turn (b is no RigidBody)"
+            self._refuse("axis", joint.name, accepted)
+
+    def _check_axis(self) -> None:
+        if self.axis is None:
+            raise SceneError(f"{self._label()}: axis must be given: {_ACCEPTED}")
+        if isinstance(self.axis, str) and self.axis not in ("x", "y", "z", ANGLE):
+            self._refuse("axis", self.axis, _ACCEPTED)
+        if not isinstance(self.axis, str) and not is_list(self.axis):
+            self._refuse("axis", self.axis, _ACCEPTED)
+        if self.axis != ANGLE:
+            self._set("axis", check_axis(self, "axis", self.axis))
+
+    def _check_limits(self) -> None:
+        """Refuse limits that cannot be."""
+
+    def limits(self) -> tuple[Any, Any]:
+        """Lower and upper limit of the coordinate; None where there is none."""
+        raise NotImplementedError
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """What is limited."""
+        if self.axis == ANGLE:
+            return (relative_angle(self, self.a, self.b),)
+        return (direction(self, "axis", self.axis, self.a, self.b).form,)
+
+    def depths(self, x: Any, rate: Any) -> tuple[tuple[Any, Any], ...]:
+        """How far it is pressed beyond each limit, and the rate of that."""
+        lower, upper = self.limits()
+        sides = [] if lower is None else [(lower - x, -rate)]
+        return (*sides, *([] if upper is None else [(x - upper, rate)]))
+
+    def define_potential(self, x: tuple[Any, ...]) -> Any:
+        """Of springs that cannot pull."""
+        import sympy
+
+        return sum(self.stiffness * sympy.Max(0, depth) ** 2 / 2 for depth, _ in self.depths(x[0], 0))
+
+    def define_dissipation(self, x: tuple[Any, ...], x_dot: tuple[Any, ...]) -> Any:
+        """Of what holds against parting as well, but no more than the spring pushes.
+
+        Where it parts faster the spring alone would still push, and is held back: the force is 0, and what was stored
+        is lost.
+        """
+        import sympy
+
+        lost: Any = 0
+        for depth, rate in self.depths(x[0], x_dot[0]):
+            spring = self.stiffness * depth
+            grip = spring * self.hunt_crossley
+            if self.damping_depth is not None:
+                share = sympy.Min(1, depth / self.damping_depth)
+                grip += self.damping * share**2 * (3 - 2 * share)
+            pressed = sympy.Piecewise((grip * rate**2 / 2, spring + grip * rate > 0), (-spring * rate, True))
+            lost += sympy.Piecewise((pressed, depth > 0), (0, True))
+        return lost
+
+
+@dataclass(frozen=True, eq=False)
+class Stop(_Touching):
+    """Ends of a way: a spring and a damper that cannot pull, where a coordinate goes beyond its limits.
+
+    Force on a, of the depth ``d = x - upper`` (``d = lower - x`` at the other end) and its rate d':
+    ``max(0, stiffness d (1 + hunt_crossley d') + damping s(d) d')`` back into the way where ``d > 0``, else 0.
+
+    Parameters
+    ----------
+    name : str
+        Unique in a scene, without dots.
+    a, b : Body, RigidBody, Driven, a point or GROUND
+        Ends; b defaults to GROUND, beside a joint to its other end.
+    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+        The coordinate x, of a less that of b, as in :class:`DryFriction`.
+    lower, upper : float, optional
+        Its limits, one of them or both, lower < upper.
+    stiffness : float
+        Of both ends, force per length (torque per radian), > 0.
+    hunt_crossley : float
+        Loss that grows with the force of the spring, 1/speed, >= 0.
+    damping : float
+        Force per speed, >= 0, at a depth of ``damping_depth`` and beyond.
+    damping_depth : float
+        Over which ``damping`` comes in, > 0: ``s(d) = u^2 (3 - 2 u)``, ``u = min(1, d/damping_depth)``; to be given
+        where there is damping.  Without it the force would jump where it touches.
+
+    Raises
+    ------
+    SceneError
+        If ends, axis, limits or values cannot be.
+
+    Notes
+    -----
+    It touches at ``d = 0`` and lets go where the force is 0, which where it parts fast is before the spring is free: it
+    never pulls.  Steps end at both instants; :meth:`Solution.touches` tells them.  K. H. Hunt, F. R. E. Crossley,
+    Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42 (1975) 440-445; ``damping`` as
+    of the function IMPACT of MSC Adams.
+
+    Examples
+    --------
+    A block between two stops, half a period of 10 rad/s in each:
+
+    >>> import fricmb as fm
+    >>> block = fm.Body("block", mass=1.0, velocity={"x": 2.0})
+    >>> ends = fm.Stop("ends", block, axis="x", lower=-1.0, upper=1.0, stiffness=100.0)
+    >>> sol = fm.simulate(fm.Scene("block", [block, ends]), t_end=3.0, rtol=1e-8)
+    >>> touches = sol.touches("ends")
+    >>> [float(t.round(6)) for t in touches.begin], touches.side
+    ([0.5, 1.814159], ('upper', 'lower'))
+    """
+
+    _: KW_ONLY
+    lower: Any = None
+    upper: Any = None
+
+    def _check_limits(self) -> None:
+        if self.lower is None and self.upper is None:
+            raise SceneError(f"{self._label()}: lower or upper must be given")
+        if self.lower is not None and self.upper is not None and value_of(self.lower) >= value_of(self.upper):
+            self._refuse("upper", self.upper, f"above lower = {value_of(self.lower):g}")
+
+    def limits(self) -> tuple[Any, Any]:
+        """As declared."""
+        return self.lower, self.upper
+
+
+@dataclass(frozen=True, eq=False)
+class Backlash(_Touching):
+    """Play: two bodies are free within a gap, and held by a spring and a damper that cannot pull at both ends of it.
+
+    Force on a as of a :class:`Stop` with the limits ``-gap/2`` and ``gap/2``.
+
+    Parameters
+    ----------
+    name : str
+        Unique in a scene, without dots.
+    a, b : Body, RigidBody, Driven, a point or GROUND
+        Ends; b defaults to GROUND, beside a joint to its other end.
+    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+        The coordinate, of a less that of b, as in :class:`DryFriction`.
+    ratio : float, optional
+        In place of ``axis``, of two wheels in mesh: the coordinate is ``angle of a + ratio (angle of b)``, as of a
+        :class:`Gear` (radius of b over that of a; < 0 for an internal gear or a shaft).
+    gap : float
+        The whole play, >= 0: from one flank to the other.
+    stiffness : float
+        Of each flank, force per length (torque on a per radian of a), > 0.
+    hunt_crossley : float
+        Loss that grows with the force of the spring, 1/speed, >= 0.
+    damping, damping_depth : float
+        Force per speed, >= 0, and the depth over which it comes in, > 0.
+
+    Raises
+    ------
+    SceneError
+        If ends, axis, gap or values cannot be.
+
+    Notes
+    -----
+    M. Nordin, P.-O. Gutman, Controlling mechanical systems with backlash - a survey, Automatica 38 (2002) 1633-1649,
+    section 2: the dead zone with damping, here without its pull.  See :class:`Stop`.
+
+    Examples
+    --------
+    >>> import fricmb as fm
+    >>> motor, load = fm.Body("motor", mass=1.0, velocity={"x": 1.0}), fm.Body("load", mass=1.0)
+    >>> mesh = fm.Backlash("mesh", motor, load, axis="x", gap=0.2, stiffness=200.0)
+    >>> sol = fm.simulate(fm.Scene("drive", [motor, load, mesh]), t_end=0.5, rtol=1e-8)
+    >>> [float(v.round(9)) for v in (sol.velocity("motor.x")[-1], sol.velocity("load.x")[-1])]
+    [0.0, 1.0]
+    """
+
+    _: KW_ONLY
+    gap: Any
+    ratio: Any = None
+
+    def _check_axis(self) -> None:
+        if self.ratio is None:
+            super()._check_axis()
+            return
+        if self.axis is not None:
+            self._refuse("ratio", self.ratio, "left out beside axis")
+        self._set("ratio", self._number("ratio", self.ratio))
+
+    def _check_limits(self) -> None:
+        self._set("gap", self._number("gap", self.gap, minimum=0.0))
+
+    def limits(self) -> tuple[Any, Any]:
+        """Half the gap on each side."""
+        return -self.gap / 2, self.gap / 2
+
+    def local_coordinates(self) -> tuple[LinearForm, ...]:
+        """The play, or both angles of wheels in mesh."""
+        if self.ratio is None:
+            return super().local_coordinates()
+        return angle_of(self, "a", self.a), angle_of(self, "b", self.b)
+
+    def _one(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """The play, of wheels in mesh from both angles."""
+        return x if self.ratio is None else (x[0] + self.ratio * x[1],)
+
+    def define_potential(self, x: tuple[Any, ...]) -> Any:
+        """Of springs that cannot pull."""
+        return super().define_potential(self._one(x))
+
+    def define_dissipation(self, x: tuple[Any, ...], x_dot: tuple[Any, ...]) -> Any:
+        """Of what holds against parting as well, but no more than the spring pushes."""
+        return super().define_dissipation(self._one(x), self._one(x_dot))
