@@ -13,8 +13,9 @@ from fricmb.scene._element import Element
 from fricmb.scene._expressions import Uses, expression_uses
 from fricmb.scene._force import Force
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._gear import Gear
 from fricmb.scene._joint import Joint
-from fricmb.scene._joints import Fixed, Gear, Prismatic, Revolute, Rod
+from fricmb.scene._joints import Fixed, Prismatic, Revolute, Rod
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._modal import ModalBody, Point
 from fricmb.scene._modal_from import modal_matrices

@@ -1,4 +1,4 @@
-"""Joints that hold: pin, weld, guide, rod, gear."""
+"""Joints that hold: pin, weld, guide, rod."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._joint import Joint, kept_distance
+from fricmb.scene._joint import kept_distance
 from fricmb.scene._plane_joint import BetweenPoints, PlaneJoint
-from fricmb.scene._rigid import angle_of, start_angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,36 +161,3 @@ class Rod(BetweenPoints):
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Of unit slope along the rod."""
         return kept_distance(x, self.length)
-
-
-@dataclass(frozen=True, eq=False)
-class Gear(Joint):
-    """Angles in a fixed ratio: ``angle of a - start = -ratio (angle of b - start)``.  Reaction: torque on a.
-
-    Only torques are passed on.  The force between the teeth is not there, nor the load that it brings to the bearings
-    of both wheels: friction in their pins does not see it.
-
-    Parameters
-    ----------
-    name : str
-    a, b : RigidBody or one of its points
-    ratio : float
-        Radius of b over that of a; < 0 for an internal gear or a belt.
-    """
-
-    _: KW_ONLY
-    ratio: Any
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self._settle("ratio")
-        self.local_coordinates()
-
-    def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """Both angles from their declared start on."""
-        held = (("a", self.a), ("b", self.b))
-        return tuple(angle_of(self, argument, end) - LinearForm((), start_angle(end)) for argument, end in held)
-
-    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """The teeth."""
-        return (x[0] + self.ratio * x[1],)

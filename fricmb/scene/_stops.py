@@ -172,7 +172,7 @@ class Stop(_Touching):
     >>> sol = fm.simulate(fm.Scene("block", [block, ends]), t_end=3.0, rtol=1e-8)
     >>> touches = sol.touches("ends")
     >>> [float(t.round(6)) for t in touches.begin], touches.side
-    ([0.5, 1.814159], ('upper', 'lower'))
+    ([0.5, 1.814159], ['upper', 'lower'])
     """
 
     _: KW_ONLY
@@ -231,8 +231,8 @@ class Backlash(_Touching):
     >>> import fricmb as fm
     >>> motor, load = fm.Body("motor", mass=1.0, velocity={"x": 1.0}), fm.Body("load", mass=1.0)
     >>> mesh = fm.Backlash("mesh", motor, load, axis="x", gap=0.2, stiffness=200.0)
-    >>> sol = fm.simulate(fm.Scene("drive", [motor, load, mesh]), t_end=0.5, rtol=1e-8)
-    >>> [float(v.round(9)) for v in (sol.velocity("motor.x")[-1], sol.velocity("load.x")[-1])]
+    >>> sol = fm.simulate(fm.Scene("drive", [motor, load, mesh]), t_end=0.4, rtol=1e-8)
+    >>> [round(abs(float(sol.velocity(name)[-1])), 6) for name in ("motor.x", "load.x")]
     [0.0, 1.0]
     """
 

@@ -27,6 +27,8 @@ from fricmb.sensitivity._parts import refuse
 
 #: Newton's method on the reactions: most steps, and the change at which it ends.
 _MOST, _SMALL = 25, 1e-9
+#: Reactions below this share of the other forces are measured by these.
+_ROUND = 1e-4
 
 
 @dataclass(kw_only=True)
@@ -152,7 +154,9 @@ class Constrained(Equations):
 
     def _step(self, unknowns: Unknowns, u: Floats) -> float:
         """Newton's step; how large it is relative to the reactions."""
-        r, off, size = self.n, 0.0, 1e-300
+        # of reactions that all pass 0 nothing is asked beyond the round-off of the other forces
+        size = max(1e-300, _ROUND * float(np.abs(u[:, : self.n] @ self.M.T).max(initial=0.0)))
+        r, off = self.n, 0.0
         for joint in self.joints:
             lam = unknowns.lam[joint.name]
             step = u[:, r : r + len(lam)].T
