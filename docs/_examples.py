@@ -211,6 +211,19 @@ sol = fm.simulate(scene, t_end=1.0)
 print(sol.velocity("small.angle")[-1], sol.velocity("large.angle")[-1])
 figure = scene.draw()
 """,
+    "Rope": """
+import math
+
+ship, hand = fm.Body("ship", mass=10.0), fm.Body("hand", mass=1.0)
+rope = fm.Rope("rope", (ship, hand), axes=("x", "x"), angle=math.pi, friction=0.5)
+pull = fm.Force("pull", hand, axis="x", value=10.0)
+wind = fm.Force("wind", ship, axis="x", value=10.0 + 10.0 * fm.t)
+sol = fm.simulate(fm.Scene("mooring", [ship, hand, rope, pull, wind]), t_end=5.0)
+mean, difference = sol.reaction("rope")[0], sol.force("rope")[0]
+print(sol.events)
+print((mean - difference / 2)[-1], (mean + difference / 2)[-1])  # at the hand, at the ship
+figure = sol.plot.force("rope")
+""",
     "DrivenAngle": _DISC.replace("20.0", "5.0") + _mechanism(
         'disc, fm.Revolute("pin", disc), fm.DrivenAngle("motor", disc, speed=5.0)', 'sol["disc.angle"]', before="")
         + 'figure = scene.draw()\n',

@@ -18,6 +18,8 @@ TELLING = {
     "slider_crank": ["slider.x"],
     "painleve_rod": ["rod.angle"],
     "four_bar": ["crank.angle", "rocker.angle"],
+    "band_brake": ["drum.angle", "holder.x"],
+    "belt_drive": ["drive.angle", "driven.angle"],
     "drive_train": ["wheel.angle", "disc.angle"],
     "heavy_top": ["top.axis_x", "top.axis_z"],
     "rising_top": ["top.axis_z", "top.spin"],

@@ -47,6 +47,7 @@ from .scene import RigidBody as RigidBody
 from .scene import Rod as Rod
 from .scene import RollerOnCircle as RollerOnCircle
 from .scene import RollerOnLine as RollerOnLine
+from .scene import Rope as Rope
 from .scene import Scene as Scene
 from .scene import Spring as Spring
 from .scene import Stop as Stop

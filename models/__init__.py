@@ -9,6 +9,8 @@ if __name__ != "fricmb.models":
 from fricmb.models._catalogue import Model, catalogue
 from fricmb.models.andrews import andrews
 from fricmb.models.ball_in_cylinder import ball_in_cylinder
+from fricmb.models.band_brake import band_brake
+from fricmb.models.belt_drive import belt_drive
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
@@ -39,6 +41,8 @@ __all__ = [
     "Model",
     "andrews",
     "ball_in_cylinder",
+    "band_brake",
+    "belt_drive",
     "belt_oscillator",
     "billiard",
     "block_stack",

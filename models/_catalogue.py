@@ -10,6 +10,8 @@ from types import MappingProxyType
 import fricmb as fm
 from fricmb.models.andrews import andrews
 from fricmb.models.ball_in_cylinder import ball_in_cylinder
+from fricmb.models.band_brake import band_brake
+from fricmb.models.belt_drive import belt_drive
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
@@ -82,6 +84,8 @@ _MODELS = (
     Model(build=andrews, t_end=0.03, units=SI),
     Model(build=car_axis, t_end=3.0),
     Model(build=sprag_slip, t_end=1.0, units=SI),
+    Model(build=band_brake, t_end=1.2, units=SI),
+    Model(build=belt_drive, t_end=3.5, units=SI),
     Model(build=slider_crank, t_end=1.0, units=SI),
     Model(build=painleve_rod, t_end=0.2, units=SI),
     Model(build=four_bar, t_end=2.0, units=SI),

@@ -19,7 +19,7 @@ PURPOSES: dict[str, tuple[str, ...]] = {
         "Spring", "Damper", "PointSpring", "PointDamper", "TorsionSpring", "TorsionDamper", "MatrixElement",
     ),
     "ends of a way, and play": ("Stop", "Backlash"),
-    "transmissions": ("Gear",),
+    "transmissions": ("Gear", "Rope"),
     "drives and loads": (
         "Force", "Torque", "Gravity", "DrivenAngle", "DrivenSlide", "space.Torque", "space.DrivenSpin",
     ),

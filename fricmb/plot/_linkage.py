@@ -34,6 +34,7 @@ from fricmb.scene import (
     Rod,
     RollerOnCircle,
     RollerOnLine,
+    Rope,
     Torque,
     TorsionSpring,
 )
@@ -209,10 +210,23 @@ class _Linkage:
                 sketch.touches.append(Touch(name=joint.name, at=a))
         elif isinstance(joint, Rod):
             sketch.links.append(Link(kind="rod", name=joint.name, a=a, b=b))
+        elif isinstance(joint, Rope):
+            self._rope(joint)
+        elif isinstance(joint, Gear) and joint.friction is not None:
+            sketch.touches.append(Touch(name=joint.name, at=moved, turns=True))
         elif isinstance(joint, Fixed):
             sketch.marks.append(Mark(kind="support" if fixed else "weld", at=b if fixed else a))
         elif isinstance(joint, DrivenAngle):
             sketch.marks.append(Mark(kind="turn", at=moved, size=2.2 * sketch.unit))
+
+    def _rope(self, rope: Rope) -> None:
+        """Its drum as a circle, and what runs off it to both ends."""
+        drum, radius = self._spot(rope.drum), abs(float(value_of(rope.radius))) or self.sketch.unit
+        self.sketch.marks.append(Mark(kind="circle", at=drum, size=radius))
+        for end in (rope.a, rope.b):
+            if end is not rope.drum and owner(end) != "ground":
+                self.sketch.links.append(Link(kind="rod", name=rope.name, a=self._spot(end), b=drum))
+        self.sketch.touches.append(Touch(name=rope.name, at=drum, turns=True))
 
     def _at_ground(self, moved: Spot, ground: Spot) -> Spot:
         """The fixed end of a pin; beside its place for a wheel that was moved aside."""

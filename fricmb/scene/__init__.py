@@ -24,6 +24,7 @@ from fricmb.scene._part import GROUND, End, Ground, Part
 from fricmb.scene._point import PointDamper, PointSpring
 from fricmb.scene._rigid import GroundPoint, RigidBody, RigidPoint, ground_point
 from fricmb.scene._rollers import RollerOnCircle, RollerOnLine
+from fricmb.scene._rope import Rope
 from fricmb.scene._scene import Scene
 from fricmb.scene._space_body import SpaceBody, SpacePoint
 from fricmb.scene._spring import Spring
@@ -71,6 +72,7 @@ __all__ = [
     "Rod",
     "RollerOnCircle",
     "RollerOnLine",
+    "Rope",
     "Scene",
     "SpaceBody",
     "SpacePoint",

@@ -357,6 +357,25 @@ def around(R: float) -> Any:
     return seen
 
 
+def rope() -> Case:
+    """Two blocks on a rope over a fixed drum; the coordinate is that of the second."""
+    a, b = fm.Body("a", mass=1.2, velocity={"x": -0.2}), fm.Body("b", mass=0.7, velocity={"x": 0.2})
+    parts = [
+        a, b, fm.Rope("c", (a, b), axes="xx", angle=2.0, friction=0.2),
+        fm.Force("fa", a, axis="x", value=3.0), fm.Force("fb", b, axis="x", value=3.0 + 2.5 * sympy.sin(1.3 * T)),
+    ]  # fmt: skip
+
+    def pull(t: float) -> float:
+        return 3.0 + 2.5 * math.sin(1.3 * t)
+
+    def load(t: float, q: Any, v: Any, a: Any) -> float:
+        return math.tanh(0.2) * (3.0 + 1.2 * a[0] + pull(t) - 0.7 * a[0])
+
+    contact = on_ground(1, reaction=load, mu=constant(1.0), mu_s=constant(1.0))
+    problem = numbers([0.0], [0.2], 8.0, (contact,), lambda t, q, v: [pull(t) - 3.0], [[1.9]])
+    return made("Rope", parts, ("b.x",), problem)
+
+
 def gear() -> Case:
     """A wheel on a dry pin of constant load drives another: a = -1.5 b."""
     a = fm.RigidBody("a", mass=2.0, inertia=0.5, points={"pin": (0.0, 0.0)})
@@ -468,5 +487,6 @@ CASES: dict[str, Callable[[], Case]] = {
     "Torque": turning, "DryFriction": dry_friction, "Stop": stop, "Backlash": backlash,
     "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
     "normal.Prescribed": prescribed, "Fixed": welded, "Prismatic": prismatic, "RollerOnLine": on_line,
-    "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,
+    "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "Rope": rope,
+    "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,
 }  # fmt: skip
