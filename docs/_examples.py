@@ -236,6 +236,19 @@ sol = fm.simulate(scene, t_end=2.0)
 print(sol["slider.x"][-1])
 figure = scene.draw()
 """,
+    "Signal": """
+import numpy as np
+
+t = np.linspace(0.0, 2.0, 401)  # stands for a measurement
+rng = np.random.default_rng(0)
+push = fm.Signal(t, 1.4 * np.sin(4.0 * t) + 0.05 * rng.standard_normal(t.size), name="push")
+block = fm.Body("block", mass=1.0)
+floor = fm.Contact("floor", block, law=fm.laws.Coulomb(mu_s=1.0, mu_k=0.8), normal_force=1.0)
+load = fm.Force("load", block, axis="x", value=push.lowpass(20.0))
+sol = fm.simulate(fm.Scene("pushed", [block, floor, load]), t_end=2.0)
+print(push)
+print(sol.events[0])
+""",
     "parameter": """
 load = fm.parameter("load", 1.0)  # one number in several places
 blocks = [fm.Body(name, mass=1.0, velocity={"x": 1.0}) for name in ("a", "b")]

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
 from fricmb.errors import SceneError
-from fricmb.signal import is_series, signal_of
+from fricmb.signal import is_series, signal_of, slope_told
 from fricmb.values import Declaration, Parameter, is_expression, is_plain, parameters_in
+
+#: Arguments that state where something is: the speed of a series follows from them.
+_POSITIONS = ("position", "angle", "distance")
 
 
 @dataclass(frozen=True)
@@ -85,9 +89,14 @@ def _of_series(owner: Declaration, argument: str, value: Any) -> Any:
     if not is_series(value):
         return value
     try:
-        return signal_of(value)._sympy_()
+        signal = signal_of(value)
     except SceneError as error:
         raise SceneError(f"{owner._label()}: {argument}: {error}") from None
+    if argument.startswith(_POSITIONS):
+        told = slope_told(signal)
+        if told:
+            warnings.warn(f"{owner._label()}: {argument}: {told}", stacklevel=6)
+    return signal._sympy_()
 
 
 def _with_tables(owner: Declaration, argument: str, value: Any) -> Any:

@@ -21,8 +21,8 @@ OUTSIDE = ("refuse", "hold", "zero")
 #: values, or of a cubic spline through all, times their spacing.
 _THIRD = 20.0**0.5
 _SLOPES = {"linear": 2.0**0.5, "hold": 0.0, "cubic": 3.0 * (2.0 / 3.0**0.5 - 1.0) ** 0.5}
-#: A spacing of so many usual ones is a gap.
-_GAP = 3.0
+#: A spacing of so many usual ones is a gap; that part of a slope that is noise is much.
+_GAP, _MUCH = 3.0, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -398,13 +398,12 @@ def _pieces(t: Floats, y: Floats, kind: str) -> Floats:
     return found
 
 
-def warn_of_noise(signal: Signal, where: str) -> str | None:
-    """What to say of a position whose slope is noise."""
-    spread = float(np.std(signal._table.value(signal.t, SLOPE)))
-    noise = signal.slope_noise
-    if noise <= 0.3 * spread:
-        return None
+def slope_told(signal: Signal) -> str:
+    """What to say of a position whose slope is for the most part noise; "" of any other."""
+    spread, noise = float(np.std(signal._table.value(signal.t, SLOPE))), signal.slope_noise
+    if noise <= _MUCH * spread:
+        return ""
     return (
-        f"{where}: the slope of {signal.name!r} is noise of {noise:.3g} beside {spread:.3g} in all; smooth the series"
-        " first, as by signal.lowpass(...)"
+        f"the speed that follows from {signal.name!r} has noise of {noise:.3g}, and varies by {spread:.3g} in all;"
+        " smooth the series first, by signal.lowpass(...)"
     )

@@ -1,5 +1,7 @@
 """fm.Signal: values, what is refused, filters."""
 
+import warnings
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -120,3 +122,15 @@ def test_pandas():
     assert float(force.value.subs(fm.t, 0.12)) == pytest.approx(wave(0.12), abs=1e-9)
     with pytest.raises(fm.SceneError, match=r"Force 'f': value: Signal: a DataFrame with 2 columns, F, x"):
         fm.Force("f", body, axis="x", value=frame)
+
+
+def test_a_position_whose_speed_is_noise_is_warned_of():
+    rng = np.random.default_rng(4)
+    clean, noisy = (fm.Signal(T, wave(T) + size * rng.standard_normal(T.size), "cubic") for size in (0.0, 0.3))
+    with pytest.warns(UserWarning, match=r"position\['x'\]: the speed that follows from 'signal' has"):
+        fm.Driven("table", position={"x": noisy})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fm.Driven("table", position={"x": clean})
+        fm.Driven("table", position={"x": noisy.lowpass(6.0)})
+        fm.Driven("table", velocity={"x": noisy})
