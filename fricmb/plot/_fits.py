@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fricmb.plot._style import drawn, figure_of, finish, paint, panels, remark
-from fricmb.plot._units import bare
+from fricmb.plot._units import bare, unit_in_scene
 
 if TYPE_CHECKING:
     from fricmb._fit import Fit
@@ -39,7 +39,7 @@ class FitPlots:
             residual = self.fit.residuals[m.name]
             panel.axhline(0.0, color=paint().quiet, linewidth=0.8)
             panel.plot(_times(m), residual, ".", color=paint().slip, markersize=4)
-            finish(panel, x="", y=f"{m.name}: predicted - measured")
+            finish(panel, x="", y=f"{m.name}: predicted - measured [{self._unit(m)}]")
             remark(panel, f"standard deviation {residual.std():.3g}")
         axes[-1].set_xlabel(bare(f"time [{self.fit.scene.units.time}]"))
         return figure_of(axes)
@@ -56,9 +56,15 @@ class FitPlots:
             x = m.x - self.fit.offsets.get(m.name, 0.0)
             panel.plot(m.t, x, ".", color=paint().slip, markersize=4, label="measured")
             panel.plot(t, sol.at(t).scalar(m.name), color=paint().stick, linewidth=1.0, label="fitted")
-            finish(panel, x="", y=m.name, legend=True)
+            finish(panel, x="", y=f"{m.name} [{self._unit(m)}]", legend=True)
         axes[-1].set_xlabel(bare(f"time [{self.fit.scene.units.time}]"))
         return figure_of(axes)
+
+
+    def _unit(self, m: Measured) -> str:
+        """Of a signal; of periods and times of transitions that of time."""
+        scene = self.fit.scene
+        return unit_in_scene(scene, m.name) if m.kind == "signal" else scene.units.time
 
 
 def _times(m: Measured) -> np.ndarray:

@@ -14,6 +14,7 @@ from fricmb.analysis import cycle, path, pull, settling_distance
 from fricmb.laws import FrictionLaw
 from fricmb.plot._figure import new_picture
 from fricmb.plot._style import drawn, few_labels, figure_of, finish, line, paint, panels
+from fricmb.plot._units import Units, bare
 
 Floats = NDArray[np.float64]
 #: A curve whose values differ by less than this share is a straight line.
@@ -23,7 +24,7 @@ _RTOL = 1e-4
 
 
 @drawn
-def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
+def law_figure(law: FrictionLaw, *, normal_force: float = 1.0, units: Units | None = None) -> Figure:
     """Four panels: coefficient over slip speed, hysteresis loops, break-away, lag behind a varying speed.
 
     The parameters stand below the name of the law.
@@ -33,6 +34,8 @@ def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
     law : FrictionLaw
     normal_force : float
         Forces are drawn per unit of it.
+    units : Units, optional
+        Of the law's numbers, for the labels: ``scene.units``.
 
     Returns
     -------
@@ -51,11 +54,14 @@ def law_figure(law: FrictionLaw, *, normal_force: float = 1.0) -> Figure:
     titles = ("steady slip", "hysteresis in harmonic cycles", "break-away", "lag behind a swinging speed")
     for ax, title in zip(axes.flat, titles, strict=True):
         ax.set_title(title, fontsize="medium", loc="left")
+        _name_units(ax, units)
     return figure
 
 
 @drawn
-def law(law: FrictionLaw, *, normal_force: float = 1.0, ax: Axes | None = None) -> Figure:
+def law(
+    law: FrictionLaw, *, normal_force: float = 1.0, units: Units | None = None, ax: Axes | None = None
+) -> Figure:
     """The one panel that tells most of a law: hysteresis loops of a law with memory, else the coefficient over speed.
 
     Parameters
@@ -63,6 +69,8 @@ def law(law: FrictionLaw, *, normal_force: float = 1.0, ax: Axes | None = None) 
     law : FrictionLaw
     normal_force : float
         Forces are drawn per unit of it.
+    units : Units, optional
+        Of the law's numbers, for the labels: ``scene.units``.
     ax : Axes, optional
     """
     (panel,) = panels(1, ax, title=type(law).__name__, height=3.2)
@@ -71,6 +79,7 @@ def law(law: FrictionLaw, *, normal_force: float = 1.0, ax: Axes | None = None) 
         draw_loops(law, panel, loop_length(law, normal_force), float(np.sqrt(speeds[0] * speeds[-1])), normal_force)
     else:
         draw_coefficient(law, panel, speeds, normal_force)
+    _name_units(panel, units)
     return figure_of([panel])
 
 
@@ -162,6 +171,14 @@ def draw_lag(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_for
         last = slice(600, None)
         ax.plot(found.velocity[last], -found.force[last] / normal_force, label=f"frequency {_short(omega)}", **line(i))
     _finish(ax, x="slip speed", y="friction / normal force", legend=True)
+
+
+def _name_units(ax: Axes, units: Units | None) -> None:
+    """Add the unit to a label of speed or displacement; friction and displacement are also drawn as ratios."""
+    label = ax.get_xlabel()
+    if units is not None and label.startswith(("slip speed", "displacement,")):
+        unit = units.velocity if label.startswith("slip speed") else units.length
+        ax.set_xlabel(bare(f"{label} [{unit}]"))
 
 
 def _finish(ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool = False) -> None:
