@@ -29,8 +29,8 @@ def wobbling_disc_brake(
     """Wobbling disc between two pads: friction that follows its faces lets it squeal beyond mu = 0.414.
 
     SI units; the axis is z.  The disc is driven at a constant angular velocity; ``speed`` and ``mu`` are parameters of
-    the scene.  Two degrees of freedom are left: the tilts of the disc.  Growth is slow beside the wobble of 1.7 kHz (0.15
-    1/s at the default mu): runs of milliseconds show the wobble, ``fm.analysis.complex_eigenvalues`` the growth.
+    the scene.  Two degrees of freedom are left: the tilts of the disc.  Growth is slow beside the wobble of 1.7 kHz,
+    0.15 1/s at the default mu: runs of milliseconds show the wobble, ``fm.analysis.complex_eigenvalues`` the growth.
 
     Parameters
     ----------

@@ -177,10 +177,10 @@ def link_lines(sketch: Sketch, link: Link, i: int) -> list[Floats]:
     if link.kind == "rod":
         return [np.array([a, b])]
     if link.kind == "damper":
-        return pot(a, b, sketch.unit, link.side)
+        return pot(a, b, sketch.unit, link.side, link.wide)
     if link.kind == "play":
         return plates(a, b, sketch.unit, link.side)
-    return [coil(a, b, sketch.unit, link.side, link.coils)]
+    return [coil(a, b, sketch.unit, link.side, link.coils, link.wide)]
 
 
 def mark_lines(sketch: Sketch, mark: Mark, i: int) -> list[Floats]:
@@ -192,8 +192,9 @@ def mark_lines(sketch: Sketch, mark: Mark, i: int) -> list[Floats]:
         foot = at + unit * np.array([[-0.8, -1.1], [0.0, 0.0], [0.8, -1.1], [-0.8, -1.1]])
         return [foot, *(at + unit * np.array([[x, -1.1], [x - 0.3, -1.5]]) for x in (-0.6, 0.0, 0.6))]
     if mark.kind == "wall":
-        strokes = (unit * np.array([x * n, (x - 0.15) * n + 0.2 * e]) for x in (-0.2, -0.06, 0.08, 0.21, 0.35))
-        return [np.array([at - 0.35 * unit * n, at + 0.35 * unit * n]), *(at + stroke for stroke in strokes)]
+        tall = mark.size or 0.35 * unit
+        strokes = (tall * np.array([x * n, (x - 0.43) * n + 0.57 * e]) for x in (-0.57, -0.17, 0.23, 0.6, 1.0))
+        return [np.array([at - tall * n, at + tall * n]), *(at + stroke for stroke in strokes)]
     if mark.kind == "line":
         return [np.array([at - mark.size * e, at + mark.size * e])]
     if mark.kind == "circle":

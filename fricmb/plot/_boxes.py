@@ -159,10 +159,17 @@ class _Boxes:
             start, end = self._to_ground(first, along)
         else:
             start, end = self._between(first, second, along)
-        self.sketch.links.append(Link(kind=link_kind(part), name=part.name, a=start, b=end, idle=is_idle(part)))
+        level = abs(along[1]) < 1e-6
+        side, extent = ("left", 1) if level else ("top", 0)
+        # what stands side by side is drawn narrow enough not to touch; a gap belongs to the body on its right
+        at = first if second == "ground" else max((first, second), key=lambda name: self.layout.places[name][0])
+        room = 0.42 * self._step(at, side, self.layout.sizes[at][extent])
+        wide = min(1.0, room / (0.22 * self.sketch.unit))
+        self.sketch.links.append(Link(kind=link_kind(part), name=part.name, a=start, b=end, wide=wide, idle=is_idle(part)))
         if second == "ground":
             angle = float(np.arctan2(end[2] - self._world(start)[1], end[1] - self._world(start)[0]))
-            self.sketch.marks.append(Mark(kind="wall", at=end, angle=angle))
+            wall = min(0.35 * self.sketch.unit, room)
+            self.sketch.marks.append(Mark(kind="wall", at=end, angle=angle, size=wall))
 
     def _world(self, spot: Spot) -> tuple[float, float]:
         """Where a spot stands in the layout."""
@@ -191,8 +198,11 @@ class _Boxes:
         wanted = self._wanted.get((name, side), 1)
         carries = self.layout.above and name in self.layout.under.values()
         start, room = (0.7 * room / 2, 0.3 * room) if carries else (0.0, room)
-        step = min(_SLOT, 0.9 * room / wanted)
-        return start + (k - 0.5 * (wanted - 1)) * step
+        return start + (k - 0.5 * (wanted - 1)) * self._step(name, side, room)
+
+    def _step(self, name: str, side: str, room: float) -> float:
+        """Between the links on a side."""
+        return min(_SLOT, 0.9 * room / self._wanted.get((name, side), 1))
 
     def _to_ground(self, name: str, along: Floats) -> tuple[Spot, Spot]:
         """From the rim of a body to an anchor beside all bodies, to the left, upwards, or between."""
@@ -232,7 +242,7 @@ class _Boxes:
         if abs(y - v) < 0.5 * height or (level and abs(x - u) > 0.5 * (width + wide)):
             right = 1.0 if u >= x else -1.0
             # the gap belongs to the body on its right, whose links to the ground stand in it, too
-            at = self._slot(second if right > 0 else first, "left", height)
+            at = -self._slot(second if right > 0 else first, "left", height)
             return (self.number[first], right * width / 2, at), (self.number[second], -right * wide / 2, at)
         # one above the other: beside them
         at = width / 2 + 0.15 + 0.3 * self._slots.get((first, "beside"), 0)

@@ -56,7 +56,8 @@ class Shape:
 class Link:
     """A spring, damper, play, rod or torsional spring between two spots; ``side``: shifted across, in units.
 
-    ``idle``: of value 0, drawn pale: it is declared, and left out of runs.
+    ``idle``: of value 0, drawn pale: it is declared, and left out of runs.  ``wide``: width over the usual one, smaller
+    where links are close together.
     """
 
     kind: str
@@ -64,6 +65,7 @@ class Link:
     a: Spot
     b: Spot
     side: float = 0.0
+    wide: float = 1.0
     coils: int = 5
     idle: bool = False
 
@@ -84,7 +86,8 @@ def is_idle(part: Any) -> bool:
 class Mark:
     """A sign at a spot: "support", "wall", "pin", "line", "circle", "spiral", "arrow", "turn".
 
-    ``angle``: its direction in the axes of the shape; ``size``: length of a line, radius of a circle.
+    ``angle``: its direction in the axes of the shape; ``size``: half the length of a line, radius of a circle, half the
+    height of a wall (0: as fits the unit).
     """
 
     kind: str
@@ -222,25 +225,25 @@ def rounded(points: ArrayLike, radius: float) -> Floats:
     return every[ConvexHull(every).vertices]
 
 
-def coil(a: Floats, b: Floats, unit: float, side: float, coils: int) -> Floats:
+def coil(a: Floats, b: Floats, unit: float, side: float, coils: int, wide: float = 1.0) -> Floats:
     """A spring from b to a, shifted across by ``side`` units."""
     along = a - b
     length = max(float(np.hypot(*along)), 1e-12)
     e = along / length
     n = np.array([-e[1], e[0]])
     s = np.concatenate([[0.0], np.linspace(0.14, 0.86, 2 * coils + 2), [1.0]])
-    across = np.concatenate([[0.0, 0.0], 0.22 * unit * (-1.0) ** np.arange(2 * coils), [0.0, 0.0]])
+    across = np.concatenate([[0.0, 0.0], 0.22 * wide * unit * (-1.0) ** np.arange(2 * coils), [0.0, 0.0]])
     points: Floats = b + s[:, None] * along + (across + side * unit)[:, None] * n
     return points
 
 
-def pot(a: Floats, b: Floats, unit: float, side: float) -> list[Floats]:
+def pot(a: Floats, b: Floats, unit: float, side: float, wide: float = 1.0) -> list[Floats]:
     """A damper from b to a: rod, pot, rod."""
     along = a - b
     length = max(float(np.hypot(*along)), 1e-12)
     e = along / length
     n = np.array([-e[1], e[0]])
-    start, end, wide = b + side * unit * n, a + side * unit * n, 0.2 * unit
+    start, end, wide = b + side * unit * n, a + side * unit * n, 0.2 * wide * unit
     middle, half = 0.5 * (start + end), min(0.35 * unit, 0.3 * length) * e
     cup = [middle + half + wide * n, middle - half + wide * n, middle - half - wide * n, middle + half - wide * n]
     plate = [middle + 0.75 * wide * n, middle - 0.75 * wide * n]

@@ -213,10 +213,10 @@
       const go = (s, c) => [b[0] + s * d[0] + (c + l.side * unit) * n[0], b[1] + s * d[1] + (c + l.side * unit) * n[1]];
       if (l.kind === "spring") {
         const points = [go(0, 0), go(0.14, 0)], count = 2 * l.coils;
-        for (let k = 0; k < count; k++) points.push(go(0.14 + 0.72 * (k + 1) / (count + 1), 0.22 * unit * (k % 2 ? -1 : 1)));
+        for (let k = 0; k < count; k++) points.push(go(0.14 + 0.72 * (k + 1) / (count + 1), 0.22 * l.wide * unit * (k % 2 ? -1 : 1)));
         points.push(go(0.86, 0), go(1, 0)); stroke(points);
       } else if (l.kind === "damper") {
-        const half = Math.min(0.35 * unit / long, 0.3), wide = 0.2 * unit;
+        const half = Math.min(0.35 * unit / long, 0.3), wide = 0.2 * l.wide * unit;
         stroke([go(0, 0), go(0.5 - half, 0)]); stroke([go(0.5, 0), go(1, 0)]);
         stroke([go(0.5 + half, wide), go(0.5 - half, wide), go(0.5 - half, -wide), go(0.5 + half, -wide)]);
         stroke([go(0.5, 0.75 * wide), go(0.5, -0.75 * wide)]);
@@ -234,8 +234,9 @@
         stroke([by(-0.8, -1.1), by(0, 0), by(0.8, -1.1), by(-0.8, -1.1)]);
         for (const x of [-0.6, 0, 0.6]) stroke([by(x, -1.1), by(x - 0.3, -1.5)]);
       } else if (m.kind === "wall") {
-        stroke([along(0, -0.35), along(0, 0.35)]);
-        for (const x of [-0.2, -0.06, 0.08, 0.21, 0.35]) stroke([along(0, x), along(0.2, x - 0.15)]);
+        const tall = m.size ? m.size / unit : 0.35;
+        stroke([along(0, -tall), along(0, tall)]);
+        for (const x of [-0.57, -0.17, 0.23, 0.6, 1]) stroke([along(0, tall * x), along(0.57 * tall, tall * (x - 0.43))]);
       } else if (m.kind === "pin") round(q, 0.32 * unit, colour.paper);
       else if (m.kind === "weld") round(q, 0.3 * unit, colour.line);
       else if (m.kind === "spiral") stroke(Array.from({ length: 61 }, (_, k) => { const a = 5 * Math.PI * k / 60, r = unit * (0.3 + 0.9 * k / 60); return [q[0] + r * Math.cos(a), q[1] + r * Math.sin(a)]; }));
