@@ -165,7 +165,8 @@ class _Boxes:
         at = first if second == "ground" else max((first, second), key=lambda name: self.layout.places[name][0])
         room = 0.42 * self._step(at, side, self.layout.sizes[at][extent])
         wide = min(1.0, room / (0.22 * self.sketch.unit))
-        self.sketch.links.append(Link(kind=link_kind(part), name=part.name, a=start, b=end, wide=wide, idle=is_idle(part)))
+        kind, idle = link_kind(part), is_idle(part)
+        self.sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end, wide=wide, idle=idle))
         if second == "ground":
             angle = float(np.arctan2(end[2] - self._world(start)[1], end[1] - self._world(start)[0]))
             wall = min(0.35 * self.sketch.unit, room)
