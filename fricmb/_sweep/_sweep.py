@@ -14,7 +14,7 @@ from fricmb._simulate._progress import bar
 from fricmb._sweep._check import MANY, check_runs
 from fricmb._sweep._results import SweepResults
 from fricmb._sweep._store import Store
-from fricmb._sweep._workers import Job, ReduceError, outcomes
+from fricmb._sweep._workers import Job, ReduceError, Runs, outcomes
 from fricmb._version import installed_version
 from fricmb.errors import IntegrationError, SceneError, unknown_name
 from fricmb.integrate.compile.cache_files import say
@@ -99,7 +99,7 @@ def sweep(
     results = SweepResults([None] * len(values), values=own, units=units)
     try:
         with as_interrupts():
-            _run(job, values, results, kept, progress, workers, run_limit)
+            fill(job, values, results, kept, progress, workers, run_limit)
     except BaseException as stop:
         stop.results = results  # type: ignore[attr-defined]
         raise
@@ -109,8 +109,8 @@ def sweep(
     return results
 
 
-def _run(
-    job: Job, values: list[dict[str, Any]], results: SweepResults, kept: Store | None, progress: bool,
+def fill(
+    job: Runs, values: list[dict[str, Any]], results: list[Any], kept: Store | None, progress: bool,
     workers: Any, run_limit: float | None,
 ) -> None:  # fmt: skip
     """Fill in results, those that were kept and those that are made."""

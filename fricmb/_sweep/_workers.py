@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from fricmb._simulate import simulate
 from fricmb._simulate._blas import blas_threads
@@ -22,6 +22,16 @@ from fricmb.solution import Solution
 
 class ReduceError(IntegrationError):
     """What stands in the place of a run whose ``reduce`` raised; not kept in a store."""
+
+
+class Runs(Protocol):
+    """What is made once for each set of values."""
+
+    @property
+    def scene(self) -> Any: ...
+
+    def run(self, parameters: Mapping[str, Any]) -> Any:
+        """What one set of values gives."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +69,7 @@ THREADS = "threads"
 Outcomes = Iterator[tuple[int, Any]]
 
 
-def outcomes(job: Job, runs: Mapping[int, dict[str, Any]], workers: Any, limit: float | None = None) -> Outcomes:
+def outcomes(job: Runs, runs: Mapping[int, dict[str, Any]], workers: Any, limit: float | None = None) -> Outcomes:
     """Make the runs with ``workers``: None (as many processes as cores), a number, "threads", an Executor or a Client.
 
     ``limit``: seconds that a run may take, in processes of this machine.
@@ -90,7 +100,7 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
-def _here(job: Job, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
+def _here(job: Runs, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
     for i, parameters in runs.items():
         yield i, job.run(parameters)
 
@@ -99,12 +109,12 @@ def _is_threads(workers: Any) -> bool:
     return isinstance(workers, str) and workers == THREADS
 
 
-def _threads(job: Job, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
+def _threads(job: Runs, runs: Mapping[int, dict[str, Any]]) -> Outcomes:
     with blas_threads(job.scene):  # of the process, so for all runs at once
         yield from run_in_threads(job.run, runs, _cores())
 
 
-def _executor(job: Job, runs: Mapping[int, dict[str, Any]], executor: Executor) -> Outcomes:
+def _executor(job: Runs, runs: Mapping[int, dict[str, Any]], executor: Executor) -> Outcomes:
     futures = {executor.submit(job.run, parameters): i for i, parameters in runs.items()}
     try:
         for future in as_completed(futures):
@@ -124,12 +134,16 @@ def _is_dask_client(workers: Any) -> bool:
     return distributed is not None and isinstance(workers, distributed.Client)
 
 
-def _dask(job: Job, runs: Mapping[int, dict[str, Any]], client: Any) -> Outcomes:
+def _run(job: Runs, parameters: Mapping[str, Any]) -> Any:
+    return job.run(parameters)
+
+
+def _dask(job: Runs, runs: Mapping[int, dict[str, Any]], client: Any) -> Outcomes:
     """The job is sent to the cluster once; an interrupted sweep takes its runs back."""
     import distributed
 
     shared = client.scatter(job, broadcast=True, hash=False)
-    futures = {client.submit(Job.run, shared, parameters, pure=False): i for i, parameters in runs.items()}
+    futures = {client.submit(_run, shared, parameters, pure=False): i for i, parameters in runs.items()}
     try:
         for future in distributed.as_completed(list(futures)):  # type: ignore[no-untyped-call]
             i, error = futures[future], future.exception() if future.status == "error" else None

@@ -38,15 +38,15 @@ class Crossing:
     unstable_above: bool
 
 
-def crossings(solve: Solve, values: Floats, found: list[Pairs]) -> list[Crossing]:
-    """Critical values between those given, to round-off, in rising order.
+def crossings(solve: Solve, values: Floats, found: list[Pairs], places: int = PLACES) -> list[Crossing]:
+    """Critical values between those given, to round-off, in rising order; eigenvalues are counted at ``places``.
 
     Growing eigenvalues are counted, at the values and between them, and a span is halved until its ends differ by one
     eigenvalue or one pair.  Nothing is followed: modes that meet, turn overdamped or change places do not matter.
     """
     scale = max((float(np.abs(pairs[0]).max(initial=0.0)) for pairs in found), default=0.0)
     limit = NEUTRAL * scale
-    parts = max(1, -(-PLACES // max(1, len(values) - 1)))
+    parts = max(1, -(-places // max(1, len(values) - 1)))
     result = []
     for i in range(len(values) - 1):
         at = np.linspace(values[i], values[i + 1], parts + 1).tolist()

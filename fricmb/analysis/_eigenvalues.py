@@ -26,6 +26,18 @@ if TYPE_CHECKING:
 _NEITHER, _LAST_DIGITS = 1e-9, 1e-13
 
 
+def growing(found: Complexes) -> NDArray[np.bool_]:
+    """Which eigenvalues grow by more than round-off of what does neither.
+
+    That of an oscillation is some digits of its own frequency and of the highest; where two eigenvalues are 0, as those
+    of a free motion, it is the root of that.
+    """
+    size, most = np.abs(found), np.abs(found).max(initial=0.0)
+    limit = np.where(found.imag != 0.0, np.maximum(_NEITHER * size, _LAST_DIGITS * most), NEUTRAL * most)
+    grows: NDArray[np.bool_] = found.real > limit
+    return grows
+
+
 @dataclass(frozen=True, kw_only=True)
 class Eigenvalues:
     """Eigenvalues of steady sliding over one parameter, each mode followed by continuity.
@@ -75,15 +87,8 @@ class Eigenvalues:
         return np.abs(self.eigenvalues.imag)
 
     def _grows(self) -> NDArray[np.bool_]:
-        """Whether a mode grows at each value (n_values,), by more than round-off of what does neither.
-
-        That of an oscillation is some digits of its own frequency and of the highest; where two eigenvalues are 0, as
-        those of a free motion, it is the root of that.
-        """
-        found = self.eigenvalues
-        size, most = np.abs(found), np.abs(found).max(initial=0.0)
-        limit = np.where(found.imag != 0.0, np.maximum(_NEITHER * size, _LAST_DIGITS * most), NEUTRAL * most)
-        grows: NDArray[np.bool_] = (found.real > limit).any(axis=1)
+        """Whether a mode grows at each value (n_values,)."""
+        grows: NDArray[np.bool_] = growing(self.eigenvalues).any(axis=1)
         return grows
 
     def _table(self) -> str:
@@ -174,7 +179,7 @@ def complex_eigenvalues(
 
     @functools.cache
     def solve(value: float) -> Pairs:
-        steady = _steady(scene, {over: value}, speeds)
+        steady = steady_at(scene, {over: value}, speeds)
         dofs[:] = [steady.system.dof_names[i] for i in steady.free]
         return steady.eigenpairs()
 
@@ -288,7 +293,7 @@ def stability_map(
     unstable = np.zeros((first.size, second.size), dtype=np.int64)
     for i, a in enumerate(first.tolist()):
         for j, b in enumerate(second.tolist()):
-            found = _steady(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
+            found = steady_at(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
             found = found[np.abs(found.imag) <= top]
             if not found.size:
                 continue
@@ -307,7 +312,7 @@ def stability_map(
     )
 
 
-def _steady(scene: Scene, values: Mapping[str, float], speeds: Mapping[str, float] | None) -> SteadySliding:
+def steady_at(scene: Scene, values: Mapping[str, float], speeds: Mapping[str, float] | None) -> SteadySliding:
     """Steady sliding with some parameters or speeds at given values."""
     held = dict(checked_speeds(speeds))
     here = {name: value for name, value in values.items() if name not in held}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,11 +38,62 @@ class Linearised:
     N: Floats
 
 
-def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -> Linearised:
-    """Forces and derivatives at a state; contacts with a load of 0 or below are open and bring none.
+@dataclass(frozen=True, kw_only=True)
+class Slope:
+    """What one contact does with a system at one state; over X = (t, q, v, inputs and their rates).
+
+    ``force`` (n,) with what it adds to its static load, ``force_X`` (n, n_X), ``force_z`` (n, d_z) over its own states;
+    ``rate`` (d_z,) of these with ``rate_X``, ``rate_z``; ``F``, ``g`` (d,), ``r``, ``N``.
+    """
+
+    force: Floats
+    force_X: Floats
+    force_z: Floats
+    rate: Floats
+    rate_X: Floats
+    rate_z: Floats
+    F: Floats
+    g: Floats
+    r: float
+    N: float
+
+
+def contact_slopes(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -> Iterator[Slope]:
+    """Of every contact in turn; one with a load of 0 or below is open and brings no force.
 
     In two dimensions slip of speed r along n has ``dF/dg = -(mu' N n n^T + mu N/r (1 - n n^T))``, ``dF/dN = -mu n``.
     """
+    n, contacts = system.problem.n, system.problem.contacts
+    u = system.signals(np.array([t]))[:, :, 0]
+    X = np.concatenate([[t], q, v, u[0], u[1]])
+    g = contacts.W.T @ v - contacts.w - contacts.Wu @ u[1]
+    g_X = np.zeros((g.size, X.size))
+    g_X[:, 1 + n : 1 + 2 * n] = contacts.W.T
+    for k in range(system.problem.n_c):
+        rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
+        states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
+        N, N_X = _normal(system, k, X)
+        r = float(np.linalg.norm(g[rows]))
+        F, rate, J = friction_at(system, k, g[rows], r, N, z[states])
+        # J over (g, N, z) of (F, z')
+        d, W = F.size, contacts.W[:, rows]
+        both_X = J[:, :d] @ g_X[rows] + np.outer(J[:, d], N_X)
+        yield Slope(
+            force=W @ F + contacts.Wn[:, k] * (N - contacts.N0[k]),
+            force_X=W @ both_X[:d] + np.outer(contacts.Wn[:, k], N_X),
+            force_z=W @ J[:d, d + 1 :],
+            rate=rate,
+            rate_X=both_X[d:],
+            rate_z=J[d:, d + 1 :],
+            F=F,
+            g=g[rows],
+            r=r,
+            N=N,
+        )
+
+
+def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -> Linearised:
+    """Forces and derivatives at a state; contacts with a load of 0 or below are open and bring none."""
     problem = system.problem
     n, n_z = problem.n, problem.n_z
     linear, contacts = problem.linear, problem.contacts
@@ -53,24 +105,18 @@ def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -
     force_X[:, 1 : 1 + n] -= K[:, :n]
     force_X[:, 1 + n : 1 + 2 * n] -= C[:, :n]
     _add_elements(system, X, force, force_X)
-    g = contacts.W.T @ v - contacts.w - contacts.Wu @ u[1]
-    g_X = np.zeros((g.size, X.size))
-    g_X[:, 1 + n : 1 + 2 * n] = contacts.W.T
-    F, rate, r, N = np.zeros(g.size), np.zeros(n_z), np.zeros(problem.n_c), np.zeros(problem.n_c)
-    force_z, rate_X, rate_z = np.zeros((n, n_z)), np.zeros((n_z, X.size)), np.zeros((n_z, n_z))
-    for k in range(problem.n_c):
+    rate, rate_X = np.zeros(n_z), np.zeros((n_z, X.size))
+    force_z, rate_z = np.zeros((n, n_z)), np.zeros((n_z, n_z))
+    F, g = np.zeros(problem.m), np.zeros(problem.m)
+    r, N = np.zeros(problem.n_c), np.zeros(problem.n_c)
+    for k, slope in enumerate(contact_slopes(system, q, v, z, t)):
         rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
+        F[rows], g[rows], r[k], N[k] = slope.F, slope.g, slope.r, slope.N
         states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
-        N[k], N_X = _normal(system, k, X)
-        r[k] = float(np.linalg.norm(g[rows]))
-        F[rows], rate[states], J = friction_at(system, k, g[rows], float(r[k]), float(N[k]), z[states])
-        # J over (g, N, z) of (F, z')
-        d, W = F[rows].size, contacts.W[:, rows]
-        both_X = J[:, :d] @ g_X[rows] + np.outer(J[:, d], N_X)
-        rate_X[states], rate_z[states, states] = both_X[d:], J[d:, d + 1 :]
-        force += W @ F[rows] + contacts.Wn[:, k] * (N[k] - contacts.N0[k])
-        force_X += W @ both_X[:d] + np.outer(contacts.Wn[:, k], N_X)
-        force_z[:, states] += W @ J[:d, d + 1 :]
+        force += slope.force
+        force_X += slope.force_X
+        force_z[:, states] += slope.force_z
+        rate[states], rate_X[states], rate_z[states, states] = slope.rate, slope.rate_X, slope.rate_z
     state = slice(1, 1 + 2 * n)
     return Linearised(
         force=force,

@@ -71,7 +71,7 @@ def _sorted(pairs: Pairs) -> Pairs:
 
 def _step(solve: Solve, low: float, known: Pairs, high: float, new: Pairs, halvings: int) -> Pairs:
     """The new pairs in the order of the known ones; over half the way first where shapes change too much."""
-    order, least = _match(known, new)
+    order, least = match(known, new)
     if least >= SIMILAR or halvings == 0:
         return new[0][order], new[1][order]
     middle = 0.5 * (low + high)
@@ -79,17 +79,22 @@ def _step(solve: Solve, low: float, known: Pairs, high: float, new: Pairs, halvi
     return _step(solve, middle, half, high, new, halvings - 1)
 
 
-def _match(known: Pairs, new: Pairs) -> tuple[NDArray[np.int64], float]:
-    """Which new pair continues each known one, and the least similarity of shapes among them."""
+def match(known: Pairs, new: Pairs) -> tuple[NDArray[np.int64], float]:
+    """Which new pair continues each known one, and the least similarity of shapes among them.
+
+    Where there are fewer new ones than known ones, -1 stands for those that have none.
+    """
     from scipy.optimize import linear_sum_assignment
 
-    if not known[0].size:
-        return np.zeros(0, np.int64), 1.0
+    if not known[0].size or not new[0].size:
+        return np.full(known[0].size, -1, np.int64), 1.0
     similar = np.abs(known[1].conj() @ new[1].T) ** 2
     scale = max(float(np.abs(known[0]).max()), 1e-300)
     distance = np.abs(known[0][:, None] - new[0]) / scale
-    order = linear_sum_assignment(1.0 - similar + 4.0 * distance)[1]
-    return order, float(similar[np.arange(order.size), order].min())
+    rows, columns = linear_sum_assignment(1.0 - similar + 4.0 * distance)
+    order = np.full(known[0].size, -1, np.int64)
+    order[rows] = columns
+    return order, float(similar[rows, columns].min())
 
 
 def checked_values(who: str, values: object) -> Floats:
