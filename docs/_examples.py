@@ -407,6 +407,16 @@ found = fm.analysis.stability_map(
 print(found.unstable)
 figure = fm.plot.stability(found)
 """,
+    "squeal.study": """
+study = fm.squeal.study(fm.models.minimal_flutter(), over={"sole.law.mu_s": [0.4, 0.6, 0.8, 1.0]}, progress=False)
+print(study)
+print(study.feed())
+print(study.derivatives(study.thresholds[0]))
+print(study.growth())
+print(study.saturation())
+print(study.uncertainty({"sole.law.mu_s": 0.1}, {"sole.law.mu_s": 0.7}))
+figure = study.plot()
+""",
     "analysis.energy_ledger": _RUN + "ledger = fm.analysis.energy_ledger(sol)\nprint(ledger.phases(\"sole\")[:2])\n"
         "figure = sol.plot.energy()\n",
     "analysis.limit_cycle": _CYCLE + """
@@ -516,7 +526,10 @@ SHARED = {
     "analysis.Eigenvalues": "analysis.complex_eigenvalues", "analysis.Crossing": "analysis.complex_eigenvalues",
     "analysis.StabilityMap": "analysis.stability_map", "analysis.EnergyLedger": "analysis.energy_ledger",
     "analysis.Phase": "analysis.energy_ledger", "analysis.ModalEnergy": "analysis.modal_energy",
-} | _examples_fe.SHARED | _examples_space.SHARED  # fmt: skip
+} | dict.fromkeys(
+    [f"squeal.{kind}" for kind in ("Study", "Threshold", "Feed", "Derivatives", "Growth", "Saturation", "Uncertainty")],
+    "squeal.study",
+) | _examples_fe.SHARED | _examples_space.SHARED  # fmt: skip
 
 
 def example(name: str) -> str | None:

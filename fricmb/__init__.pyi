@@ -7,6 +7,7 @@ from . import models as models
 from . import normal as normal
 from . import plot as plot
 from . import space as space
+from . import squeal as squeal
 from . import testing as testing
 from ._fit import Fit as Fit
 from ._fit import fit as fit

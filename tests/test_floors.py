@@ -27,6 +27,7 @@ FLOORS = (
     {"simulate", "sweep"},
     {"analysis", "audit", "fit", "sensitivity"},
     {"plot"},
+    {"squeal"},
     {"models", "testing", "bench", "precompile"},
     {"cli"},
 )

@@ -32,10 +32,10 @@ def growing(found: Complexes) -> NDArray[np.bool_]:
     That of an oscillation is some digits of its own frequency and of the highest; where two eigenvalues are 0, as those
     of a free motion, it is the root of that.
     """
-    size, most = np.abs(found), np.abs(found).max(initial=0.0)
-    limit = np.where(found.imag != 0.0, np.maximum(_NEITHER * size, _LAST_DIGITS * most), NEUTRAL * most)
-    grows: NDArray[np.bool_] = found.real > limit
-    return grows
+    size = np.nan_to_num(np.abs(found))
+    most = size.max(initial=0.0)
+    limit: Floats = np.where(found.imag != 0.0, np.maximum(_NEITHER * size, _LAST_DIGITS * most), NEUTRAL * most)
+    return np.asarray(found.real > limit)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,8 +88,7 @@ class Eigenvalues:
 
     def _grows(self) -> NDArray[np.bool_]:
         """Whether a mode grows at each value (n_values,)."""
-        grows: NDArray[np.bool_] = growing(self.eigenvalues).any(axis=1)
-        return grows
+        return np.asarray(growing(self.eigenvalues).any(axis=1))
 
     def _table(self) -> str:
         """Modes at one value."""

@@ -219,13 +219,13 @@ def _alone(scene: Any, part: Any) -> Any:
             return None
         owners = {name.partition(".")[0] for name in part.dofs}
         bare = MatrixElement(part.name, part.dofs, C=part.C, scale=part.scale)
-        return _with_ends(scene, owners, bare)
+        return with_ends(scene, owners, bare)
     forms = part.local_coordinates()
     owners = {motion.partition(".")[0] for form in forms for motion in form.motions}
-    return _with_ends(scene, owners, part)
+    return with_ends(scene, owners, part)
 
 
-def _with_ends(scene: Any, owners: set[str], part: Any) -> Any:
+def with_ends(scene: Any, owners: set[str], part: Any) -> Any:
     """A scene of a part and bodies by name, modal ones without their own damping."""
     bodies = [body for body in scene.parts if body.name in owners]
     small = Scene("alone", [*bodies, part])

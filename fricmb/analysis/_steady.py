@@ -264,5 +264,5 @@ def _scale(system: System, at: Linearised, q: Floats) -> float:
     """Size of the forces that balance."""
     linear, n = system.problem.linear, q.size
     friction = np.abs(system.problem.contacts.W) @ np.abs(at.F)
-    terms = [np.abs(linear.Kx[:n, :n]) @ np.abs(q), np.abs(linear.fx[:n]), friction]
+    terms = [np.abs(linear.Kx[:n, :n]) @ np.abs(q), np.abs(linear.fx[:n]), friction, np.abs(at.N)]
     return max(float(np.max([term.max(initial=0.0) for term in terms])), 1e-300)

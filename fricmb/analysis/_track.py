@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from fricmb.analysis._errors import AnalysisError, Floats
 from fricmb.errors import shown
+from fricmb.integrate.run.one_thread import one_thread
 
 Complexes = NDArray[np.complex128]
 #: Eigenvalues (m,) and their vectors (m, m) by rows, at a value of the parameter.
@@ -32,7 +33,8 @@ def eigenpairs(A: Floats) -> Pairs:
 
     if not A.size:
         return np.zeros(0, complex), np.zeros((0, 0), complex)
-    values, vectors = eig(A)
+    with one_thread():
+        values, vectors = eig(A)
     return values, vectors.T / np.linalg.norm(vectors, axis=0)[:, None]
 
 

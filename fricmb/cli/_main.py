@@ -113,6 +113,7 @@ def parser() -> argparse.ArgumentParser:
     _add_law(commands)
     _add_equations(commands)
     _add_plan(commands)
+    _add_squeal(commands)
     _add_bench(commands)
     _add_figures(commands)
     _add_export(commands)
@@ -199,9 +200,7 @@ def _add_law(commands: _Commands) -> None:
     sub.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", dest="values", help="a parameter; may be repeated"
     )
-    sub.add_argument(
-        "--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)"
-    )
+    sub.add_argument("--normal-force", type=float, default=1.0, metavar="N", help="normal force (default: %(default)g)")
     sub.add_argument(
         "--out", type=Path, default=Path("fricmb-out/laws"), metavar="DIR", help="folder (default: %(default)s)"
     )
@@ -227,6 +226,28 @@ def _add_plan(commands: _Commands) -> None:
         "_show:show_plan",
         model=True,
     )
+
+
+def _add_squeal(commands: _Commands) -> None:
+    summary = "study where steady sliding squeals, and why; write a report and tables"
+    sub = _command(commands, "squeal", summary, "_squeal:squeal", model=True)
+    over = "a parameter and its values, FIRST:LAST:COUNT or A,B,C; once or twice"
+    sub.add_argument("--over", action="append", default=[], metavar="NAME=VALUES", help=over)
+    held = "a degree of freedom whose speed counts as constant; may be repeated"
+    sub.add_argument("--speed", action="append", default=[], metavar="NAME=V", help=held)
+    sub.add_argument("--highest", type=float, metavar="W", help="angular frequency above which modes are left out")
+    sub.add_argument("--growth", action="store_true", help="compare the rate of growth with that in a run")
+    sub.add_argument("--saturation", action="store_true", help="run until the vibration keeps its size")
+    spread = "a parameter that is not known for sure: a relative standard deviation or LOW:HIGH; may be repeated"
+    sub.add_argument("--uncertain", action="append", default=[], metavar="NAME=SPREAD", help=spread)
+    points = "points of each of eight scramblings, a power of 2 (default: %(default)d)"
+    sub.add_argument("--samples", type=int, default=32, metavar="N", help=points)
+    sub.add_argument("--workers", type=_threads, default=1, metavar="N", help="processes (default: %(default)d)")
+    sub.add_argument(
+        "--store", type=Path, metavar="DIR", help="keeps what was computed: the same study goes on from it"
+    )
+    sub.add_argument("--out", type=Path, metavar="DIR", help="folder (default: fricmb-out/MODEL-squeal)")
+    sub.add_argument("--quiet", action="store_true", help="say nothing but errors")
 
 
 def _add_compile(commands: _Commands) -> None:

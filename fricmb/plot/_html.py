@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-
 def block(*parts: str) -> str:
     """Parts under the style that all views share."""
     return f'<div class="fricmb"><style>{resource("view.css")}</style>{"".join(parts)}</div>'
@@ -41,7 +40,7 @@ def _table(rows: list[tuple[str, str]]) -> str:
     return f"<table>{cells}</table>"
 
 
-def _image(draw: Callable[[], Figure]) -> str:
+def picture(draw: Callable[[], Figure]) -> str:
     """A picture, in the colours of the page that it stands on."""
     from fricmb.plot._style import theme
 
@@ -68,7 +67,7 @@ def scene_html(scene: Any) -> str:
     values = [(name, _short(value)) for name, value in scene.parameters.items()]
     return block(
         f"<b>{escape(scene.name)}</b> ({len(scene.dof_names)} degrees of freedom)<br>",
-        _image(lambda: draw_scene(scene)) if is_drawn(scene) else "",
+        picture(lambda: draw_scene(scene)) if is_drawn(scene) else "",
         f"<details><summary>{len(parts)} parts</summary>{_table(parts)}</details>",
         f"<details><summary>{len(values)} parameters</summary>{_table(values)}</details>",
     )
@@ -84,4 +83,4 @@ def law_html(law: Any) -> str:
     from fricmb.plot._law import law as draw_law
 
     values = [(name, _short(value)) for name, value in law.numeric_slots().items()]
-    return block(f"<b>{escape(type(law).__name__)}</b><br>", _image(lambda: draw_law(law)), _table(values))
+    return block(f"<b>{escape(type(law).__name__)}</b><br>", picture(lambda: draw_law(law)), _table(values))

@@ -23,6 +23,7 @@ def from_fe(
     """See :meth:`ModalBody.from_fe`."""
     from fricmb.fe import FEModel
     from fricmb.fe._whole import ROUND_OFF, asymmetry, symmetric_part
+    from fricmb.integrate.run.one_thread import one_thread
     from fricmb.reduction import reduce_model
 
     label = f"ModalBody {name!r}"
@@ -42,18 +43,20 @@ def from_fe(
     if cycles is None and count is None:
         raise SceneError(f"{label}: give up_to, a frequency, or n_modes")
     at = _positive(label, "structural_at", structural_at)
-    found = reduce_model(
-        label,
-        {"M": symmetric_part(fe.M), "K": symmetric_part(fe.K), "C": fe.C, "H": fe.H},
-        fe.parts,
-        point_rows(label, fe, points, axes, normals),
-        count=count,
-        top=None if cycles is None else 2.0 * np.pi * cycles,
-        residual=bool(residual),
-        samples=_samples(label, fe, enrich, scales),
-        structural_at=None if at is None else 2.0 * np.pi * at,
-        tolerance=_positive(label, "tolerance", tolerance) or 1e-6,
-    )
+    rows = point_rows(label, fe, points, axes, normals)
+    with one_thread("openblas"):  # most is sparse, or in small blocks
+        found = reduce_model(
+            label,
+            {"M": symmetric_part(fe.M), "K": symmetric_part(fe.K), "C": fe.C, "H": fe.H},
+            fe.parts,
+            rows,
+            count=count,
+            top=None if cycles is None else 2.0 * np.pi * cycles,
+            residual=bool(residual),
+            samples=_samples(label, fe, enrich, scales),
+            structural_at=None if at is None else 2.0 * np.pi * at,
+            tolerance=_positive(label, "tolerance", tolerance) or 1e-6,
+        )
     ratios = damping_ratios
     if ratios is None:
         ratios = 0.0 if found.damping is not None else found.damping_ratios
