@@ -25,6 +25,7 @@ from fricmb._simulate._members import (
 from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
+from fricmb.integrate.run.touches import is_continuous, own_run
 from fricmb.plan import Plan, Selection, make_plan, truncated
 from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
 from fricmb.scene._family import NUMBERS, of_same_parts
@@ -91,6 +92,7 @@ class SceneMechanics:
 
     def attach(self, trajectory: Trajectory) -> None:
         """Give an unpickled trajectory its problem again."""
+        trajectory = own_run(trajectory)
         if isinstance(trajectory, JoinedRun):
             trajectory.attach_members(self.members, self.idle)
         else:
@@ -103,6 +105,14 @@ class SceneMechanics:
             member = self.members[i]
             kinds[member.place.contacts] = member.system.problem.contacts.law
         return kinds
+
+    def continuous(self, run: Iterable[int] | None = None) -> Flags:
+        """Contacts (n_c,) whose friction does not fall where stick ends, in the members that are run."""
+        found = np.zeros(len(self.names.contacts), dtype=np.bool_)
+        for i in range(len(self.members)) if run is None else run:
+            member = self.members[i]
+            found[member.place.contacts] = is_continuous(member.system.problem.contacts)
+        return found
 
     def has_law(self, kind: int, run: Iterable[int] | None = None) -> bool:
         """Whether a contact in the members that are run has a law of that kind."""
@@ -221,8 +231,7 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
     check_scene(scene)
     if parameters is not None and not isinstance(parameters, Mapping):
         raise SceneError(
-            f"parameters: got {shown(parameters)};"
-            " expected a dict of names in scene.parameters and values"
+            f"parameters: got {shown(parameters)}; expected a dict of names in scene.parameters and values"
         )
     if parameters:
         scene = scene.with_parameters(parameters)

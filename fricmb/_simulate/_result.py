@@ -19,6 +19,8 @@ from fricmb._simulate._misses import miss_notes
 from fricmb.errors import IntegrationError
 from fricmb.integrate import MotionSamples, Trajectory
 from fricmb.integrate.problem import LAW_COEFFICIENT, Floats
+from fricmb.integrate.run.chunked_run import KeptTrajectory
+from fricmb.integrate.run.touches import own_run, without_touches
 from fricmb.solution import Piece, Run, Solution, Stats
 
 #: What counts as round-off at a slip speed of round-off, where the direction of slip is round-off, too: power of
@@ -76,7 +78,8 @@ def _solution(
     mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, t_end: float | None, times: Floats | None
 ) -> Solution:
     """The solution up to ``t_end`` (None: all of it), or _Unsound."""
-    run = Run((Piece(trajectory, mechanics.origin, mechanics, t_end),))
+    told = _as_told(mechanics, trajectory, stats.rtol)
+    run = Run((Piece(told, mechanics.origin, mechanics, t_end),))
     try:
         sol = Solution(names=mechanics.names, run=run, stats=stats, times=times, find_notes=find_notes)
     except IntegrationError as error:
@@ -85,14 +88,23 @@ def _solution(
     return sol
 
 
+def _as_told(mechanics: SceneMechanics, trajectory: Trajectory, rtol: float | None) -> Trajectory:
+    """The run without sticks that are touches."""
+    if rtol is None or trajectory.transitions.t.size < 2 or isinstance(trajectory, KeptTrajectory):
+        return trajectory
+    run = [i for i, _ in trajectory.runs] if isinstance(trajectory, JoinedRun) else None
+    return without_touches(trajectory, mechanics.names.row, mechanics.continuous(run), rtol)
+
+
 def find_notes(sol: Solution) -> tuple[str, ...]:
     """What a look at the whole run finds: asked for when notes are read, since it may take longer than the run."""
     (piece,), rtol = sol.run.pieces, sol.stats.rtol
+    run = own_run(piece.trajectory)
     try:
         notes = ledger_note(sol, rtol)
     except IntegrationError as error:
         notes = (f"energies are beyond what numbers hold: {error.reason}",)
-    return (*notes, *lock_notes(sol), *digit_notes(piece.trajectory, rtol), *miss_notes(sol, piece.trajectory, rtol))
+    return (*notes, *lock_notes(sol), *digit_notes(run, rtol), *miss_notes(sol, run, rtol))
 
 
 def _sound_part(

@@ -170,7 +170,8 @@ def _directions(d: int) -> Floats:
         return np.array([[1.0], [-1.0]])
     if d == 2:
         angle = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
-        return np.column_stack([np.cos(angle), np.sin(angle)]) / np.cos(np.pi / _SIDES)
+        sides: Floats = np.column_stack([np.cos(angle), np.sin(angle)]) / np.cos(np.pi / _SIDES)
+        return sides
     corners: Floats = np.array(np.meshgrid(*[[-1.0, 1.0]] * d), dtype=float).reshape(d, -1).T
     return corners
 

@@ -21,6 +21,9 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK
 from fricmb.integrate.step.crossing import evaluate, lowest_between, polynomial, root_between
 
+#: Part of its rate by which that of r changes on the way to 0, above which r is no straight line there.
+BENT = 0.1
+
 
 @kernel
 def tail_of_r(run: Run, r0: float) -> float:
@@ -133,6 +136,18 @@ def closing_rate(run: Run, since: float) -> float:
 
 
 @kernel
+def rise_of_rate(run: Run) -> float:
+    """Rate of the rate of r, after :func:`closing_rate` and with its directions."""
+    end = run.basis.shape[0] - 1
+    rise = 0.0
+    for a in range(run.belt.shape[0]):
+        for j in range(run.w2.shape[1]):
+            jerk = run.k[j] - run.damp[0, j] * run.a[j]
+            rise += run.direction[a, end] * (run.c1[a, j] * jerk + run.c0[a, j] * (run.a[j] - run.e1[j]))
+    return float(rise)
+
+
+@kernel
 def turns(run: Run) -> bool:
     """Whether slip in two dimensions turns round near g = 0 instead of ending there, as friction cannot hold it.
 
@@ -212,12 +227,20 @@ def land(run: Run, h: float, root: float, since: float, tol: float, stiff: float
         rate = closing_rate(run, since + length)
         if rate >= 0.0 or turns(run):
             return -4.0
+        rise = rise_of_rate(run)
+        if rate * rate < 2.0 * r * rise:
+            return -4.0  # it turns before it gets there
         tau = -r / rate
+        if abs(rise * tau) > BENT * -rate:
+            tau = 2.0 * r / (math.sqrt(rate * rate - 2.0 * r * rise) - rate)
         if abs(tau) > 0.5 * length:
             return -4.0
         reach = max(run.change[0], run.change[m - 1]) * run.mu_0_N * abs(tau)
         swing = abs(tau) * run.fastest
-        if reach * (0.5 * turn * abs(tau) + 0.2 * swing * swing) <= 5e-3 * tol and swing <= 0.01:
+        # where friction is next to nothing it is the structure's own motion that is left out
+        own = abs(rise * tau) / (max(run.D[0, 0], run.D[m - 1, m - 1]) * run.mu_0_N + 1e-300) / 6.0
+        left = 0.5 * turn * abs(tau) + swing * max(0.2 * swing, own)
+        if reach * left <= 5e-3 * tol and swing <= 0.01:
             accelerations(run, 0, run.w2.shape[1], since)
             loss = keep_slip(run, length)
             commit(run, length, loss)
@@ -240,8 +263,8 @@ def nearly_stopped(run: Run, since: float, tol: float, r: float, h: float) -> bo
     if r * reach * max(run.change[0], run.change[m - 1]) > 1e-5 * tol:
         return False
     rate = closing_rate(run, since)
-    if rate >= 0.0:
-        return False
+    if rate >= 0.0 or rate * rate < 2.0 * r * rise_of_rate(run):
+        return False  # it turns before it gets there
     if -r / rate <= h:
         snap(run, r, -r / rate)
         return True
