@@ -56,3 +56,42 @@ def test_as_exact_as_asked_for(name):
             sol = fm.simulate(scene, t_end=T, rtol=rtol, method=method)
             assert sol.q[-1, -1] + np.pi / 2 == pytest.approx(angle, abs=10.0 * rtol)
             assert sol.v[-1, -1] == pytest.approx(w, abs=10.0 * rtol)
+
+
+def threlfall(r):
+    return 0.4 * (1.0 - np.exp(-3.0 * min(1.0, r / 1e-3)))
+
+
+def ambrosio(r):
+    return 0.4 * min(1.0, max(0.0, (r - 1e-4) / (1e-3 - 1e-4)))
+
+
+CORNERS = {
+    "Threlfall": (threlfall, fm.laws.Threlfall(mu=0.4, v_reg=1e-3)),
+    "LinearRegularised": (lambda r: 0.4 * min(1.0, r / 1e-3), fm.laws.LinearRegularised(mu=0.4, v_reg=1e-3)),
+    "Ambrosio": (ambrosio, fm.laws.Ambrosio(mu=0.4, v_0=1e-4, v_1=1e-3)),
+}
+
+
+def drag(mu, belt, times):
+    """Positions of a unit mass on a unit spring and a belt that it starts with, under a unit load."""
+
+    def rate(t, y):
+        slip = y[1] - belt
+        return [y[1], -y[0] - np.sign(slip) * mu(abs(slip))]
+
+    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "max_step": 2e-3}
+    return solve_ivp(rate, (0.0, times[-1]), [0.0, belt], t_eval=times, **options).y[0]
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_a_law_that_turns_between_two_stages_beside_an_idle_body(name):
+    mu, law = CORNERS[name]
+    times = np.linspace(0.1, 12.0, 60)
+    want = drag(mu, 0.1, times)
+    parts = models.belt_oscillator(law=law).parts
+    beside = fm.Scene("beside", [*parts, fm.RigidBody("idle", mass=1.0, inertia=1.0)])
+    for scene in (fm.Scene("alone", parts), beside):
+        for rtol in (1e-4, 1e-6, 1e-8):
+            sol = fm.simulate(scene, t_end=12.0, rtol=rtol, method="radau")
+            assert np.abs(sol.at(times)["mass.x"] - want).max() < 5.0 * rtol * np.abs(want).max()

@@ -20,12 +20,11 @@ from fricmb.integrate.output.recorder import Rows
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
-from fricmb.integrate.step.law_defect import law_defect
 from fricmb.integrate.step.one_step import update_port_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
-from fricmb.integrate.step.slow_slip import slow_slip_defect
-from fricmb.integrate.step.step_error import state_error
+from fricmb.integrate.step.step_error import state_error, unseen_by_nodes
+from fricmb.integrate.step.weigh_forces import weigh_forces
 
 #: Part of its largest value that the last coefficient of r, N or |F|^2 may have: they are searched for zeros.
 SMOOTH = 0.03
@@ -139,9 +138,11 @@ def exact_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
     """Error of the step just solved in units of the tolerance (stands in for :func:`step_error`)."""
     tol = one.exact.safety * acc.rtol
     error = max(input_error(one), stiff_error(y, one, acc, h, tol)) / tol
-    off = max(state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
-    off = max(off, slow_slip_defect(packed, s, y, one, acc, h))
-    error = max(error, off / acc.rtol, too_long(growth(packed, s, y, one, h), one.tab.c.shape[0]))
+    off = state_error(packed, y, one, acc, h)
+    weigh_forces(packed, y, one, acc)
+    off = max(off, unseen_by_nodes(packed, s, y, one, acc, h))
+    too_far = too_long(growth(packed.ports, packed.laws, s, y, one.w, one.felt, h), one.tab.c.shape[0])
+    error = max(error, off / acc.rtol, too_far)
     end = one.exact.end
     error = max(error, jump_error(packed, s, y, y.t + h, y.q + end[0], y.v + end[1], acc, h))
     return float(max(error, search_error(packed, y, one, acc, h)))

@@ -7,11 +7,16 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import largest
+from fricmb.integrate.constrained.between_stages import (
+    growth_of_slip,
+    knot_within,
+    laws_between,
+    off_near_ends,
+    weigh_ports,
+)
 from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
-from fricmb.integrate.constrained.knots import knot_within, off_near_ends
-from fricmb.integrate.constrained.law_defect import law_defect
 from fricmb.integrate.constrained.load_defect import load_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
@@ -35,8 +40,6 @@ from fricmb.integrate.constrained.singular_position import (
     may_have_passed,
     near_singular,
 )
-from fricmb.integrate.constrained.slip_growth import growth
-from fricmb.integrate.constrained.slow_slip import slow_slip_defect
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
@@ -172,8 +175,8 @@ def radau_step(
         c.last_h = 0.0
         return reject(c, 0.4 * h)
     find_kinks(mech, k, y, st, out)
-    between = max(law_defect(mech, k, y, st, c, h), slow_slip_defect(mech, k, y, st, c, h))
-    between = max(between, load_defect(mech, k, w, y, st, c, out, h))
+    weigh_ports(mech, k, y, st, c, h)
+    between = max(laws_between(mech, k, y, st, c, h), load_defect(mech, k, w, y, st, c, out, h))
     knot = NOWHERE
     if mech.port.knots.shape[0] > 0:
         between = max(between, off_near_ends(mech, k, y, st, c, h))
@@ -181,7 +184,7 @@ def radau_step(
     if mech.bends.address.shape[0] > 0:
         knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
     error = max(error_of(c, y, st), between / asked(c))
-    error = max(error, too_long(growth(mech, k, y, st, h), order))
+    error = max(error, too_long(growth_of_slip(mech, k, y, st, h), order))
     if not error < 1e300:
         return reject(c, 0.4 * h)
     factor = step_factor(error, order, ONE_STEP_SAFETY)

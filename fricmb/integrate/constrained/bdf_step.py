@@ -14,16 +14,15 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.attempt_step import grow
 from fricmb.integrate.constrained.bdf_history import Formula, put
+from fricmb.integrate.constrained.between_stages import growth_of_slip, passes_bend, weigh_ports
 from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
-from fricmb.integrate.constrained.knots import passes_bend
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle, state_noise
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import may_have_passed, near_singular, way_left
-from fricmb.integrate.constrained.slip_growth import growth
 from fricmb.integrate.constrained.slip_rows import keep_held
 from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State
@@ -104,7 +103,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
                 formula.made = 0.0
                 return False
             formula.made = beta_h
-        for part, target in ((end.v, one.V), (end.lam, one.lam), (end.F, one.F), (end.z, one.Z)):
+        for part, target in ((end.v, one.V), (end.lam, one.lam), (end.F, one.F), (end.z, one.z)):
             for i in range(part.shape[0]):
                 target[0, i] = part[i]
         keep_held(mech, y.mode, y.F, one.F[0])
@@ -172,7 +171,7 @@ def inside(st: Stages, c: Control, past: Differences) -> None:
     for l in range(st.tab.c.shape[0]):
         s = st.tab.c[l] - 1.0
         i = 0
-        for part in (st.Q[l], st.V[l], st.Z[l], c.power[l], st.lam[l], st.F[l], st.N[l], st.g[l]):
+        for part in (st.Q[l], st.V[l], st.z[l], c.power[l], st.lam[l], st.F[l], st.N[l], st.g[l]):
             for a in range(part.shape[0]):
                 value = past.D[0, i]
                 factor = 1.0
@@ -214,7 +213,8 @@ def multistep(
     for i in range(past.d.shape[0]):
         past.d[i] = past.new[i] - past.guess[i]
     error = scaled(y, c, past, formula, past.d, 1.0 / (order + 1))
-    error = max(error, too_long(growth(mech, k, y, one, h), order))
+    weigh_ports(mech, k, y, one, c, h)
+    error = max(error, too_long(growth_of_slip(mech, k, y, one, h), order))
     if not error <= 1.0:
         # at the start nothing is known of the step but that of the other method
         return reject(past, c.counts, error, 0.2 if past.since > 0 else 1e-4)
@@ -225,7 +225,7 @@ def multistep(
     unique = margins(mech, k, w, end, out, False) > 0.0
     changes = violated(mech, k, w, out, y, end, st) >= 0 or has_come_to_rest(mech, k, out, y, end) >= 0
     if mech.port.knots.shape[0] > 0:
-        changes = changes or passes_bend(mech, k, y, end, st, c, h)
+        changes = changes or passes_bend(mech, k, y, end, one, c)
     if mech.bends.address.shape[0] > 0:
         changes = changes or bend_within(mech, k, y, st, c, h, IN_HISTORY) < 1.0
     if passed or not unique or changes:

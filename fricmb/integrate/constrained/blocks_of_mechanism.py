@@ -12,9 +12,8 @@ BLOCKS = (
     "friction_residual", "instant_residual", "instant_matrix", "react", "powers", "linearise", "factor_stages",
     "stage_residual", "newton_change", "iterate_stages", "try_step", "project_positions", "project_velocities",
     "end_step", "decide", "enumerate_modes", "margins", "change_modes", "violated", "record_step",
-    "copy_state", "radau_step", "lightness", "add_stick", "law_defect", "load_defect", "share_load",
-    "start_group",
-    "slow_slip_defect",
+    "copy_state", "radau_step", "lightness", "add_stick", "weigh_ports", "laws_between", "load_defect",
+    "share_load", "start_group",
 )  # fmt: skip
 
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.between_stages import look_at_step, push_by_force
 from fricmb.integrate.constrained.forces import load_at, move, scatter
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, asked
-from fricmb.integrate.constrained.slow_slip import free_by_force, look_at_step
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.forces import element_forces
@@ -93,7 +93,7 @@ def missed_at(
         free[i] = 1.0 / (c.mass[i] * st.scale[i])
     for p in range(n_c):
         coefficient = abs(mech.port.mu_s[p]) if mech.port.law[p] != LAW_SMOOTH else 1.0
-        free[n + p] = coefficient * free_by_force(mech, k, y, c, p) if mech.port.joint[p] < 0 else 0.0
+        free[n + p] = coefficient * push_by_force(mech, k, y, c, p) if mech.port.joint[p] < 0 else 0.0
     move(mech, k, y.t, y.q, y.v)
     forces_at(mech, k, n, y.mode, force[0])
     for j in range(count):

@@ -12,9 +12,9 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.between_stages import bring_up_to_date
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, move
 from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
-from fricmb.integrate.constrained.law_defect import bring_up_to_date
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, asked

@@ -30,8 +30,8 @@ class Control(Layout):
     nz) its values at ``nodes`` (s+1,) 0, c for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts``
     work done; ``longest`` step at present, and anywhere, ``bound``; ``span`` (2,) and ``stops`` times to step to;
     ``mass`` (n,) diagonal of M;
-    ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,), ``rates`` (s, n_z)
-    space of ``law_defect``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
+    ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,) space
+    of ``between_stages``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
     was to be where it was cut; ``knot`` when the next step has to end, since a law or an element bends then (not
     ahead: whenever it likes).
@@ -57,7 +57,6 @@ class Control(Layout):
     ahead: Floats
     weight: Floats2
     inertia: Floats
-    rates: Floats2
     noise_z: Floats
     growth: float
     wanted: float
@@ -71,7 +70,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         0.0, 0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros((s, problem.n_z)), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
+        np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
     )  # fmt: skip
 
 
@@ -126,7 +125,7 @@ def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
     for i in range(c.ahead.shape[0]):
         at = 0
         old = before > 0.0 and c.ahead[i] <= 4.0
-        for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.Z)):
+        for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.z)):
             for a in range(start.shape[0]):
                 value = 0.0 if old else start[a]
                 for j in range(c.nodes.shape[0] if old else 0):
@@ -141,7 +140,7 @@ def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
 def remember(c: Control, y: State, st: Stages, h: float) -> None:
     """Keep this step's values for the prediction of the next; y is still its start."""
     at = 0
-    for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.Z)):
+    for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.z)):
         for a in range(start.shape[0]):
             c.old[0, at + a] = start[a]
             for j in range(part.shape[0]):
@@ -199,7 +198,7 @@ def error_of(c: Control, y: State, st: Stages) -> float:
     tab = st.tab
     s = tab.c.shape[0]
     last = before = 0.0
-    for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.Z)):
+    for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.z)):
         for a in range(start.shape[0]):
             scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), c.noise_z[a], 1e-290)
             high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
@@ -228,7 +227,7 @@ def settle(mech: Mech, k: Moving, w: Instant, end: State) -> bool:
 def last_stage(mech: Mech, y: State, end: State, st: Stages) -> None:
     """Put the last stage of a step from y into ``end``; modes are those of y."""
     s = st.tab.c.shape[0]
-    for part, target in ((st.Q, end.q), (st.V, end.v), (st.Z, end.z), (st.lam, end.lam), (st.F, end.F)):
+    for part, target in ((st.Q, end.q), (st.V, end.v), (st.z, end.z), (st.lam, end.lam), (st.F, end.F)):
         for a in range(target.shape[0]):
             target[a] = part[s - 1, a]
     for part, target in ((st.acc, end.a), (y.n, end.n)):

@@ -67,7 +67,7 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
             row[a] = y.q[a] if j == 0 else (end.q[a] if j == s else st.Q[j - 1, a])
             row[n + a] = y.v[a] if j == 0 else (end.v[a] if j == s else st.V[j - 1, a])
         for a in range(nz):
-            row[2 * n + a] = y.z[a] if j == 0 else st.Z[j - 1, a]
+            row[2 * n + a] = y.z[a] if j == 0 else st.z[j - 1, a]
         for a in range(nw):
             value = y.work[a]
             if j > 0:

@@ -25,6 +25,7 @@ from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
 from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2, Pivots, Problem
+from fricmb.integrate.step.felt import Felt, felt_of
 from fricmb.integrate.step.tableau import Tableau
 
 
@@ -32,7 +33,7 @@ class Stages(Layout):
     """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, size * ldab) and pivots.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
-    convergence; ``turns`` for contacts in two directions.
+    convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved.
     """
 
     tab: Tableau
@@ -41,7 +42,7 @@ class Stages(Layout):
     V: Floats2
     lam: Floats2
     F: Floats2
-    Z: Floats2
+    z: Floats2
     N: Floats2
     g: Floats2
     R: Floats2
@@ -52,11 +53,12 @@ class Stages(Layout):
     x: Floats
     w: Complexes2
     line: Complexes
-    zd: Floats
+    zd: Floats2
     acc: Floats
     scale: Floats
     found: float
     turns: Turns
+    felt: Felt
 
 
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
@@ -70,8 +72,8 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
         np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
         np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
-        np.zeros((count, size), complex), np.zeros(size, complex), np.zeros(nz), np.zeros(size), np.ones(m.n), 0.0,
-        turns_of(problem, tab, size),
+        np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
+        turns_of(problem, tab, size), felt_of(problem, s),
     )  # fmt: skip
 
 
@@ -141,12 +143,12 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
         r[linear.Mi[e]] += linear.M[e] * st.acc[linear.Mj[e]]
     for a in range(m):
         r[n + a] = k.phi_rate[a]
-    friction_residual(mech, k, y.mode, y.n, st.F[i], st.Z[i], st.N[i], st.g[i], st.g[i], st.zd, r, n + m, True)
+    friction_residual(mech, k, y.mode, y.n, st.F[i], st.z[i], st.N[i], st.g[i], st.g[i], st.zd[i], r, n + m, True)
     for a in range(nz):
         rate = 0.0
         for j in range(s):
-            rate += st.Ainv[i, j] * (st.Z[j, a] - y.z[a])
-        r[n + m + n_c + a] = rate / h - st.zd[a]
+            rate += st.Ainv[i, j] * (st.z[j, a] - y.z[a])
+        r[n + m + n_c + a] = rate / h - st.zd[i, a]
 
 
 @kernel
@@ -233,7 +235,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
             for a in range(st.scale.shape[0]):
                 change = max(change, abs(st.R[i, a]) / st.scale[a])
             at = 0
-            for part in (st.V, st.lam, st.F, st.Z):
+            for part in (st.V, st.lam, st.F, st.z):
                 for a in range(part.shape[1]):
                     part[i, a] -= st.R[i, at + a]
                 at += part.shape[1]

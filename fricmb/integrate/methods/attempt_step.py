@@ -92,6 +92,19 @@ def reject(clock: Clock, one: OneStep, h: float) -> int:
 
 
 @block
+def off_beside_knots(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """:func:`beside_knots` of the step just solved, in units of the tolerance."""
+    off = beside_knots(packed.ports, packed.laws, s, one.tab, y, one.w, one.felt, acc.rtol, h)
+    return float(off / acc.rtol)
+
+
+@block
+def next_knot(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """:func:`knot_ahead` in the step just solved."""
+    return float(knot_ahead(packed.ports, packed.laws, s, one.tab, y, one.w, one.felt, acc.rtol, h))
+
+
+@block
 def advance(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, r: Rest, old: Before, out: Rows,
     clock: Clock, left: float,
@@ -121,7 +134,7 @@ def advance(
     if attempt(packed, s, y, one, acc, h):
         error = step_error(packed, s, y, one, acc, h)
         if packed.ports.knots.shape[0] > 0:
-            error = max(error, beside_knots(packed, s, y, one, acc, h))
+            error = max(error, off_beside_knots(packed, s, y, one, acc, h))
     if not error <= 1.0 and not is_exact(one):
         clock.growth = 1.0
     if not error < np.inf:
@@ -135,7 +148,7 @@ def advance(
         wanted = min(wanted, one.exact.cap)
     knot = NOWHERE
     if packed.ports.knots.shape[0] > 0:
-        knot = knot_ahead(packed, s, y, one, acc, h)
+        knot = next_knot(packed, s, y, one, acc, h)
     if packed.bends.address.shape[0] > 0 and not is_exact(one):
         bend = bend_ahead(packed, s, y, one, acc, h)
         if bend < knot:

@@ -47,6 +47,7 @@ from fricmb.integrate.step.stages import solve_stages
 from fricmb.integrate.step.step_control import BDF_RUNGS, ladder
 from fricmb.integrate.step.step_error import grain
 from fricmb.integrate.step.step_matrix import forget, prepare
+from fricmb.integrate.step.weigh_forces import weigh_forces
 
 
 @kernel
@@ -151,6 +152,12 @@ def select_order(
     change_order(past, best_k, step)
 
 
+@kernel
+def passes_knot(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy) -> bool:
+    """Whether slip passes a knot of a law between y and ``end`` where the law bends enough to matter."""
+    return bool(bends_between(packed.ports, packed.laws, s, y, end, one.felt, acc.rtol))
+
+
 @block
 def bdf_step(
     packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, past: Differences, guard: BdfGuard,
@@ -181,7 +188,8 @@ def bdf_step(
         past.d[i] = past.new[i] - past.guess[i]
     state_noise(packed, one, acc, past.h)
     error = scaled(packed, y, one, acc, past, past.d, 1.0 / (k + 1))
-    error = max(error, too_long(growth(packed, s, y, one, past.h), k))
+    weigh_forces(packed, y, one, acc)
+    error = max(error, too_long(growth(packed.ports, packed.laws, s, y, one.w, one.felt, past.h), k))
     error = max(error, jump_error(packed, s, y, y.t + past.h, end.q, end.v, acc, past.h))
     if not error <= 1.0:
         return reject(past, one.counts, error, 0.2)
@@ -190,7 +198,7 @@ def bdf_step(
         end.n[a] = one.w.n[0, a]
     if not complete(packed, s, end, one.w.sizes, one.w.pivots) or meets_transition(packed, s, y, end, guard):
         return HANDOVER
-    if packed.ports.knots.shape[0] > 0 and bends_between(packed, s, y, end, acc):
+    if packed.ports.knots.shape[0] > 0 and passes_knot(packed, s, y, end, one, acc):
         return HANDOVER
     if packed.bends.address.shape[0] > 0 and bends_in_step(packed, s, y, end, acc):
         return HANDOVER

@@ -81,3 +81,75 @@ class Mobility(Protocol):
     @property
     def D(self) -> Floats2:
         """W^T M^-1 W (m, m)."""
+
+
+class LawsWithKnots(LawsWithStates, Protocol):
+    """Laws whose coefficients bend at the slip speeds ``knots[knot_start[k]:knot_start[k+1]]``."""
+
+    @property
+    def knot_start(self) -> Ints:
+        """Where the knots of each law begin."""
+
+    @property
+    def knots(self) -> Floats:
+        """Slip speeds, rising for each law."""
+
+
+class AtContacts(Protocol):
+    """What contacts do at an instant: ``mode``, ``N`` (n_c,), ``n``, ``F``, ``g`` (m,), ``z``, ``zd`` (n_z,)."""
+
+    @property
+    def t(self) -> float:
+        """Time."""
+
+    @property
+    def mode(self) -> Codes:
+        """Of each contact."""
+
+    @property
+    def n(self) -> Floats:
+        """Directions of slip."""
+
+    @property
+    def F(self) -> Floats:
+        """Friction forces."""
+
+    @property
+    def g(self) -> Floats:
+        """Slip velocities."""
+
+    @property
+    def N(self) -> Floats:
+        """Loads."""
+
+    @property
+    def z(self) -> Floats:
+        """States of laws."""
+
+    @property
+    def zd(self) -> Floats:
+        """Their rates."""
+
+
+class AtNodes(Protocol):
+    """The same at the s nodes of a step that has been solved: ``F``, ``g`` (s, m), ``N`` (s, n_c), ``z``, ``zd``."""
+
+    @property
+    def F(self) -> Floats2:
+        """Friction forces."""
+
+    @property
+    def g(self) -> Floats2:
+        """Slip velocities."""
+
+    @property
+    def N(self) -> Floats2:
+        """Loads."""
+
+    @property
+    def z(self) -> Floats2:
+        """States of laws."""
+
+    @property
+    def zd(self) -> Floats2:
+        """Their rates."""

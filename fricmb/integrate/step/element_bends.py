@@ -16,10 +16,11 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Codes, Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.knots import AT_AN_END, IN_HISTORY, NEAR, NOWHERE, SLIGHT, narrowed
-from fricmb.integrate.step.law_defect import CREEP, ROUND_OFF, felt
+from fricmb.integrate.step.law_defect import ROUND_OFF
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slow_slip import NEARER, TIMES, WITHIN, line_at
 from fricmb.integrate.step.tableau import by_line
+from fricmb.integrate.step.weigh_forces import CREEP, pushed
 
 #: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
 SHORT_OF = 4096.0
@@ -93,7 +94,7 @@ def largest_part(packed: Packed, y: State, acc: Accuracy, off: Floats) -> float:
     for k in range(ports.var.shape[0]):
         for a in range(ports.row[k], ports.row[k + 1] if off[n + k] > 0.0 else ports.row[k]):
             coefficient = abs(ports.mu_s[k]) if ports.law[k] != LAW_SMOOTH else 1.0
-            worst = max(worst, coefficient * off[n + k] * felt(packed, y, acc, a))
+            worst = max(worst, coefficient * off[n + k] * pushed(packed, y, acc, a))
     return worst
 
 

@@ -8,20 +8,16 @@ that place, and the next one begins behind the bend.  A bend too slight to matte
 
 from __future__ import annotations
 
-import numpy as np
-
-from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, magnitude
-from fricmb.integrate.model.problem_structs import Packed, Ports
-from fricmb.integrate.model.state import State
+from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import SLIP, Floats2
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.step.crossing import polynomial
-from fricmb.integrate.step.law_defect import felt, put_felt
-from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.slow_slip import TIMES, WITHIN, around, missed, speed
+from fricmb.integrate.run.room_protocols import AtContacts, AtNodes, LawsWithKnots
+from fricmb.integrate.step.felt import Felt
+from fricmb.integrate.step.slow_slip import TIMES, WITHIN, around, missed, most_pushed, put_slip, speed
+from fricmb.integrate.step.tableau import Tableau
 
 #: Part of the tolerance that a bend inside a step may bring: of one-step methods, and of BDF, whose history keeps it.
 SLIGHT, IN_HISTORY = 0.2, 0.02
@@ -33,7 +29,7 @@ NOWHERE = 2.0
 
 
 @kernel
-def has_knots(ports: Ports, y: State, k: int) -> bool:
+def has_knots(ports: LawsWithKnots, y: AtContacts, k: int) -> bool:
     """Whether contact k slips under a law with knots."""
     return bool(y.mode[k] == SLIP and ports.knot_start[k + 1] > ports.knot_start[k])
 
@@ -67,23 +63,17 @@ def where_passed(slip: Floats2, d: int, low: float, high: float, knot: float) ->
 
 @kernel
 def contact_knot(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, h: float, space: Floats2
-) -> float:
-    """:func:`knot_ahead` of contact k; ``space`` (5, s+1)."""
-    ports, c = packed.ports, one.tab.c
-    row0, d = ports.row[k], ports.row[k + 1] - ports.row[k]
-    weight, line, slip = space[0], space[1], space[2:]
-    for a in range(d):
-        for j in range(c.shape[0]):
-            one.margin[j] = one.w.g[j, row0 + a]
-        polynomial(one.tab, y.g[row0 + a], one.margin, slip[a])
-    weight[:3] = 0.0
-    put_felt(packed, y, acc, k, weight)
+    ports: LawsWithKnots, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, k: int, h: float,
+) -> float:  # fmt: skip
+    """:func:`knot_ahead` of contact k."""
+    c, slip = tab.c, felt.slip
+    d = put_slip(ports, tab, y, w, felt, k)
     least = max(AT_AN_END, NEAR * EPS * abs(y.t) / h)
     low, last = 0.0, magnitude(ports.row, k, y.g)
     first, end = ports.knot_start[k], ports.knot_start[k + 1]
     for j in range(c.shape[0]):
-        here = magnitude(ports.row, k, one.w.g[j])
+        here = magnitude(ports.row, k, w.g[j])
         for i in range(end - first):
             knot = ports.knots[first + i if here > last else end - 1 - i]  # in the order in which they are passed
             if (last < knot) == (here < knot):
@@ -91,43 +81,45 @@ def contact_knot(
             x = where_passed(slip, d, low, c[j], knot)
             if not least < x < 1.0 - AT_AN_END:
                 continue
-            if around(packed, s, y, one, acc, k, j, x, h, line, weight) > SLIGHT * acc.rtol:
+            if around(ports, laws, s, tab, y, w, felt, tolerance, k, j, x, h) > SLIGHT * tolerance:
                 return float(x)
         low, last = c[j], here
     return NOWHERE
 
 
-@block
-def knot_ahead(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+@kernel
+def knot_ahead(
+    ports: LawsWithKnots, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, h: float,
+) -> float:  # fmt: skip
     """Part of the step h just solved up to the first knot that its polynomials do not know; ``NOWHERE`` without one."""
     found = NOWHERE
-    space = np.empty((5, one.tab.c.shape[0] + 1))
     for k in range(y.mode.shape[0]):
-        if has_knots(packed.ports, y, k):
-            found = min(found, contact_knot(packed, s, y, one, acc, k, h, space))
+        if has_knots(ports, y, k):
+            found = min(found, contact_knot(ports, laws, s, tab, y, w, felt, tolerance, k, h))
     return found
 
 
-@block
-def beside_knots(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
-    """Error of the step h just solved, in units of the tolerance, of laws with knots near its start and its end.
+@kernel
+def beside_knots(
+    ports: LawsWithKnots, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, h: float,
+) -> float:  # fmt: skip
+    """Error of the step h just solved, by its own scale, of laws with knots near its start and its end.
 
     Steps end at knots, so what is narrow there lies at their ends: of a peak that a law states by its highest place
     half is before the knot, half behind it.
     """
-    ports, c = packed.ports, one.tab.c
+    c = tab.c
     last = c.shape[0] - 1
     before = c[last - 1] if last > 0 else 0.0
-    line, weight = np.empty(last + 2), np.empty(3)
     worst = 0.0
     for k in range(y.mode.shape[0]):
         if not has_knots(ports, y, k):
             continue
-        weight[:] = 0.0
-        put_felt(packed, y, acc, k, weight)
-        worst = max(worst, missed(packed, s, y, one, acc, k, 0, 0.0, c[0], h, line, weight))
-        worst = max(worst, missed(packed, s, y, one, acc, k, last, 1.0, before - 1.0, h, line, weight))
-    return float(worst / acc.rtol)
+        worst = max(worst, missed(ports, laws, s, tab, y, w, felt, tolerance, k, 0, 0.0, c[0], h))
+        worst = max(worst, missed(ports, laws, s, tab, y, w, felt, tolerance, k, last, 1.0, before - 1.0, h))
+    return worst
 
 
 @kernel
@@ -141,28 +133,27 @@ def off_cubic(
 
 
 @kernel
-def bend(packed: Packed, s: Scratch, k: int, N: float, r0: float, r1: float, knot: float) -> float:
+def bend(ports: LawsWithKnots, laws: Table, s: Scratch, k: int, N: float, r0: float, r1: float, knot: float) -> float:
     """What the cubic through coefficient k at two slip speeds, with its slopes, is off at a knot between them."""
-    mu0, slope0, _ = coefficient(packed.ports, packed.laws, k, s, r0, N)
-    mu1, slope1, _ = coefficient(packed.ports, packed.laws, k, s, r1, N)
-    mu = coefficient(packed.ports, packed.laws, k, s, knot, N)[0]
+    mu0, slope0, _ = coefficient(ports, laws, k, s, r0, N)
+    mu1, slope1, _ = coefficient(ports, laws, k, s, r1, N)
+    mu = coefficient(ports, laws, k, s, knot, N)[0]
     return off_cubic((mu0, slope0), (mu1, slope1), r0, r1, mu, knot)
 
 
 @kernel
-def bends_between(packed: Packed, s: Scratch, y: State, end: State, acc: Accuracy) -> bool:
+def bends_between(
+    ports: LawsWithKnots, laws: Table, s: Scratch, y: AtContacts, end: AtContacts, felt: Felt, tolerance: float
+) -> bool:
     """Whether slip passes a knot between y and ``end``, a step of BDF, where the law bends enough to matter."""
-    ports = packed.ports
     for k in range(y.mode.shape[0]):
         if not has_knots(ports, y, k):
             continue
         r0, r1 = magnitude(ports.row, k, y.g), magnitude(ports.row, k, end.g)
-        most = 0.0
-        for a in range(ports.row[k], ports.row[k + 1]):
-            most = max(most, felt(packed, y, acc, a))
-        allowed = IN_HISTORY * acc.rtol / max((end.t - y.t) * most * max(y.N[k], end.N[k]), 1e-290)
+        load = max(y.N[k], end.N[k], felt.least[k])
+        allowed = IN_HISTORY * tolerance / max((end.t - y.t) * most_pushed(ports, felt, k) * abs(load), 1e-290)
         for i in range(ports.knot_start[k], ports.knot_start[k + 1]):
             knot = ports.knots[i]
-            if min(r0, r1) < knot < max(r0, r1) and bend(packed, s, k, y.N[k], r0, r1, knot) > allowed:
+            if min(r0, r1) < knot < max(r0, r1) and bend(ports, laws, s, k, load, r0, r1, knot) > allowed:
                 return True
     return False

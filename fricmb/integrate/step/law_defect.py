@@ -7,40 +7,40 @@ tails of their polynomials need not show.
 
 from __future__ import annotations
 
-import numpy as np
-
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.problem_structs import Packed, Table
-from fricmb.integrate.model.state import State
+from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Floats, Floats2
-from fricmb.integrate.run.room_protocols import LawsWithStates
-from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
-from fricmb.integrate.step.tableau import by_line, largest_in_step
+from fricmb.integrate.run.room_protocols import AtContacts, AtNodes, LawsWithStates
+from fricmb.integrate.step.felt import Felt
+from fricmb.integrate.step.tableau import Tableau, by_line, largest_in_step
 
 #: Relative round-off of forces and rates beside their polynomials.
 ROUND_OFF = 1e-14
-#: Velocities below so many floors of theirs are creep.
-CREEP = 1e3
+
+
+@kernel
+def load_between(y: AtContacts, w: AtNodes, felt: Felt, k: int, line: Floats) -> float:
+    """Load of contact k on its polynomial at the place of ``line``; 0 where it is open."""
+    return float(max(by_line(line, y.N[k], w.N, k), felt.least[k]) if y.mode[k] != OPEN else 0.0)
 
 
 @kernel
 def ask_between(
-    ports: LawsWithStates, laws: Table, s: Scratch, k: int, line: Floats, g0: Floats, g: Floats2, N: float, z0: Floats,
-    z: Floats2,
-) -> None:  # fmt: skip
-    """Law k under the load N at the polynomials through (g0, g) and (z0, z): force, rates, slopes into ``s.out``.
+    ports: LawsWithStates, laws: Table, s: Scratch, k: int, line: Floats, y: AtContacts, w: AtNodes, N: float
+) -> None:
+    """Law k under the load N on the polynomials of slip and states: force, rates, slopes into ``s.out``.
 
     ``line``: that of the tableau's ``mid`` which says where.
     """
     first, states = ports.row[k], ports.z_start[k]
     d = ports.row[k + 1] - first
     for a in range(d):
-        s.x[a] = by_line(line, g0[first + a], g, first + a)
+        s.x[a] = by_line(line, y.g[first + a], w.g, first + a)
     s.x[d] = N
     for a in range(ports.z_start[k + 1] - states):
-        s.x[d + 1 + a] = by_line(line, z0[states + a], z, states + a)
+        s.x[d + 1 + a] = by_line(line, y.z[states + a], w.z, states + a)
     call(laws.address[k], s.x, 0, laws.p, laws.p_start[k], s.out, 0)
 
 
@@ -79,63 +79,34 @@ def rate_off(
 
 
 @kernel
-def felt(packed: Packed, y: State, acc: Accuracy, a: int) -> float:
-    """Acceleration of the velocity that is moved most, by its own scale, by a unit of force in row a.
-
-    What creeps before anything has moved has no scale of its own yet: a steep law's round-off would be seen there.
-    """
-    top = widest(acc.v)
-    most = 0.0
-    for i in range(y.v.shape[0]):
-        size = packed.structure.mobility[i] * abs(packed.ports.W[i, a])
-        if size > 0.0:
-            scale = max(acc.v[i], abs(y.v[i]), CREEP * acc.floor_v[i], 1e-10 * top, 1e-290)
-            most = max(most, size / scale)
-    return most
-
-
-@kernel
-def put_felt(packed: Packed, y: State, acc: Accuracy, k: int, weight: Floats) -> None:
-    """``felt`` of the rows of contact k into ``weight`` (3,)."""
-    first = packed.ports.row[k]
-    for a in range(first, packed.ports.row[k + 1]):
-        weight[a - first] = felt(packed, y, acc, a)
-
-
-@kernel
 def smooth_defect(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, j: int, line: Floats, gap: float,
-    h: float, weight: Floats,
+    ports: LawsWithStates, laws: Table, s: Scratch, y: AtContacts, w: AtNodes, felt: Felt, k: int, j: int,
+    line: Floats, gap: float, h: float,
 ) -> float:  # fmt: skip
-    """Largest error, by its own scale, that smooth law k, asked by ``line``, leaves in a gap before node j of a step h.
-
-    ``weight``: see ``put_felt``.
-    """
-    ports, w = packed.ports, one.w
+    """Largest error, by its own scale, that smooth law k, asked by ``line``, leaves in a gap before node j."""
     first, z0 = ports.row[k], ports.z_start[k]
     worst = 0.0
-    load = max(by_line(line, y.N[k], w.N, k), 0.0) if y.mode[k] != OPEN else 0.0
-    ask_between(ports, packed.laws, s, k, line, y.g, w.g, load, y.z, w.z)
-    for a in range(ports.row[k + 1] - first):
-        off = force_off(ports, s, k, a, line, y.F, w.F, ports.D[first + a, first + a], gap, h)
-        worst = max(worst, gap * off * weight[a])
+    ask_between(ports, laws, s, k, line, y, w, load_between(y, w, felt, k, line))
+    for a in range(ports.row[k + 1] - first if y.mode[k] != OPEN else 0):
+        off = force_off(ports, s, k, a, line, y.F, w.F, felt.free[first + a], gap, h)
+        worst = max(worst, gap * off * felt.push[first + a])
     for a in range(ports.z_start[k + 1] - z0):
-        size = max(acc.z[z0 + a], abs(y.z[z0 + a]), abs(w.z[j, z0 + a]), one.noise_z[z0 + a], 1e-290)
+        size = max(felt.size[z0 + a], abs(w.z[j, z0 + a]))
         worst = max(worst, rate_off(ports, s, k, a, line, y.zd, w.zd, gap) / size)
     return worst
 
 
 @kernel
-def law_defect(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+def law_defect(
+    ports: LawsWithStates, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt, h: float
+) -> float:
     """Largest error of a velocity or a state, by its own scale, that smooth laws leave between the nodes."""
-    c = one.tab.c
+    c = tab.c
     worst = 0.0
     for k in range(y.mode.shape[0]):
-        if packed.ports.law[k] != LAW_SMOOTH:
+        if ports.law[k] != LAW_SMOOTH:
             continue
-        weight = np.empty(3)
-        put_felt(packed, y, acc, k, weight)
         for j in range(c.shape[0]):
             gap = h * (c[j] - (c[j - 1] if j > 0 else 0.0))
-            worst = max(worst, smooth_defect(packed, s, y, one, acc, k, j, one.tab.mid[j], gap, h, weight))
+            worst = max(worst, smooth_defect(ports, laws, s, y, w, felt, k, j, tab.mid[j], gap, h))
     return worst

@@ -9,6 +9,7 @@ from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.problem import Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.contact_unknowns import PortState, port_state
 from fricmb.integrate.step.exact_structure import Exact
+from fricmb.integrate.step.felt import Felt, felt_of
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.step_matrix import Factor
 from fricmb.integrate.step.tableau import Tableau
@@ -38,7 +39,7 @@ class OneStep(Layout):
     ``last_t``, ``last_h`` start and length of the step that the stages are of (0: of none), ``counts`` work done (see
     Counters), ``power`` (s, n_c+2) powers at the stages, ``noise_z`` (n_z,) sizes of states that do not matter, ``N``
     (s, n_c) normal forces at the stages before max(0, .), ``margin`` (s,) and ``series`` (s+1,) what is searched for
-    zeros, ``exact`` the structure where it is exact.
+    zeros, ``exact`` the structure where it is exact, ``felt`` what forces do in the step just solved.
     """
 
     tab: Tableau
@@ -56,6 +57,7 @@ class OneStep(Layout):
     series: Floats
     N: Floats2
     exact: Exact
+    felt: Felt
 
 
 def one_step_of(problem: Problem, tableau: Tableau, fac: Factor, st: Stages, exact: Exact) -> OneStep:
@@ -64,7 +66,7 @@ def one_step_of(problem: Problem, tableau: Tableau, fac: Factor, st: Stages, exa
     return OneStep(
         tableau, fac, st, port_state(problem, s), np.zeros(nc + problem.n_z), np.zeros(problem.n), 0.0, 0.0,
         np.zeros(8, np.int64), np.zeros((s, nc + 2)), np.zeros(problem.n_z), np.zeros(s), np.zeros(s + 1),
-        np.zeros((s, nc)), exact,
+        np.zeros((s, nc)), exact, felt_of(problem, s),
     )  # fmt: skip
 
 

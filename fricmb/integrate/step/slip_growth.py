@@ -10,29 +10,13 @@ from __future__ import annotations
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, magnitude, smooth_force
-from fricmb.integrate.model.problem_structs import Packed, Table
-from fricmb.integrate.model.state import State
+from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, Floats, Ints
-from fricmb.integrate.run.room_protocols import Laws
-from fricmb.integrate.step.one_step_room import OneStep
+from fricmb.integrate.run.room_protocols import AtContacts, AtNodes, Laws, LawsWithStates
+from fricmb.integrate.step.felt import Felt
 
 #: Longest step, in times by which slip grows e-fold; part of the largest slip speed in a step below which none matters.
 LONGEST, LEAST = 1.0, 1e-12
-
-
-@kernel
-def damped(packed: Packed, k: int) -> float:
-    """Rate at which dampers alone would take the slip of contact k away (of the diagonal: at most that)."""
-    structure, ports = packed.structure, packed.ports
-    rate = 0.0
-    for a in range(ports.row[k], ports.row[k + 1]):
-        value = 0.0
-        for i in range(structure.mobility.shape[0]):
-            if ports.W[i, a] != 0.0:
-                value += (ports.W[i, a] * structure.mobility[i]) ** 2 * structure.C[structure.own[i]]
-        value /= max(ports.D[a, a], 1e-290)
-        rate = value if a == ports.row[k] else min(rate, value)
-    return float(max(rate, 0.0))
 
 
 @kernel
@@ -71,40 +55,57 @@ def fall_between(ports: Laws, laws: Table, k: int, s: Scratch, low: float, high:
 
 
 @kernel
-def fall_of(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, h: float) -> float:
-    """Largest slope by which friction of contact k falls with slip speed within a step."""
-    ports, w = packed.ports, one.w
-    if ports.law[k] == LAW_SMOOTH:
-        value = drive(packed.laws, ports.row, ports.z_start, s, k, y.g, y.N[k], y.z, h)
-        for j in range(w.r.shape[0]):
-            value = max(value, drive(packed.laws, ports.row, ports.z_start, s, k, w.g[j], w.N[j, k], w.z[j], h))
-        return float(value)
-    low = high = magnitude(ports.row, k, y.g)
-    load = y.N[k]
-    value = -coefficient(ports, packed.laws, k, s, low, load)[1] * load
-    for j in range(w.r.shape[0]):
-        value = max(value, -coefficient(ports, packed.laws, k, s, w.r[j, k], w.N[j, k])[1] * w.N[j, k])
-        low, high, load = min(low, w.r[j, k]), max(high, w.r[j, k]), max(load, w.N[j, k])
-    return float(max(value, fall_between(ports, packed.laws, k, s, low, high, load)))
+def slip_ahead(row: Ints, k: int, n: Floats, g: Floats) -> float:
+    """Slip speed of contact k; in one direction below 0 where a step has gone on beyond the end of its slip."""
+    return float(n[row[k]] * g[row[k]] if row[k + 1] - row[k] == 1 else magnitude(row, k, g))
 
 
 @kernel
-def growth(packed: Packed, s: Scratch, y: State, one: OneStep, h: float) -> float:
-    """Length of the step from y, whose stages are solved, in units of the longest that sees slip grow."""
-    ports = packed.ports
+def fall_at(
+    ports: LawsWithStates, laws: Table, s: Scratch, felt: Felt, k: int, n: Floats, g: Floats, N: Floats, z: Floats,
+    h: float,
+) -> float:  # fmt: skip
+    """Slope by which friction of contact k falls with slip speed."""
+    load = max(N[k], felt.least[k])
+    if ports.law[k] == LAW_SMOOTH:
+        return drive(laws, ports.row, ports.z_start, s, k, g, load, z, h)
+    return float(-coefficient(ports, laws, k, s, slip_ahead(ports.row, k, n, g), load)[1] * abs(load))
+
+
+@kernel
+def fall_of(
+    ports: LawsWithStates, laws: Table, s: Scratch, y: AtContacts, w: AtNodes, felt: Felt, k: int, h: float
+) -> float:
+    """Largest slope by which friction of contact k falls with slip speed within a step."""
+    value = fall_at(ports, laws, s, felt, k, y.n, y.g, y.N, y.z, h)
+    low = high = slip_ahead(ports.row, k, y.n, y.g)
+    load = abs(y.N[k])
+    for j in range(w.g.shape[0]):
+        value = max(value, fall_at(ports, laws, s, felt, k, y.n, w.g[j], w.N[j], w.z[j], h))
+        speed = slip_ahead(ports.row, k, y.n, w.g[j])
+        low, high, load = min(low, speed), max(high, speed), max(load, abs(w.N[j, k]))
+    if ports.law[k] != LAW_SMOOTH:
+        value = max(value, fall_between(ports, laws, k, s, low, high, load))
+    return float(value)
+
+
+@kernel
+def growth(ports: LawsWithStates, laws: Table, s: Scratch, y: AtContacts, w: AtNodes, felt: Felt, h: float) -> float:
+    """Length of the step from y, whose nodes are solved, in units of the longest that sees slip grow.
+
+    Bodies count as if they had no joints: they are heavier with them, and slip grows slower.
+    """
     worst = 0.0
     for k in range(y.mode.shape[0]):
         if y.mode[k] != SLIP or ports.law[k] == LAW_CONSTANT:
             continue
-        row0 = ports.row[k]
-        d = ports.row[k + 1] - row0
-        fall = fall_of(packed, s, y, one, k, h)
+        fall = fall_of(ports, laws, s, y, w, felt, k, h)
         if fall <= 0.0:
             continue
         light = 0.0
-        for a in range(row0, row0 + d):
-            light = max(light, ports.D[a, a])
-        worst = max(worst, h * (fall * light - damped(packed, k)) / LONGEST)
+        for a in range(ports.row[k], ports.row[k + 1]):
+            light = max(light, felt.free[a])
+        worst = max(worst, h * (fall * light - felt.damped[k]) / LONGEST)
     return float(worst)
 
 

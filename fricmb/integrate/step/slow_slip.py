@@ -10,17 +10,15 @@ times the distance, adds up to the impulse that the step has missed.
 
 from __future__ import annotations
 
-import numpy as np
-
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.law_values import coefficient, magnitude
-from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.model.state import State
+from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, Floats, Floats2, Ints
+from fricmb.integrate.run.room_protocols import AtContacts, AtNodes, Laws, LawsWithStates
 from fricmb.integrate.step.crossing import evaluate, polynomial
-from fricmb.integrate.step.law_defect import ROUND_OFF, put_felt, smooth_defect
-from fricmb.integrate.step.one_step_room import Accuracy, OneStep
+from fricmb.integrate.step.felt import Felt
+from fricmb.integrate.step.law_defect import ROUND_OFF, load_between, smooth_defect
 from fricmb.integrate.step.tableau import Tableau, by_line
 
 #: Part of the slip speed at the one node below which slip is slow at the other.
@@ -117,111 +115,116 @@ def least_way(tolerance: float, row: Ints, k: int, F0: Floats, F: Floats2, most:
 
 
 @kernel
-def coefficient_off(packed: Packed, s: Scratch, y: State, one: OneStep, k: int, line: Floats) -> float:
+def coefficient_off(
+    ports: LawsWithStates, laws: Table, s: Scratch, y: AtContacts, w: AtNodes, felt: Felt, k: int, line: Floats
+) -> float:
     """What friction of contact k, whose law is a coefficient, is off from the polynomial of its size."""
-    ports, w = packed.ports, one.w
     r = 0.0
     for a in range(ports.row[k], ports.row[k + 1]):
         r += by_line(line, y.g[a], w.g, a) ** 2
-    N = max(by_line(line, y.N[k], w.N, k), 0.0)
+    N = load_between(y, w, felt, k, line)
     size, top = force_between(ports.row, k, line, y.F, w.F)
-    mu = coefficient(ports, packed.laws, k, s, r**0.5, N)[0]
+    mu = coefficient(ports, laws, k, s, r**0.5, N)[0]
     return float(max(abs(mu * N - size) - ROUND_OFF * top, 0.0))
 
 
 @kernel
-def missed(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, j: int, x: float, way: float, h: float,
-    line: Floats, weight: Floats,
-) -> float:  # fmt: skip
-    """Sum of what law k misses at x + way/4, x + way/16, ... of the step h, before node j.
+def most_pushed(ports: Laws, felt: Felt, k: int) -> float:
+    """Largest acceleration, by its own scale, that a unit of force of contact k brings."""
+    most = 0.0
+    for a in range(ports.row[k], ports.row[k + 1]):
+        most = max(most, felt.push[a])
+    return most
 
-    As an error by its own scale; ``weight``: see ``put_felt``; ``line``: space.
-    """
-    most = max(weight[0], weight[1], weight[2])
-    least = least_way(acc.rtol, packed.ports.row, k, y.F, one.w.F, most, h)
+
+@kernel
+def missed(
+    ports: LawsWithStates, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, k: int, j: int, x: float, way: float, h: float,
+) -> float:  # fmt: skip
+    """Sum of what law k misses at x + way/4, x + way/16, ... of the step h, before node j, by its own scale."""
+    most, line = most_pushed(ports, felt, k), felt.line
+    least = least_way(tolerance, ports.row, k, y.F, w.F, most, h)
     total = 0.0
     for _ in range(TIMES):
         way *= NEARER
         if abs(way) < least:
             break
-        line_at(one.tab, x + way, line)
+        line_at(tab, x + way, line)
         gap = h * abs(way)
-        if packed.ports.law[k] == LAW_SMOOTH:
-            total += smooth_defect(packed, s, y, one, acc, k, j, line, gap, h, weight)
+        if ports.law[k] == LAW_SMOOTH:
+            total += smooth_defect(ports, laws, s, y, w, felt, k, j, line, gap, h)
         else:
-            total += gap * coefficient_off(packed, s, y, one, k, line) * most
+            total += gap * coefficient_off(ports, laws, s, y, w, felt, k, line) * most
     return total
 
 
 @kernel
 def around(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, j: int, x: float, h: float, line: Floats,
-    weight: Floats,
+    ports: LawsWithStates, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, k: int, j: int, x: float, h: float,
 ) -> float:  # fmt: skip
     """Sum of what law k misses on both sides of x between node j and the one before it."""
-    c = one.tab.c
-    low = c[j - 1] if j > 0 else 0.0
+    low, high = tab.c[j - 1] if j > 0 else 0.0, tab.c[j]
     off = 0.0
     if x > low:
-        off += missed(packed, s, y, one, acc, k, j, x, low - x, h, line, weight)
-    if x < c[j]:
-        off += missed(packed, s, y, one, acc, k, j, x, c[j] - x, h, line, weight)
+        off += missed(ports, laws, s, tab, y, w, felt, tolerance, k, j, x, low - x, h)
+    if x < high:
+        off += missed(ports, laws, s, tab, y, w, felt, tolerance, k, j, x, high - x, h)
     return off
 
 
 @kernel
-def contact_missed(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, k: int, h: float, slip: Floats2, line: Floats,
-    weight: Floats,
-) -> float:  # fmt: skip
-    """Largest error between two neighbouring nodes where slip of contact k is slow or turns.
+def put_slip(ports: Laws, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt, k: int) -> int:
+    """Series of the slip velocity of contact k into ``felt.slip``, and in how many directions it slips."""
+    first = ports.row[k]
+    for a in range(first, ports.row[k + 1]):
+        for j in range(tab.c.shape[0]):
+            felt.values[j] = w.g[j, a]
+        polynomial(tab, y.g[a], felt.values, felt.slip[a - first])
+    return int(ports.row[k + 1] - first)
 
-    ``weight``: see ``put_felt``; negative where that is not known yet.
-    """
-    ports, c = packed.ports, one.tab.c
-    d = ports.row[k + 1] - ports.row[k]
+
+@kernel
+def contact_missed(
+    ports: LawsWithStates, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, k: int, h: float,
+) -> float:  # fmt: skip
+    """Largest error between two neighbouring nodes where slip of contact k is slow or turns."""
+    c, slip = tab.c, felt.slip
+    d = put_slip(ports, tab, y, w, felt, k)
     worst = 0.0
     low, last, rate = 0.0, magnitude(ports.row, k, y.g), approach(slip, d, 0.0)
     for j in range(c.shape[0]):
-        here, next_rate = magnitude(ports.row, k, one.w.g[j]), approach(slip, d, c[j])
+        here, next_rate = magnitude(ports.row, k, w.g[j]), approach(slip, d, c[j])
         x = -1.0
         if rate < 0.0 < next_rate or (rate > 0.0 > next_rate and ports.law[k] == LAW_SMOOTH):
             x = turn(slip, d, low, c[j])
-            if abs(speed(slip, d, x) - (min(last, here) if rate < 0.0 else max(last, here))) < FLAT * acc.rtol * here:
+            if abs(speed(slip, d, x) - (min(last, here) if rate < 0.0 else max(last, here))) < FLAT * tolerance * here:
                 x = -1.0
         elif min(last, here) < SLOW * max(last, here):
             x = low if last < here else c[j]
         if x >= 0.0:
-            if weight[0] < 0.0:
-                weight[:3] = 0.0
-                put_felt(packed, y, acc, k, weight)
-            worst = max(worst, around(packed, s, y, one, acc, k, j, x, h, line, weight))
+            worst = max(worst, around(ports, laws, s, tab, y, w, felt, tolerance, k, j, x, h))
         low, last, rate = c[j], here, next_rate
     return worst
 
 
 @kernel
-def asked(packed: Packed, y: State, k: int) -> bool:
+def follows_slip(ports: Laws, y: AtContacts, k: int) -> bool:
     """Whether friction of contact k follows its slip speed."""
-    law = packed.ports.law[k]
+    law = ports.law[k]
     return bool(y.mode[k] != OPEN if law == LAW_SMOOTH else law != LAW_CONSTANT and y.mode[k] == SLIP)
 
 
 @kernel
-def slow_slip_defect(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+def slow_slip_defect(
+    ports: LawsWithStates, laws: Table, s: Scratch, tab: Tableau, y: AtContacts, w: AtNodes, felt: Felt,
+    tolerance: float, h: float,
+) -> float:  # fmt: skip
     """Largest error, by its own scale, of what laws of slip speed do between nodes where slip is slow or turns."""
-    ports, n_s = packed.ports, one.tab.c.shape[0]
     worst = 0.0
     for k in range(y.mode.shape[0]):
-        if not asked(packed, y, k):
-            continue
-        space = np.empty((5, n_s + 1))
-        first = ports.row[k]
-        for a in range(first, ports.row[k + 1]):
-            for j in range(n_s):
-                one.margin[j] = one.w.g[j, a]
-            polynomial(one.tab, y.g[a], one.margin, space[2 + a - first])
-        space[0, 0] = -1.0
-        worst = max(worst, contact_missed(packed, s, y, one, acc, k, h, space[2:], space[1], space[0]))
+        if follows_slip(ports, y, k):
+            worst = max(worst, contact_missed(ports, laws, s, tab, y, w, felt, tolerance, k, h))
     return worst

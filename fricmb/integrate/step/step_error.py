@@ -21,6 +21,7 @@ from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact, wid
 from fricmb.integrate.step.slip_growth import growth, too_long
 from fricmb.integrate.step.slow_slip import slow_slip_defect
 from fricmb.integrate.step.tableau import by_line, largest_in_step
+from fricmb.integrate.step.weigh_forces import weigh_forces
 
 #: Relative round-off of a number.
 ROUND_OFF = 2.3e-16
@@ -101,12 +102,21 @@ def radau_error(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accurac
         # a position that has only begun to move is measured by what its velocity brings within the step
         size_q = max(size_q, acc.floor_q[i], 1e-10 * top_q, h * size_v)
         worst = max(worst, abs(e_v) / size_v, abs(e_q) / size_q)
-    worst = max(worst, state_error(packed, y, one, acc, h), law_defect(packed, s, y, one, acc, h))
-    worst = max(worst, slow_slip_defect(packed, s, y, one, acc, h))
-    worst = max(worst / acc.rtol, too_long(growth(packed, s, y, one, h), n_s))
+    worst = max(worst, state_error(packed, y, one, acc, h))
+    weigh_forces(packed, y, one, acc)
+    worst = max(worst, unseen_by_nodes(packed, s, y, one, acc, h))
+    worst = max(worst / acc.rtol, too_long(growth(packed.ports, packed.laws, s, y, one.w, one.felt, h), n_s))
     worst = max(worst, jump_error(packed, s, y, st.t[n_s - 1], st.Q[n_s - 1], st.V[n_s - 1], acc, h))
     fresh = packed.bends.address.shape[0] > 0 and begins_at_bend(packed, s, y, one, h)
     return float(max(worst, unseen_force(packed, y, one, acc, h, fresh)))
+
+
+@kernel
+def unseen_by_nodes(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, h: float) -> float:
+    """Largest error, by its own scale, that laws leave between the nodes; ``one.felt`` is that of the step."""
+    ports, laws, tab, w, felt = packed.ports, packed.laws, one.tab, one.w, one.felt
+    slow = slow_slip_defect(ports, laws, s, tab, y, w, felt, acc.rtol, h)
+    return float(max(law_defect(ports, laws, s, tab, y, w, felt, h), slow))
 
 
 @kernel
