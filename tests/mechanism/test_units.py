@@ -113,3 +113,78 @@ def test_a_body_that_cannot_turn_may_have_hardly_any_inertia(inertia):
     scene = crank_with_friction()
     light = fm.simulate(scene.with_parameters({"slider.inertia": inertia}), t_end=0.5, rtol=1e-8, time_limit=60.0)
     moves_as(fm.simulate(scene, t_end=0.5, rtol=1e-8), light)
+
+
+def dry_links(L, T):
+    link = 0.1 * L
+    parts, last = [fm.Gravity("weight", acceleration={"y": -9.81 * L / T**2})], fm.ground_point(0, 0)
+    for i in range(3):
+        points = {"a": (-0.5 * link, 0.0), "b": (0.5 * link, 0.0)}
+        body = fm.RigidBody(f"l{i}", mass=0.1, inertia=1e-4 * L**2, position=((i + 0.5) * link, 0.0), points=points)
+        law = fm.laws.Coulomb(mu_s=0.4, mu_k=0.3)
+        parts += [body, fm.Revolute(f"p{i}", body.point("a"), last, radius=0.004 * L, friction=law)]
+        last = body.point("b")
+    return fm.Scene("links", parts), 0.5 * T, "l2.angle"
+
+
+def dry_pin(L, T):
+    model = fm.models.dry_pendulum(
+        mass=1.3, inertia=0.2 * L**2, length=0.7 * L, radius=0.05 * L, gravity=9.81 * L / T**2
+    )
+    return model, 2.0 * T, "arm.angle"
+
+
+def dry_pin_beside_a_rotor(L, T, speed=1e6):
+    scene, t_end, angle = dry_pin(L, T)
+    rotor = fm.RigidBody("rotor", mass=1.0, inertia=L**2, angular_velocity=speed / T)
+    return fm.Scene("beside", [*scene.parts, rotor]), t_end, angle
+
+
+def hinge_on_a_slider(L, T):
+    law = fm.laws.Coulomb(mu_s=0.3, mu_k=0.2)
+    slider = fm.RigidBody(
+        "slider", mass=1.0, inertia=0.1 * L**2, velocity=(L / T, 0.0), points={"end": (0.1 * L, 0.05 * L)}
+    )
+    arm = fm.RigidBody(
+        "arm", mass=0.3, inertia=0.01 * L**2, position=(0.1 * L, -0.2 * L), points={"top": (0.0, 0.25 * L)}
+    )
+    hinge = fm.Revolute("hinge", arm.point("top"), slider.point("end"), radius=0.02 * L, friction=law)
+    weight = fm.Gravity("weight", acceleration={"y": -9.81 * L / T**2})
+    return fm.Scene("hinge", [slider, arm, fm.Prismatic("rail", slider), hinge, weight]), 2.0 * T, "arm.angle"
+
+
+def fast_crank(L, T):
+    law = fm.laws.Coulomb(mu_s=0.2)
+    scene = fm.models.slider_crank(
+        crank=0.1 * L, rod=0.3 * L, masses=(1.0, 0.6, 0.8), speed=30.0 / T, gravity=9.81 * L / T**2, pin=0.01 * L,
+        friction=law,
+    )  # fmt: skip
+    return scene, 0.5 * T, "crank.angle"
+
+
+#: Units of length and of time in those that numbers are of the order of 1 in.
+FAR = [(1e-9, 1.0), (1e-4, 1.0), (1e4, 1.0), (1e9, 1.0), (1.0, 1e-6), (1.0, 1e6), (1e-9, 1e-6), (1e9, 1e6)]
+
+
+@pytest.mark.parametrize("make", [dry_pin, dry_pin_beside_a_rotor, dry_links, hinge_on_a_slider, fast_crank])
+def test_lengths_and_times_of_any_size_give_the_same_digits(make):
+    def run(L, T):
+        scene, t_end, angle = make(L, T)
+        sol = fm.simulate(scene, t_end=t_end, rtol=1e-8, method="radau")
+        return sol[angle][-1], [(e.contact, e.kind) for e in sol.events], [e.t / T for e in sol.events]
+
+    angle, kinds, times = run(1.0, 1.0)
+    for units in FAR:
+        found = run(*units)
+        assert found[1] == kinds
+        assert found[0] == pytest.approx(angle, abs=1e-13 * max(1.0, abs(angle)))
+        np.testing.assert_allclose(found[2], times, rtol=1e-12)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10])
+def test_an_idle_rotor_takes_no_accuracy_away(rtol):
+    scene, t_end, angle = dry_pin(1.0, 1.0)
+    want = fm.simulate(scene, t_end=t_end, rtol=1e-11, method="radau")[angle][-1]
+    for speed in (1e4, 1e8):
+        beside = dry_pin_beside_a_rotor(1.0, 1.0, speed)[0]
+        assert abs(fm.simulate(beside, t_end=t_end, rtol=rtol, method="radau")[angle][-1] - want) < rtol

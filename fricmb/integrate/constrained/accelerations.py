@@ -122,6 +122,15 @@ def largest(x: Floats) -> float:
     return value
 
 
+@kernel
+def weighed(mech: Mech, x: Floats) -> float:
+    """Largest of velocities or accelerations x (n,) by roots of masses: lengths and angles in one measure."""
+    value = 0.0
+    for i in range(x.shape[0]):
+        value = max(value, np.sqrt(mech.mass[i]) * abs(x[i]))
+    return value
+
+
 #: Forces below this part of the largest so far are left with the round-off of that, once all is at rest.
 HISTORY = 1e-8
 #: A change of accelerations and forces, beside them, whose round-off is nothing.

@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import largest
+from fricmb.integrate.constrained.accelerations import weighed
 from fricmb.integrate.constrained.between_stages import (
     growth_of_slip,
     knot_within,
@@ -65,7 +65,7 @@ def is_round_off(c: Control, h: float, t: float) -> bool:
 
 
 @kernel
-def grow(c: Control, out: Watch, k: Moving, y: State) -> None:
+def grow(mech: Mech, c: Control, out: Watch, k: Moving, y: State) -> None:
     """Running maxima, with a state that has been reached.
 
     Forces of modes that were tried and do not hold may be a thousand times larger: no measure of what is light.
@@ -80,8 +80,11 @@ def grow(c: Control, out: Watch, k: Moving, y: State) -> None:
     for i in range(y.F.shape[0]):
         out.top_slip = max(out.top_slip, abs(y.g[i]))
         out.top_force = max(out.top_force, abs(y.F[i]))
-    for i in range(y.lam.shape[0]):
-        out.top_force = max(out.top_force, abs(y.lam[i]))
+    for i in range(y.N.shape[0]):
+        out.top_force = max(out.top_force, abs(y.N[i]))
+    for j in range(mech.joint.port.shape[0]):
+        if mech.joint.one_sided[j]:
+            out.top_force = max(out.top_force, abs(y.lam[mech.joint.row[j]]))
 
 
 @kernel
@@ -101,14 +104,14 @@ def arrive(
 
 
 @kernel
-def set_restart(c: Control, y: State) -> None:
+def set_restart(mech: Mech, c: Control, y: State) -> None:
     """First step behind a change of modes, if that before it is a trifle: slip that came to rest there asked for that.
 
     Steps get as short as round-off on the way to rest, and Newton's changes at such ones are nothing else.
     """
-    rate = largest(y.a)
+    rate = weighed(mech, y.a)
     if rate > 0.0:
-        c.h = max(c.h, RESTART * min(largest(c.v) / rate, c.longest))
+        c.h = max(c.h, RESTART * min(weighed(mech, c.v) / rate, c.longest))
 
 
 @kernel
@@ -217,7 +220,7 @@ def radau_step(
     remember(c, y, st, h)
     c.counts[0] += 1
     copy_state(end, y)
-    grow(c, out, k, y)
+    grow(mech, c, out, k, y)
     c.wanted = max(h, c.h)
     if worst < 0 and (h < left or factor < 1.0):
         c.wanted = h * min(3.0 if has_joints(y) else 5.0, max(0.3, factor))
@@ -239,6 +242,6 @@ def radau_step(
         rec.after[rec.used[0] - 1] = 1
         c.growth = np.inf
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
-        set_restart(c, y)
+        set_restart(mech, c, y)
         return CHANGED if code == DONE else code
     return ACCEPTED

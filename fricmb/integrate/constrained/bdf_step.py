@@ -87,7 +87,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     for i in range(y.z.shape[0]):
         base.z[i] = past.new[2 * n + i]
     base.t = y.t + h - beta_h
-    measure(c, y, h, one.scale)
+    measure(mech, c, y, h, one.scale)
     accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
         copy_state(y, end)
@@ -237,7 +237,7 @@ def multistep(
     copy_state(end, y)
     c.counts[0] += 1
     c.last_h = 0.0
-    grow(c, out, k, y)
+    grow(mech, c, out, k, y)
     if near_singular(c, out, h):
         return FAIL_SINGULAR
     select_order(y, c, past, formula, error)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.accelerations import weighed
 from fricmb.integrate.constrained.friction_share import react_by_shares
 from fricmb.integrate.constrained.mode_trial import (
     CREEP_IN_LOOPS,
@@ -12,6 +15,7 @@ from fricmb.integrate.constrained.mode_trial import (
     ease,
     hold,
     largest_acceleration,
+    most_light,
     release,
     set_out,
     still,
@@ -30,12 +34,11 @@ ENUMERATED = 6
 
 
 @kernel
-def moves_alike(w: Instant, y: State, scale: float) -> bool:
-    """Whether accelerations are those of the combination found before."""
-    apart = 0.0
+def moves_alike(mech: Mech, k: Moving, w: Instant, y: State, scale: float) -> bool:
+    """Whether accelerations are those of the combination found before, as ports would feel them."""
     for i in range(y.a.shape[0]):
-        apart = max(apart, abs(y.a[i] - w.other[i]))
-    return bool(apart <= 1e-7 * scale)
+        w.x[i] = y.a[i] - w.other[i]
+    return bool(np.sqrt(most_light(mech, k, y)) * weighed(mech, w.x[: y.a.shape[0]]) <= 1e-7 * scale)
 
 
 @kernel
@@ -101,7 +104,7 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
             if stuck < most:
                 continue
             found, most = 0, stuck
-        if holds and number < 3**count and not (found > 0 and moves_alike(w, y, scale)):
+        if holds and number < 3**count and not (found > 0 and moves_alike(mech, k, w, y, scale)):
             found += 1
             kept = number
             for i in range(y.a.shape[0]):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.accelerations import react
+from fricmb.integrate.constrained.accelerations import react, weighed
 from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -145,16 +147,24 @@ def answer_at(mech: Mech, k: Moving, w: Instant, y: State, first: int, last: int
 
 
 @kernel
+def most_light(mech: Mech, k: Moving, y: State) -> float:
+    """Largest lightness of a port in one of its directions."""
+    value = 0.0
+    for c in range(y.mode.shape[0]):
+        for a in range(mech.port.row[c + 1] - mech.port.row[c]):
+            value = max(value, lightness(mech, k, c, a, y.lam, mech.mass))
+    return value
+
+
+@kernel
 def largest_acceleration(mech: Mech, k: Moving, w: Instant, y: State) -> float:
-    """Scale of slip accelerations: those there are, and those that friction could bring.
+    """Scale of slip accelerations: those there are, those of bodies as ports feel them, what friction could bring.
 
     Joints are asked for only where friction could bring far more without them: a light body that they keep from turning
     would make everything else look like round-off.
     """
-    value = 1e-290
-    for i in range(y.a.shape[0]):
-        value = max(value, abs(y.a[i]))
     row = mech.port.row
+    value = max(1e-290, np.sqrt(most_light(mech, k, y)) * weighed(mech, y.a))
     for a in range(y.ga.shape[0]):
         value = max(value, abs(y.ga[a]))
     there = value

@@ -105,7 +105,10 @@ class Order(Layout):
 
 
 class Mech(Layout):
-    """All of a problem; ``mass`` (n,) the diagonal of the mass matrix; ``bends``, ``bend_start``: see ``Bends``."""
+    """All of a problem; ``mass`` (n,) the diagonal of the mass matrix; ``bends``, ``bend_start``: see ``Bends``.
+
+    ``group`` (n,): degrees of freedom of one number are tied together, by whatever; others do not feel them.
+    """
 
     linear: Linear
     place: Place
@@ -119,6 +122,7 @@ class Mech(Layout):
     mass: Floats
     bends: Table
     bend_start: Ints
+    group: Ints
 
 
 @kernel
@@ -162,13 +166,13 @@ def _pack(problem: Problem) -> Mech:
     p = m.places
     rest = of_pattern(problem, "places", lambda: _place_rows(m))
     places = Place(p.address, p.p_start, np.append(p.p, 0.0), p.dof_start, p.dof, p.first, *rest)
-    order, half = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
+    order, half, group = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
     size = m.n + int(rows.sum()) + problem.m + problem.n_z
     return room(Mech(
         linear, places, joint, port, table_of(problem.signals.table), table_of(problem.elements.table),
         spread_of(problem), Order(order, band_sizes(size, half)),
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), table_of(problem.bends.table),
-        solid(problem.bends.start, np.int64),
+        solid(problem.bends.start, np.int64), group,
     ))  # fmt: skip
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import forces, move
@@ -32,7 +34,7 @@ def is_closed(k: Moving, last: float) -> bool:
 def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
     """Move q the least, in the norm of the mass matrix, so that phi(q) = 0 to round-off; leaves the factored matrix."""
     n, m = y.q.shape[0], y.lam.shape[0]
-    last = 1e300
+    last, change = 1e300, 0.0
     for i in range(CORRECTIONS):
         move(mech, k, y.t, y.q, y.v)
         forces(mech, k, y.lam, y.F, y.N, y.g)
@@ -43,16 +45,22 @@ def project_positions(mech: Mech, k: Moving, w: Instant, y: State) -> bool:
         for j in range(m):
             w.r[n + j] = k.phi[j]
         solve_instant(mech, w)
-        largest = size = 0.0
+        largest = change = 0.0
+        size, group = w.other, mech.group
+        size[:] = 1e-290
+        # by the roots of masses: lengths and angles have no other measure in common
         for j in range(n):
             y.q[j] -= w.r[j]
-            largest, size = max(largest, abs(w.r[j])), max(size, abs(y.q[j]))
-        if not largest < 1e300:
+            change = max(change, abs(w.r[j]))
+            size[group[j]] = max(size[group[j]], np.sqrt(mech.mass[j]) * abs(y.q[j]))
+        for j in range(n):
+            largest = max(largest, np.sqrt(mech.mass[j]) * abs(w.r[j]) / size[group[j]])
+        if not change < 1e300:
             return False
-        if largest <= 4.0 * EPS * size or (i > 1 and largest > 0.5 * last):
-            return is_closed(k, largest)
+        if largest <= 4.0 * EPS or (i > 1 and largest > 0.5 * last):
+            return is_closed(k, change)
         last = largest
-    return is_closed(k, last)
+    return is_closed(k, change)
 
 
 @block

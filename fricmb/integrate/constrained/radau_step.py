@@ -81,15 +81,19 @@ def asked(c: Control) -> float:
 
 
 @kernel
-def measure(c: Control, y: State, h: float, scale: Floats) -> None:
-    """What counts as 1 in velocities: running maxima, not less than a trifle of what the kinetic energy could bring."""
-    energy = 0.0
+def measure(mech: Mech, c: Control, y: State, h: float, scale: Floats) -> None:
+    """What counts as 1 in velocities: running maxima, not less than a trifle of what kinetic energy could bring.
+
+    That of what a body is tied to: an idle rotor makes no other body's motion a trifle.
+    """
+    energy, group = c.inertia, mech.group
+    energy[:] = 0.0
     for i in range(scale.shape[0]):
         here = max(c.v[i], abs(y.v[i]) + h * abs(y.a[i]))
-        energy = max(energy, c.mass[i] * here * here)
+        energy[group[i]] = max(energy[group[i]], c.mass[i] * here * here)
     for i in range(scale.shape[0]):
         here = max(c.v[i], abs(y.v[i]) + h * abs(y.a[i]), c.floor_v[i])
-        scale[i] = max(here, 1e-4 * np.sqrt(energy / c.mass[i]), 1e-290)
+        scale[i] = max(here, 1e-4 * np.sqrt(energy[group[i]] / c.mass[i]), 1e-290)
 
 
 @kernel
@@ -167,7 +171,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
             return False
         c.made = h
         prepare_turns(mech, st)
-    measure(c, y, h, st.scale)
+    measure(mech, c, y, h, st.scale)
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])

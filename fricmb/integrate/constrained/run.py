@@ -35,6 +35,9 @@ from fricmb.integrate.step.step_control import SAMPLED, first_step
 CHUNK, CHUNK_BYTES = 1024, 1e6
 #: Part that a first step takes of the time in which velocities change.
 PART = 0.05
+#: Slip velocities are known to a part of what all bodies together could bring by what loads do in so many first steps
+#: from rest: by less, long chains of pins pass through many more transitions in the first instants, which move nothing.
+FURTHER = 10.0
 #: Stages beside BDF: their nodes carry the dense output of its steps, polynomials of degree up to five.
 MULTISTEP_STAGES = 5
 
@@ -81,9 +84,9 @@ def run_mechanism(
         seen = limits.edge, limits.longest
         go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, *past, *seen)
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
-        code = begin(mech, k, w, y, control, out, part, start.mode is not None, small)
+        code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
         if code == DONE:
-            _settle(workspace, problem, start, t_end, reach)
+            _settle(workspace, problem, start, t_end)
             code = chunks.fill(go_on, y, memory, progress)
         chunks.take()
         failure = None if code == DONE else ended()
@@ -103,7 +106,7 @@ def run_mechanism(
 def _set_up(
     workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, tolerance: Tolerance
 ) -> tuple[float, float]:
-    """Put start, times and tolerance into an empty workspace; a speed of round-off, and that which loads bring."""
+    """Put start, times, tolerance into an empty workspace; a slip of round-off, the root of energy that loads bring."""
     m, y, c = mechanism_of(problem), workspace.y, workspace.control
     for state in (y, workspace.end, workspace.before):
         set_out(state, start)
@@ -115,23 +118,23 @@ def _set_up(
     c.stops[:] = mech_of(problem).breakpoints
     c.knot = -np.inf
     workspace.out.opened = (m.joints.dropped == 2).sum()
-    reach, top = _reach(problem, start, t_end), float(c.v.max(initial=0.0))
-    small = 1e-12 * max(top, reach)
-    if top <= small:
+    first, weight = _first_speeds(problem, start, t_end), np.sqrt(c.mass)
+    if (weight * c.v).max(initial=0.0) <= 1e-12 * (weight * first).max(initial=0.0):
         y.v[:] = 0.0  # round-off of a start at rest
-    return small, reach
+    slip = _slip_by(problem, start, y.v, first)
+    return 1e-12 * float(slip.max(initial=0.0)), FURTHER * float(np.linalg.norm(weight * first))
 
 
-def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, reach: float) -> None:
+def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float) -> None:
     """What counts as 1, and the first step, from what is found at the start."""
     y, out, c = workspace.y, workspace.out, workspace.control
-    out.top_slip = max(out.top_slip, reach)
     load = _load(mechanism_of(problem), y)
     if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
-        to_come = _speed_to_come(problem, start, t_end, load, c.mass)
+        to_come = _speeds_to_come(problem, start, t_end, load, c.mass)
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
-        out.top_slip = max(out.top_slip, to_come)
-    c.h = first_step(y.v, y.a, t_end - start.t, PART)
+        out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
+    weight = np.sqrt(c.mass)
+    c.h = first_step(weight * y.v, weight * y.a, t_end - start.t, PART)
 
 
 def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
@@ -167,29 +170,42 @@ def _load(m: Mechanism, y: State) -> float:
     return max(float(np.abs(x).max(initial=0.0)) for x in (y.lam, y.F, m.f))
 
 
-def _speed_to_come(problem: Problem, start: Start, t_end: float, load: float, mass: Floats) -> float:
-    """A speed that counts as 1 where everything is at rest: from accelerations a little later, without friction.
+def _speeds_to_come(problem: Problem, start: Start, t_end: float, load: float, mass: Floats) -> Floats:
+    """Speeds (n,) that count as 1 where everything is at rest: from accelerations a little later, without friction.
 
-    Where there are none, either, a small part of what the load would bring.
+    That which would bring most energy, for each its own mass.  Where there are none, either, a small part of what the
+    load would bring.
     """
     span = t_end - start.t
     for part in (1e-3, 1e-2, 1e-1, 1.0):
         a = _without_friction(problem, start, start.t + part * span, np.zeros(problem.n))
         if np.isfinite(a).all() and (mass * np.abs(a)).max() > ROUND_OFF * load:
-            return float(1e-3 * part * span * np.abs(a).max())
-    return float(1e-4 * span * load / mass.max())
+            return np.asarray(1e-3 * part * span * (np.sqrt(mass) * np.abs(a)).max() / np.sqrt(mass))
+    return np.full(problem.n, 1e-4 * span * load / mass.max())
 
 
-def _reach(problem: Problem, start: Start, t_end: float) -> float:
-    """Speed that the loads of the start would bring about in a first step from rest: round-off is seen beside it."""
+def _first_speeds(problem: Problem, start: Start, t_end: float) -> Floats:
+    """Speeds (n,) that the loads of the start would bring about in a first step from rest."""
     v = np.zeros(problem.n)
     a = _without_friction(problem, start, start.t, v)
-    push = float(np.abs(a).max(initial=0.0))
-    return first_step(v, a, t_end - start.t, PART) * push if push < np.inf else 0.0
+    return first_step(v, a, t_end - start.t, PART) * np.abs(a) if np.isfinite(a).all() else v
+
+
+def _slip_by(problem: Problem, start: Start, *v: Floats) -> Floats:
+    """Largest slip velocity that each of some velocities v (n,) brings, by itself, at the start."""
+    g = _completed(problem, start, start.t, np.stack([np.zeros(problem.n), *v]))[2]
+    slip: Floats = np.abs(g[:, 1:] - g[:, :1]).max(axis=0, initial=0.0)
+    return slip
 
 
 def _without_friction(problem: Problem, start: Start, t: float, v: Floats) -> Floats:
     """Accelerations (n,) at the start's positions, at time t, with velocities v."""
-    q, z = np.array(start.q, float)[None], np.array(start.z, float)[None]
-    force = np.zeros((1, mechanism_of(problem).n_rows + 2 * problem.m))
-    return complete_at(problem, np.array([t]), q, v[None], z, np.ones((1, problem.n_c), np.int8), force)[4].ravel()
+    return _completed(problem, start, t, v[None])[4].ravel()
+
+
+def _completed(problem: Problem, start: Start, t: float, v: Floats) -> tuple[Floats, ...]:
+    """What :func:`complete_at` finds at the start's positions, at time t, without friction; velocities v (k, n)."""
+    k = len(v)
+    q, z = np.tile(np.array(start.q, float), (k, 1)), np.tile(np.array(start.z, float), (k, 1))
+    force = np.zeros((k, mechanism_of(problem).n_rows + 2 * problem.m))
+    return complete_at(problem, np.full(k, t), q, np.array(v, float), z, np.ones((k, problem.n_c), np.int8), force)

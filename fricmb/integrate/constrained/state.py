@@ -48,7 +48,7 @@ def state_of(problem: Problem) -> State:
 class Instant(Layout):
     """What is needed to solve at one instant: the matrix and its factors, right-hand side (size,), rates of X.
 
-    ``other`` (n,): accelerations to compare with.
+    ``other`` (n,): accelerations to compare with, sizes of groups.
     """
 
     L: Layers

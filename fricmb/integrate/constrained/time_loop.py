@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.kernel import run_entry
 from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
@@ -11,7 +13,7 @@ from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
 from fricmb.integrate.constrained.mode_decision import decide, mark_rest
 from fricmb.integrate.constrained.mode_enumeration import FOUND, SEVERAL
-from fricmb.integrate.constrained.mode_trial import SLIPS_ON
+from fricmb.integrate.constrained.mode_trial import SLIPS_ON, most_light
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
@@ -44,9 +46,21 @@ from fricmb.integrate.signals.longest_steps import OF_BDF, kink_from, longest_fr
 
 @run_entry
 def begin(
-    mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, given: bool, small: float
+    mech: Mech,
+    k: Moving,
+    w: Instant,
+    y: State,
+    c: Control,
+    out: Watch,
+    part: Codes,
+    given: bool,
+    small: float,
+    reach: float,
 ) -> int:
-    """Modes, forces and accelerations at the start."""
+    """Modes, forces and accelerations at the start.
+
+    ``small``: slip that is round-off there; ``reach``: root of the energy beside which round-off of slip is seen later.
+    """
     set_window(c, k.s.window, y.t + 4e-16 * abs(y.t) + 1e-300)
     if not project_velocities(mech, k, w, y, False, False):
         return FAIL_SINGULAR
@@ -66,7 +80,8 @@ def begin(
     # what sticks moves by nothing, not by the round-off of velocities that have been given or projected
     if not (project_velocities(mech, k, w, y, False, True) and react(mech, k, w, y, False)):
         return FAIL_MODES
-    grow(c, out, k, y)
+    grow(mech, c, out, k, y)
+    out.top_slip = max(out.top_slip, reach * np.sqrt(most_light(mech, k, y)))
     if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
     n_c = y.mode.shape[0]

@@ -11,9 +11,13 @@ from fricmb.integrate.model.band_ordering import narrow_order
 from fricmb.integrate.problem import Ints, Problem, Templates
 
 
-def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int]:
-    """Place of each unknown [v, lam, F, z] and the half-bandwidth: reverse Cuthill-McKee on the pattern."""
+def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tuple[Ints, int, Ints]:
+    """Place of each unknown [v, lam, F, z] and the half-bandwidth: reverse Cuthill-McKee on the pattern.
+
+    Last (n,) the group of each degree of freedom: what nothing ties together is in groups of its own.
+    """
     from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
 
     size = m.n + m.n_rows + problem.m + problem.n_z
     groups = [(i,) for i in range(size)] + [sorted(group) for group in _groups(problem, m, y_start, y_dof)]
@@ -22,7 +26,9 @@ def ordering(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> tupl
     meets = csr_array((np.ones(len(member)), member, start), shape=(len(groups), size))
     pattern = (meets.T @ meets).tocoo()
     order = np.lexsort((pattern.col, pattern.row))
-    return narrow_order(pattern.row[order].astype(np.int64), pattern.col[order].astype(np.int64), size)
+    place, half = narrow_order(pattern.row[order].astype(np.int64), pattern.col[order].astype(np.int64), size)
+    tied = connected_components(pattern, directed=False)[1] if size else np.zeros(0)
+    return place, half, np.unique(tied[: m.n], return_inverse=True)[1].astype(np.int64)
 
 
 def _groups(problem: Problem, m: Mechanism, y_start: Ints, y_dof: Ints) -> Iterator[set[int]]:
