@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from .inputs import Shaken
+from .inputs import case_of as inputs_case
 from .judge import Truth, Verdict, Worker, end_with_parent, judge, truth
 from .mechanisms import Chain
 from .mechanisms import case_of as chain_case
@@ -46,6 +48,8 @@ def make(where: dict[str, Any], spec: Any) -> Any:
     """The scene in both forms."""
     if spec is None:
         return cell(where["law"], where["situation"])
+    if isinstance(spec, Shaken):
+        return inputs_case(spec)
     if isinstance(spec, Bodies):
         return space_case(spec)
     return chain_case(spec) if isinstance(spec, Chain) else case_of(spec)

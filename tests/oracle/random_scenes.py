@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .inputs import shaken as inputs
 from .mechanisms import Chain
 from .space import Bodies, Link, Push, Triple, turned
 from .spec import Pull, Spec, Touch
@@ -315,7 +316,7 @@ def roller(rng: Generator) -> Bodies:
 
 KINDS: dict[str, Callable[[Generator], Any]] = {
     "line": line, "shaken": shaken, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes,
-    "chain": chain, "tree": tree, "roller": roller,
+    "chain": chain, "tree": tree, "roller": roller, "inputs": inputs,
 }  # fmt: skip
 
 

@@ -18,6 +18,8 @@ from fricmb.integrate.taylor.turning import MARGIN, keep_event, set_mode
 
 #: Relative velocity that a contact may have got in stick, of the largest velocity of its ends: round-off of its steps.
 DRIFT = 1e-11
+#: Part of the force that it can hold which is round-off.
+HELD = 64.0 * EPS
 
 
 @kernel
@@ -40,6 +42,8 @@ def speed_noise(net: Net, row: int, given: bool, before_it: float) -> float:
         noise += belt_grain(net, row, before_it)
         for e in range(net.row_start[row], net.row_start[row + 1]):
             noise += DRIFT * abs(net.row_coef[e]) * net.top[net.row_dof[e]]
+        # where nothing moves at all, what forces that hold each other up leave of themselves
+        noise += HELD * net.stick[row] * net.compliance[row] * before_it
     return float(noise)
 
 

@@ -59,3 +59,20 @@ def test_a_pile_that_holds_is_one_body(masses, scale, rtol):
     assert len(sol.events) == 0
     expected = one_body(masses, 400.0, 0.8, sizes)
     assert np.abs(sol.q - expected).max() < 10.0 * rtol * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+def test_modes_that_stand_still_stay_so_where_a_load_bends(rtol):
+    """Forces that hold each other up leave speeds of the size of round-off, and these are no slip."""
+    plate = fm.ModalBody(
+        "plate", frequencies=(1.3, 2.9, 5.3), damping_ratios=0.02, axes="x", shapes={"foot": [(0.8, 0.5, -0.4)]}
+    )
+    foot = plate.point("foot")
+    t, y = np.linspace(0.0, 4.0, 41), 0.68 * np.random.default_rng(3).uniform(-1.0, 1.0, 41)
+    scene = fm.Scene("plate", [
+        plate, fm.Spring("k", foot, axis="x", stiffness=3.4), fm.Force("f", foot, axis="x", value=(t, y)),
+        fm.Contact("c", foot, law=fm.laws.Stribeck(mu_s=0.7, mu_k=0.5, v_s=0.1), normal_force=1.0, axes="x"),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=4.0, rtol=rtol, method="taylor")
+    assert not list(sol.events)
+    assert np.abs(sol.v).max() < 1e-14
