@@ -36,7 +36,7 @@ class MissingExtraError(FricmbError, ImportError):
 
 
 class LawError(FricmbError, ValueError):
-    """A friction or normal-force law that cannot be."""
+    """A friction or normal-force law that is not accepted."""
 
 
 class UnknownNameError(SceneError, KeyError):

@@ -99,7 +99,7 @@ def fit(
     Raises
     ------
     SceneError
-        For data, names or bounds that cannot be.
+        For data, names or bounds that are not accepted.
     IntegrationError
         If a run fails.
 

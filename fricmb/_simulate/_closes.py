@@ -33,7 +33,7 @@ def ledger_note(sol: Solution, rtol: float | None) -> tuple[str, ...]:
     if lost <= (FIXED if rtol is None else max(PARTS * rtol, LEAST)) * scale:
         return ()
     asked = "too large a step" if rtol is None else f"rtol = {rtol:g} is not reached"
-    return (f"the energy ledger does not close: {lost / scale:.1e} of what is exchanged is missing ({asked}?)",)
+    return (f"the energy ledger does not close: {lost / scale:.1e} of the exchanged energy is missing ({asked}?)",)
 
 
 def unclosed(sol: Solution) -> tuple[float, float]:

@@ -26,7 +26,7 @@ def digit_notes(trajectory: Trajectory, rtol: float | None) -> tuple[str, ...]:
     asked = "" if rtol is None else f" (rtol = {rtol:g} is not reached)"
     return tuple(
         f"round-off of positions times the stiffest springs is {part:.1e} of the friction limit of contact {name!r}:"
-        f" when it lets go, and what follows from that, is no more exact{asked}"
+        f" the time at which it lets go, and all that follows, is no more exact{asked}"
         for run in runs_of(trajectory)
         for name, part in _unresolved(run, least)
     )

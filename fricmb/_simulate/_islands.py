@@ -141,7 +141,7 @@ def _tasks(mechanics: SceneMechanics, method: Any, start: Start, span: Span, rto
             exact = Exact()
             if not isinstance(method, str | Integrator) or exact.refuses(problem) is not None:
                 return ()  # asked again for all together, which says what is wrong
-            integrator, why = exact, "free vibration, which the method asked for does not take: closed form"
+            integrator, why = exact, "free vibration, which the given method does not take: closed form"
         tasks.append(Task(index=index, member=member, problem=problem, integrator=integrator, why=why))
     return tuple(tasks)
 

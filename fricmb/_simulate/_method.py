@@ -34,7 +34,7 @@ def find_integrator(method: Any, problem: Problem, rtol: float) -> tuple[Integra
     refusal = integrator.refuses(problem)
     if refusal is not None:
         raise SceneError(f"method: {refusal}")
-    return integrator, "asked for"
+    return integrator, "given by method="
 
 
 def _named(method: Any) -> Integrator | None:

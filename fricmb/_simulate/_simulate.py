@@ -95,7 +95,7 @@ def simulate(
     Raises
     ------
     SceneError
-        For an argument that cannot be; names the argument, the value and what is accepted.
+        For an argument that is not accepted; names the argument, the value and what is accepted.
     IntegrationError
         For a run that could not go on, or took longer than ``time_limit`` or more memory than there is; ``partial`` is
         the solution up to there.

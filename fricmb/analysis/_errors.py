@@ -28,7 +28,7 @@ class AliasingWarning(UserWarning):
 
 
 def refuse(who: str, name: str, value: object, accepted: str) -> NoReturn:
-    """Raise the error of an argument that cannot be."""
+    """Raise the error of an argument that is not accepted."""
     raise AnalysisError(f"{who}: {name} must be {accepted}; got {shown(value)}")
 
 

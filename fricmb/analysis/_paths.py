@@ -84,7 +84,7 @@ def path(
     Raises
     ------
     AnalysisError
-        For arguments that cannot be, and where the states cannot be followed.
+        For arguments that are not accepted, and where the states cannot be followed.
     """
     d = checked_law("path", law).dimensions[0]
     t, normal_force, rtol = checked_growth("path", "t", t), _load("path", normal_force), _tolerance("path", rtol)

@@ -58,7 +58,7 @@ class Peaks:
 
     def __str__(self) -> str:
         if not len(self):
-            return "no peaks: none is so high over the minima beside it as prominence= asks (dB)"
+            return "no peaks: none rises above the minima beside it by prominence= (dB)"
         rows = [f"{'omega':>12} {'+-':>9} {'power':>11} {'+-':>9} {'width':>9} {'dB':>6}"]
         columns = (self.omega, self.uncertainty, self.power, self.power_uncertainty, self.width, self.prominence)
         shown = np.sort(np.argsort(-self.power, kind="stable")[:_SHOWN])
@@ -114,7 +114,7 @@ def spectral_peaks(
     Raises
     ------
     AnalysisError
-        Options or data that cannot be.
+        Options or data that are not accepted.
 
     Notes
     -----

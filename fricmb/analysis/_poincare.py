@@ -101,7 +101,7 @@ def poincare_section(
     Raises
     ------
     AnalysisError
-        For arguments that cannot be.
+        For arguments that are not accepted.
     """
     checked_solution("poincare_section", sol)
     _check("poincare_section", section, period, discard)
@@ -115,7 +115,7 @@ def poincare_section(
 
 
 def _check(who: str, section: Any, period: Any, discard: Any) -> None:
-    """Refuse arguments of a section that cannot be."""
+    """Refuse arguments of a section that are not accepted."""
     if (section is None) == (period is None):
         raise AnalysisError(f"{who}: give either section= or period=")
     checked_number(who, "discard", discard, "a number from 0 to below 1", lambda x: 0.0 <= x < 1.0)

@@ -137,7 +137,7 @@ def frequency_response(
     Raises
     ------
     AnalysisError
-        For a scene without a drive, or arguments that cannot be.
+        For a scene without a drive, or arguments that are not accepted.
     UnknownNameError
         For a parameter or a signal that is not there.
     """

@@ -43,7 +43,7 @@ def welch_spectrum(
     Raises
     ------
     AnalysisError
-        A segment or overlap that cannot be, samples that are not finite.
+        A segment or overlap that is not accepted, samples that are not finite.
 
     Notes
     -----
@@ -113,7 +113,7 @@ def spectrogram(
     Raises
     ------
     AnalysisError
-        A segment or overlap that cannot be, samples that are not finite.
+        A segment or overlap that is not accepted, samples that are not finite.
     """
     from scipy import signal
 

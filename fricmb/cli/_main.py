@@ -169,8 +169,8 @@ def _add_run(commands: _Commands) -> None:
     sub.add_argument("--method", default="auto", metavar="NAME", help="integrator (default: %(default)s)")
     sub.add_argument("--step", type=float, metavar="H", help="step of a fixed-step method")
     limit = (
-        "seconds after which the run ends, with status 3; tables and pictures that take more than a tenth of it longer "
-        "(or 5 s) are left out"
+        "seconds after which the run ends, with status 3; tables and pictures that need more than a tenth of this "
+        "(or 5 s) in addition are left out"
     )
     sub.add_argument("--time-limit", type=float, metavar="S", help=limit)
     sub.add_argument(
@@ -182,10 +182,10 @@ def _add_run(commands: _Commands) -> None:
     sub.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: fricmb-out/MODEL)")
     sub.add_argument("--no-plots", action="store_true", help="no pictures")
     _add_format(sub)
-    sub.add_argument("--yes", action="store_true", help="write a run of gigabytes without a question")
+    sub.add_argument("--yes", action="store_true", help="write a run of gigabytes without asking")
     sub.add_argument("--audit", action="store_true", help="check the run against the scene's equations: sol.audit()")
     sub.add_argument("--json", action="store_true", help="print the summary as JSON and nothing else")
-    sub.add_argument("--quiet", action="store_true", help="say nothing but errors and what is asked for")
+    sub.add_argument("--quiet", action="store_true", help="print only errors and the requested output")
     sub.add_argument("--threads", type=_threads, metavar="N", help="threads of linear algebra and compilation")
 
 
@@ -209,7 +209,7 @@ def _add_law(commands: _Commands) -> None:
 
 def _add_format(sub: argparse.ArgumentParser) -> None:
     kinds = ("png", "svg", "pdf")
-    text = "of the pictures; svg and pdf are lines (default: %(default)s)"
+    text = "of the pictures; svg and pdf are vector graphics (default: %(default)s)"
     sub.add_argument("--format", choices=kinds, default="png", help=text)
 
 
@@ -222,7 +222,7 @@ def _add_plan(commands: _Commands) -> None:
     _command(
         commands,
         "plan",
-        "print what will be built for a scene, and what is left out and why",
+        "print what a run of a scene will build, what it leaves out, and why",
         "_show:show_plan",
         model=True,
     )
@@ -253,9 +253,9 @@ def _add_squeal(commands: _Commands) -> None:
 def _add_compile(commands: _Commands) -> None:
     sub = _command(commands, "compile", "compile all kernels ahead of use, into the cache", "_compile:compile_ahead")
     sub.add_argument(
-        "--processes", type=_threads, metavar="N", help="so many at once (default: as many as there are processors)"
+        "--processes", type=_threads, metavar="N", help="number of processes (default: one for each processor)"
     )
-    sub.add_argument("--into", type=Path, metavar="DIR", help="a folder that gets a copy of all that was made")
+    sub.add_argument("--into", type=Path, metavar="DIR", help="folder for a copy of everything that was compiled")
     sub.add_argument("--quiet", action="store_true", help="say nothing")
 
 
@@ -263,7 +263,7 @@ def _add_bench(commands: _Commands) -> None:
     sub = _command(commands, "bench", "measure error against run time, or stability, of integrators", "_bench:bench")
     kinds = ("suite", "stability")
     sub.add_argument("what", nargs="?", choices=kinds, default="suite", help="what to measure (default: %(default)s)")
-    quick = "a few scenes and settings: about half a minute, and once longer for what compiles"
+    quick = "a few scenes and settings: about half a minute, the first time longer"
     sub.add_argument("--quick", action="store_true", help=quick)
     sub.add_argument(
         "--scene", action="append", default=[], metavar="NAME", help="only this scene of the suite; may be repeated"
@@ -271,7 +271,7 @@ def _add_bench(commands: _Commands) -> None:
     sub.add_argument(
         "--limit", type=float, default=60.0, metavar="S", help="seconds until a run is ended (default: %(default)g)"
     )
-    sub.add_argument("--again", action="store_true", help="measure again what an earlier run has left in the folder")
+    sub.add_argument("--again", action="store_true", help="start again, do not continue an earlier run")
     sub.add_argument(
         "--out", type=Path, default=Path("fricmb-out/bench"), metavar="DIR", help="folder (default: %(default)s)"
     )
@@ -279,7 +279,7 @@ def _add_bench(commands: _Commands) -> None:
 
 
 def _add_figures(commands: _Commands) -> None:
-    sub = _command(commands, "figures", "draw the figures of the brake's source, and a page a case", "_figures:figures")
+    sub = _command(commands, "figures", "draw the figures of the paper that the brake comes from", "_figures:figures")
     sub.add_argument(
         "model", metavar="MODEL", nargs="?", default="brake4dof", help="whose figures (default: %(default)s)"
     )
@@ -301,7 +301,7 @@ def _add_export(commands: _Commands) -> None:
 
 
 def _add_plot(commands: _Commands) -> None:
-    sub = _command(commands, "plot", "draw, animate or sound a run that was saved", "_plot:plot")
+    sub = _command(commands, "plot", "draw, animate or sonify a saved run", "_plot:plot")
     sub.add_argument("solution", metavar="FILE", type=Path, help="a solution.npz that fricmb run or sol.save wrote")
     sub.add_argument(
         "kind",
@@ -309,11 +309,11 @@ def _add_plot(commands: _Commands) -> None:
         help=f"{', '.join(KINDS[:-1])} or {KINDS[-1]}; {', '.join(NEED_NAME)} need --of",
     )
     sub.add_argument("--laws", type=Path, metavar="FILE.py", help="where own laws are defined; this file is run")
-    what = "what is shown: a motion, contact, element or signal, such as pad.y; several with commas"
+    what = "what to show: a motion, contact, element or signal, such as pad.y; several with commas"
     sub.add_argument("--of", metavar="NAME", help=what)
     sub.add_argument("--hz", action="store_true", help="spectra: frequency in place of angular frequency")
     sub.add_argument("--theme", choices=("light", "dark"), help="colours for a light or a dark page")
-    kinds = "default: KIND.png, .gif, .wav or .html beside FILE; .svg and .pdf are lines"
+    kinds = "default: KIND.png, .gif, .wav or .html beside FILE; .svg and .pdf are vector graphics"
     sub.add_argument("--out", type=Path, metavar="FILE", help=kinds)
     sub.add_argument("--t-start", type=float, metavar="T", help="start of the part shown; default: that of the run")
     sub.add_argument("--t-end", type=float, metavar="T", help="end of the part shown; default: that of the run")

@@ -97,7 +97,7 @@ def solve_dae(
     Raises
     ------
     ArgumentError
-        An argument that cannot be.
+        An argument that is not accepted.
     IntegrationError
         No consistent initial values: singular, of index above 1, not finite, or without a solution nearby.
 

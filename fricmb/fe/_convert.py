@@ -59,7 +59,7 @@ def part_target(name: str) -> str:
     found = {"M": "M", "K": "K", "C": "C", "D": "C", "G": "C"}.get(name[:1].upper())
     if found is None:
         raise SceneError(
-            f"part {name!r}: its name must begin with K (stiffness), C, D or G (damping) or M (mass) where it is to be"
-            " told which it is"
+            f"part {name!r}: its name must begin with K (stiffness), C, D or G (damping) or M (mass), which says where"
+            " it belongs"
         )
     return found

@@ -66,7 +66,7 @@ class FEModel:
     Raises
     ------
     SceneError
-        If a matrix or a label cannot be.
+        If a matrix or a label is not accepted.
     """
 
     M: Any

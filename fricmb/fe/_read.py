@@ -51,7 +51,7 @@ def read(
         and parts: Matrix Market, npy, or npz of scipy.
     format : str, optional
         "npz", "mat", "hdf5", "nastran" (op4, op2, DMIG), "ansys" (full), "abaqus" (``*SUBSTRUCTURE MATRIX OUTPUT``,
-        ``*MATRIX GENERATE``), "calculix" (sti, mas, dof); by default told by the ending.
+        ``*MATRIX GENERATE``), "calculix" (sti, mas, dof); by default according to the ending.
     names : dict of str to str, optional
         Which matrix in the file is M, K, C, H or a part: ``{"M": "BMLL", "KR": "BKQLL"}``; by default they are found by
         the names that programs give them.

@@ -74,7 +74,7 @@ class Csr:
             Above some 4 GB: nothing that takes large scenes may ask for this.
         """
         if self.shape[0] * self.shape[1] > 5e8:
-            raise MemoryError(f"a matrix of {self.shape[0]} x {self.shape[1]} was asked for as a dense one")
+            raise MemoryError(f"a matrix of {self.shape[0]} x {self.shape[1]} was requested as a dense one")
         full = np.zeros(self.shape)
         full[self.rows, self.index] = self.value
         return full

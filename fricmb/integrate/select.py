@@ -27,13 +27,13 @@ def choose(problem: Problem, rtol: float = 1e-6) -> tuple[Integrator, str]:
 
 def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     if problem.mechanism is not None:
-        return Radau(), "bodies that turn or joints: one-step on the index-reduced system"
+        return Radau(), "bodies that turn or joints: Radau IIA on the index-reduced system"
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
     for takes, what in ((takes_one_contact, "one contact"), (takes_few_on_modes, "few contacts on modes")):
         if takes(problem) and Guarded().refuses(problem) is None and against(problem, rtol) is None:
-            return Guarded(), f"linear structure with {what} under constant friction: exact structure"
+            return Guarded(), f"linear structure with {what} under constant friction: exact between transitions"
     reason = against_taylor(problem) or _holds_taylor(problem)
     if reason is None:
         # slow to load
@@ -43,17 +43,17 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
         reason = series.refuses(problem)
         if reason is None:
             contacts = "one contact" if problem.n_c == 1 else f"{problem.n_c} contacts"
-            return series, f"{contacts} whose friction follows formulas: Taylor steps, local corrections"
+            return series, f"{contacts} whose friction follows formulas: Taylor steps, corrected locally at transitions"
     return Radau(), f"the general method: {reason}"
 
 
 def _holds_taylor(problem: Problem) -> str | None:
     """What stands against steps that follow all that moves: it is far faster than what rings, or a law bends."""
     if problem.contacts.knots.size:
-        return "a friction law bends, where its steps end"
+        return "a friction law has kinks, at which its steps end"
     if problem.omega.size < problem.n:
         return None  # frequencies are not known
     rings = problem.omega[(problem.omega > 0.0) & (problem.zeta < RINGS)]
     if fastest(problem) > STIFF * (math.sqrt(rings[0] * rings[-1]) if rings.size else 0.0):
-        return f"some of it is more than {STIFF:g} times as fast as what rings"
+        return f"a part is more than {STIFF:g} times as fast as the modes that ring"
     return None

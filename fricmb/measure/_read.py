@@ -40,7 +40,7 @@ def read(
         UFF (15, 2411, 18, 2420, 55, 2414, 58, 82, 164; extra ``uff``), CSV, WAV, MAT, npz, HDF5 (extra ``hdf5``), TDMS
         (extra ``tdms``), results of modal runs of Ansys (rst, extra ``ansys``).
     format : str, optional
-        "uff", "csv", "wav", "npz", "mat", "hdf5", "tdms", "rst"; by default told by the ending.
+        "uff", "csv", "wav", "npz", "mat", "hdf5", "tdms", "rst"; by default according to the ending.
     step, start : float
         Spacing and first value of times, or of frequencies where values are complex, in a table without such a column.
     time : str, optional

@@ -75,7 +75,7 @@ _OPTIONS: dict[str, tuple[Callable[[Any], bool], str]] = {
 
 
 def refuse(who: str, argument: str, value: object, accepted: str) -> NoReturn:
-    """Raise the error of an argument that cannot be."""
+    """Raise the error of an argument that is not accepted."""
     from fricmb.analysis import AnalysisError  # all of it is slow to load, and few pictures need it
 
     raise AnalysisError(f"{who}: {argument} must be {accepted}; got {shown(value)}")

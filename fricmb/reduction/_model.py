@@ -74,7 +74,7 @@ def reduce_model(
     found = lowest_modes(label, M, K, count=count, up_to=top)
     omega, modes = np.sqrt(found.omega2), found.shapes
     if omega.size == 0:
-        raise SceneError(f"{label}: there is no mode up to the frequency that was asked for")
+        raise SceneError(f"{label}: there is no mode up to the given frequency")
     basis, neglected = modes, 0.0
     if residual and rows and omega.size < M.shape[0]:
         _, more, neglected = residual_vectors(M, K, omega, modes, np.vstack(list(rows.values())))

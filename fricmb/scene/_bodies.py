@@ -73,7 +73,7 @@ class Body(PartEnd):
     Raises
     ------
     SceneError
-        If a value cannot be.
+        If a value is not accepted.
     """
 
     _fixed: ClassVar[tuple[str, ...]] = ("name", "axes")
@@ -151,7 +151,7 @@ class Driven(PartEnd):
     Raises
     ------
     SceneError
-        If a value cannot be.
+        If a value is not accepted.
     """
 
     _fixed: ClassVar[tuple[str, ...]] = ("name", "axes")

@@ -43,7 +43,7 @@ class Contact(Part):
     Raises
     ------
     SceneError
-        If ends, directions or values cannot be.
+        If ends, directions or values are not accepted.
     """
 
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axes")

@@ -87,7 +87,7 @@ class DryFriction(Contact):
     Raises
     ------
     SceneError
-        If ends, axis or values cannot be.
+        If ends, axis or values are not accepted.
 
     Notes
     -----

@@ -37,7 +37,7 @@ class Gear(Joint):
     Raises
     ------
     SceneError
-        If ends or values cannot be.
+        If ends or values are not accepted.
 
     Notes
     -----

@@ -58,7 +58,7 @@ class ModalBody(Part):
     Raises
     ------
     SceneError
-        If a value or a shape cannot be.
+        If a value or a shape is not accepted.
 
     See Also
     --------

@@ -37,7 +37,7 @@ def from_fe(
         uneven = asymmetry(fe.matrix(key))
         if uneven > ROUND_OFF[fe.precision]:
             remedy = "; FEModel.symmetrised() makes the rest, as friction leaves it, a part" if key == "K" else ""
-            raise SceneError(f"{label}: {key} of the model must be symmetric, it is off by {uneven:.2g}{remedy}")
+            raise SceneError(f"{label}: {key} of the model must be symmetric; its asymmetry is {uneven:.2g}{remedy}")
     cycles = _positive(label, "up_to", up_to)
     count = _count(label, n_modes, fe.n)
     if cycles is None and count is None:

@@ -53,7 +53,7 @@ class RigidBody(PartEnd):
     Raises
     ------
     SceneError
-        If a value cannot be.
+        If a value is not accepted.
     """
 
     _fixed: ClassVar[tuple[str, ...]] = ("name",)

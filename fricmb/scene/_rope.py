@@ -52,7 +52,7 @@ class Rope(Joint):
     Raises
     ------
     SceneError
-        If ends, directions or values cannot be.
+        If ends, directions or values are not accepted.
 
     Notes
     -----

@@ -342,7 +342,7 @@ class Scene:
         UnknownNameError
             For a name that is no parameter; with the names near it.
         SceneError
-            For a value that cannot be.
+            For a value that is not accepted.
         """
         return self._with_parts(_parameters.apply(self, values))
 

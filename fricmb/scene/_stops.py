@@ -79,7 +79,7 @@ class _Touching(Element):
             self._set("axis", check_axis(self, "axis", self.axis))
 
     def _check_limits(self) -> None:
-        """Refuse limits that cannot be."""
+        """Refuse limits that are not accepted."""
 
     def limits(self) -> tuple[Any, Any]:
         """Lower and upper limit of the coordinate; None where there is none."""
@@ -153,7 +153,7 @@ class Stop(_Touching):
     Raises
     ------
     SceneError
-        If ends, axis, limits or values cannot be.
+        If ends, axis, limits or values are not accepted.
 
     Notes
     -----
@@ -219,7 +219,7 @@ class Backlash(_Touching):
     Raises
     ------
     SceneError
-        If ends, axis, gap or values cannot be.
+        If ends, axis, gap or values are not accepted.
 
     Notes
     -----

@@ -118,7 +118,7 @@ class Writer:
 
 
 class Reader:
-    """Turns plain data into values; raises ValueError, TypeError, KeyError or FricmbError for what cannot be."""
+    """Turns plain data into values; raises ValueError, TypeError, KeyError or FricmbError for what is not accepted."""
 
     def __init__(self, kinds: list[Any], objects: list[Any], arrays: Mapping[str, Any], known: Kinds) -> None:
         self._arrays = arrays

@@ -38,7 +38,7 @@ class Ball(SpaceBody):
     Raises
     ------
     SceneError
-        If a value cannot be.
+        If a value is not accepted.
 
     Examples
     --------

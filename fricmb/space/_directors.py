@@ -56,7 +56,7 @@ class RigidBody(SpaceBody):
     Raises
     ------
     SceneError
-        If a value cannot be.
+        If a value is not accepted.
 
     Notes
     -----

@@ -42,7 +42,7 @@ class DrivenSpin(SpaceJoint):
         if not isinstance(self.a, Rotor):
             self._refuse("a", self.a.end_name, "a Rotor: it has an axis of its own")
         if self.b is not GROUND:
-            self._refuse("b", self.b.end_name, "left out: the spin of a rotor is told from nothing beside it")
+            self._refuse("b", self.b.end_name, "left out: the spin of a rotor is measured against nothing beside it")
         self._set("speed", check_expression(self, "speed", self.speed, motions=False))
 
     def _takes_expression(self, field: str) -> bool:

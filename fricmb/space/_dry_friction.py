@@ -48,7 +48,7 @@ class DryFriction(AxisJoint):
     Raises
     ------
     SceneError
-        If ends, axis or values cannot be.
+        If ends, axis or values are not accepted.
 
     Notes
     -----

@@ -45,7 +45,7 @@ class InCylinder(OneSided, SpaceJoint):
     Raises
     ------
     SceneError
-        If ``a`` is no ball, or a value cannot be.
+        If ``a`` is no ball, or a value is not accepted.
 
     Notes
     -----

@@ -74,7 +74,7 @@ class OnPlane(OneSided, SpaceJoint):
     Raises
     ------
     SceneError
-        If nothing of ``a`` can touch, or a value cannot be.
+        If nothing of ``a`` can touch, or a value is not accepted.
 
     Notes
     -----

@@ -49,7 +49,7 @@ class Pad(SpaceJoint):
     Raises
     ------
     SceneError
-        If the body has no such face, or a value cannot be.
+        If the body has no such face, or a value is not accepted.
 
     Notes
     -----

@@ -54,7 +54,7 @@ class Rotor(SpaceBody):
     Raises
     ------
     SceneError
-        If a value cannot be.
+        If a value is not accepted.
 
     Notes
     -----

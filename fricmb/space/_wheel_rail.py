@@ -59,7 +59,7 @@ class WheelRail(OneSided, SpaceJoint):
     Raises
     ------
     SceneError
-        If ``a`` is no station beside the middle of a rotor, or a value cannot be.
+        If ``a`` is no station beside the middle of a rotor, or a value is not accepted.
 
     Notes
     -----

@@ -147,11 +147,11 @@ def _right(case: _Case, trip: Trip) -> Iterator[str]:
 
 def _dense(sol: Solution, asked: Solution, scale: float) -> Iterator[str]:
     if not np.array_equal(asked.t, np.linspace(0.0, sol.t_end, 17)):
-        yield "a run with t_eval does not give the times that were asked for"
+        yield "a run with t_eval does not give the times of t_eval"
         return
     gap = float(np.abs(asked.q - sol(asked.t)[: len(asked.q)]).max())
     if not gap <= 1e-9 * scale:
-        yield f"at asked times it gives other positions than its dense output, by {gap:.2e}"
+        yield f"at the times of t_eval positions differ from the dense output by {gap:.2e}"
 
 
 def _cases() -> list[_Case]:

@@ -1,4 +1,4 @@
-"""Refusal of numbers that cannot be, by the name of their field."""
+"""Refusal of numbers that are not accepted, by the name of their field."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fricmb.values import Declaration, is_expression
 
 
 def refuses(declaration: Declaration, *rest: Any) -> Iterator[str]:
-    """Numbers that cannot be, by the name of their field; arrays and expressions are left to their own checks."""
+    """Numbers that are not accepted, by field; arrays and expressions have checks of their own."""
     for path, value in declaration.slots().items():
         if not isinstance(value, tuple | float | int) and not hasattr(value, "value") and not is_expression(value):
             continue

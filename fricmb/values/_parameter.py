@@ -108,7 +108,7 @@ def parameter(name: str, value: float) -> Parameter:
     Raises
     ------
     SceneError
-        If name or value cannot be.
+        If name or value is not accepted.
 
     Examples
     --------

@@ -73,7 +73,7 @@ def tied(stiffness):
 
 
 ONE, FEW, SERIES = "one contact under constant friction", "few contacts on modes", "Taylor steps"
-STIFF, OTHER = "40 times as fast as what rings", "needs a coefficient of friction and a constant normal force"
+STIFF, OTHER = "40 times as fast as the modes that ring", "needs a coefficient of friction and a constant normal force"
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,7 @@ def test_the_solution_is_that_of_the_scene(scene, exact):
 
 def test_stats_tell_what_the_integrator_counted(scene, exact):
     stats = fm.simulate(scene, t_end=5.0, method=exact()).stats
-    assert (stats.method, stats.why) == ("exact", "asked for")
+    assert (stats.method, stats.why) == ("exact", "given by method=")
     assert (stats.n_steps, stats.n_rejected, stats.n_rhs, stats.n_jac, stats.n_lu) == (10, 1, 20, 2, 3)
     assert stats.notes == ("exact",)
     assert 0 <= stats.compile_s <= stats.wall_s

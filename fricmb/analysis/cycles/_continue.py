@@ -57,7 +57,7 @@ def continue_cycle(
     Raises
     ------
     AnalysisError
-        For a parameter that is no number, or values that cannot be.
+        For a parameter that is no number, or values that are not accepted.
     UnknownNameError
         For a parameter that the scene does not have.
 
@@ -93,7 +93,7 @@ def follow(point: Point, to: float, points: int, largest: float, progress: bool)
             shown.update(len(walk.cycles) - before)
     return Branch(
         over=point.over, to=to, cycles=tuple(walk.cycles), special=tuple(walk.special), places=tuple(walk.places),
-        ended=walk.ended or f"after the {points} cycles asked for",
+        ended=walk.ended or f"after {points} cycles, the limit given by points=",
     )  # fmt: skip
 
 

@@ -99,7 +99,7 @@ def lyapunov(
     Raises
     ------
     AnalysisError
-        For mechanisms, and arguments that cannot be.
+        For mechanisms, and arguments that are not accepted.
 
     Notes
     -----

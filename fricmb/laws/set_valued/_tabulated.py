@@ -30,7 +30,7 @@ class Tabulated(FrictionLaw):
     Raises
     ------
     LawError
-        If the table cannot be.
+        If the table is not accepted.
 
     References
     ----------
