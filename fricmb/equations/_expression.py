@@ -13,6 +13,7 @@ from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
 from fricmb.equations._inputs import series_in, time_inputs
 from fricmb.equations._split import affine, split
+from fricmb.integrate.signals.pieces import LOWEST
 from fricmb.signal._symbols import Series
 
 
@@ -142,7 +143,7 @@ def _integral_of_series(value: Any, t: Any) -> Any | None:
     found, rest = sympy.S.Zero, sympy.S.Zero
     for term in sympy.Add.make_args(sympy.expand(value)):
         factor, core = term.as_independent(t, as_Add=False)
-        if isinstance(core, Series):
+        if isinstance(core, Series) and core.args[2] > LOWEST:
             x, table, order = core.args
             whole = Series(x, table, order - 1)
             found += factor / sympy.diff(x, t) * (whole - whole.xreplace({t: sympy.S.Zero}))

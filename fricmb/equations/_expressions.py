@@ -56,6 +56,9 @@ def _canonical(value: Any, what: str) -> _Canonical:
             f"{what}: the symbol {unknown[0]} means nothing here; expressions hold fm.t, fm.coordinate(...), "
             f"fm.speed(...) and parameters"
         )
+    for series in parameters:
+        if not series.named:
+            series.table.open()  # before its number is one that a kernel may get
     rename = {TIME: sympy.Symbol("t", real=True)}
     rename |= {s: sympy.Symbol(f"y{i}", real=True) for i, s in enumerate([*coordinates, *speeds])}
     rename |= {s: sympy.Symbol(f"a{i}", real=True) for i, s in enumerate(parameters)}

@@ -34,7 +34,7 @@ class TableSymbol(ParameterSymbol):
 class Series(sympy.Function):  # type: ignore[misc]
     """``Series(x, table, order)``: the function in a table at the time x, or its derivative of some order.
 
-    The order -1 is its integral.
+    The order -1 is its integral, -2 the integral of that.
     """
 
     nargs = 3
@@ -114,7 +114,7 @@ def _about(c: Any, a: float) -> Any:
 
 def table_data(table: Table) -> tuple[Any, ...]:
     """What a table is made of again from: edges, coefficients, domain."""
-    return table.edge.copy(), table.coefficient[:, 1:] * range(1, table.coefficient.shape[1]), table.domain
+    return table.edge.copy(), table.given.copy(), table.domain
 
 
 def table_again(edge: Any, coefficient: Any, domain: Any) -> Table:

@@ -68,7 +68,6 @@ def series_of(timed: Sequence[tuple[Template, tuple[float, ...]]], scene: Any) -
     for template, parameters in timed:
         for fact in template.facts.get("series", ()):
             table = table_at(parameters[fact["table"]])
-            table.open()
             owners = _owners(scene) if owners is None else owners
             slope, shift = (float(formula(text)(parameters)) for text in fact["at"])
             owner = owners.get(table.digest, "a series")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, make_interp_spline
 from scipy.optimize import brentq
 
 import fricmb as fm
@@ -258,3 +258,28 @@ def test_a_series_of_anything_but_a_line_in_time_is_refused():
     t = times()
     with pytest.raises(fm.SceneError, match=r"a series at fm\.t, or at a line in it with numbers"):
         block(fm.Signal(t, push(t))(fm.t**2))
+
+
+def test_a_table_shaken_by_a_measured_acceleration():
+    """Its velocity is the integral, its position the integral of that; a series begins at 1.0."""
+    t = np.linspace(1.0, 6.0, 201)
+    a = np.sin(7.0 * t) * np.exp(-0.3 * t)
+    for kind in ("linear", "cubic"):
+        signal = fm.Signal(t, a, kind)
+        table = fm.Driven("table", velocity={"x": signal.integral})
+        box = fm.Body("box", mass=1.0)
+        scene = fm.Scene("table", [table, box, fm.Contact("c", box, table, law=DRY, normal_force=0.3)])
+        sol = fm.simulate(scene, t_start=1.0, t_end=6.0, rtol=1e-8)
+        exact = CubicSpline(t, a) if kind == "cubic" else make_interp_spline(t, a, k=1)
+        assert sol.velocity("table.x")[-1] == pytest.approx(float(exact.antiderivative(1)(6.0)), abs=1e-12)
+        assert sol["table.x"][-1] == pytest.approx(float(exact.antiderivative(2)(6.0)), abs=1e-12)
+        assert len(sol.events) > 4
+        assert sol.audit().ok
+
+
+@pytest.mark.parametrize("kind", ["linear", "hold", "cubic"])
+def test_files_give_back_the_same_series(kind, tmp_path):
+    t = times()
+    scene = block(fm.Signal(t, push(t) / 3.0, kind=kind))
+    fm.simulate(scene, t_end=1.0).save(tmp_path / "run.npz")
+    assert fm.Solution.load(tmp_path / "run.npz").scene == scene

@@ -2,8 +2,8 @@
 
 A measured series of a million samples is one table: it is looked up, not compiled.  Of a table t_0 < ... < t_(n-1)
 there are n + 1 pieces, the first before t_0 and the last from t_(n-1) on.  On piece i with the anchor b_i the integral
-of the function is ``a_i0 + a_i1 (x - b_i) + a_i2 (x - b_i)^2 + ...``; the function is its first derivative, its slope
-the second.
+of the integral of the function is ``a_i0 + a_i1 (x - b_i) + a_i2 (x - b_i)^2 + ...``; the function is its second
+derivative: so the motion under a measured acceleration is a table, too.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from fricmb.integrate.problem import Floats
 HEAD = 4
 #: A derivative that jumps by less than this part of its largest value does not jump: round-off of coefficients.
 ROUND_OFF = 1e-9
-#: Orders of derivative: the integral, the function, and so on.
-INTEGRAL, VALUE, SLOPE = -1, 0, 1
+#: Orders of derivative: the function, and so on; the lowest is the integral of its integral.
+VALUE, SLOPE, LOWEST = 0, 1, -2
 
 _tables: weakref.WeakValueDictionary[int, Table] = weakref.WeakValueDictionary()
 _by_digest: weakref.WeakValueDictionary[str, Table] = weakref.WeakValueDictionary()
@@ -36,17 +36,21 @@ class Table:
     Attributes
     ----------
     edge : (n,)
-    coefficient : (n + 1, d + 2)
-        Of the integral, from the lowest power on.
+    given : (n + 1, d + 1)
+        Coefficients of the function, from the lowest power on.
+    coefficient : (n + 1, d + 3)
+        Of the integral of its integral.
     domain : (float, float)
         Where the function is known: runs outside are refused.
     digest : str
         Of the content.
     """
 
-    def __init__(self, edge: Floats, coefficient: Floats, domain: tuple[float, float], digest: str) -> None:
+    def __init__(self, edge: Floats, given: Floats, domain: tuple[float, float], digest: str) -> None:
+        self.domain, self.digest, self.given = domain, digest, given
+        given.setflags(write=False)
+        coefficient = _integrated(edge, _integrated(edge, given))
         n, width = edge.size, coefficient.shape[1]
-        self.domain, self.digest = domain, digest
         self._flat = np.concatenate([
             [0.0, float(n), float(width), (n - 1) / (edge[-1] - edge[0]) if n > 1 else 0.0],
             edge, coefficient.ravel(),
@@ -80,10 +84,10 @@ class Table:
         return found
 
     def value(self, x: Floats, order: int = VALUE) -> Floats:
-        """The function at times of any shape, or its derivative; order -1 is the integral."""
+        """The function at times of any shape, or its derivative; order -1 is the integral, -2 its integral."""
         x = np.asarray(x, dtype=float)
         piece = self.piece_at(x)
-        return self._derivative(x - self.anchor(piece), piece, order + 1)
+        return self._derivative(x - self.anchor(piece), piece, order - LOWEST)
 
     def _derivative(self, s: Floats, piece: NDArray[np.int64], m: int) -> Floats:
         found = np.zeros(s.shape)
@@ -104,8 +108,8 @@ class Table:
     def jumps(self, order: int) -> Floats:
         """By how much a derivative jumps at each edge (n,); 0 where that is round-off."""
         left, right = np.arange(self.edge.size), np.arange(1, self.edge.size + 1)
-        before = self._derivative(self.edge - self.anchor(left), left, order + 1)
-        after = self._derivative(np.zeros(self.edge.size), right, order + 1)
+        before = self._derivative(self.edge - self.anchor(left), left, order - LOWEST)
+        after = self._derivative(np.zeros(self.edge.size), right, order - LOWEST)
         size = max(np.abs(before).max(), np.abs(after).max())
         jump = after - before
         return np.where(np.abs(jump) > ROUND_OFF * size, jump, 0.0)
@@ -113,7 +117,7 @@ class Table:
     @property
     def degree(self) -> int:
         """Of the pieces."""
-        return self.coefficient.shape[1] - 2
+        return self.given.shape[1] - 1
 
     def ranges(self, low: Floats, high: Floats, order: int) -> tuple[Floats, Floats]:
         """Bounds of a derivative on intervals of time (k,)."""
@@ -171,10 +175,10 @@ def _of_polynomials(
     """Bounds of a derivative of given pieces from one time to another: its Taylor series about the middle."""
     anchor = table.anchor(piece)
     middle, half = 0.5 * (low + high) - anchor, 0.5 * (high - low)
-    centre = table._derivative(middle, piece, order + 1)
+    centre = table._derivative(middle, piece, order - LOWEST)
     reach = np.zeros(centre.shape)
     for j in range(1, table.degree - order + 1):
-        reach += np.abs(table._derivative(middle, piece, order + 1 + j)) * half**j / math.factorial(j)
+        reach += np.abs(table._derivative(middle, piece, order - LOWEST + j)) * half**j / math.factorial(j)
     return centre - reach, centre + reach
 
 
@@ -205,7 +209,7 @@ def table_of(
     name = digest.hexdigest()[:16]
     found = _by_digest.get(name)
     if found is None:
-        found = Table(edge, _integrated(edge, c), domain, name)
+        found = Table(edge, c, domain, name)
         _by_digest[name] = _tables[found.address] = found
     return found
 

@@ -10,7 +10,7 @@ from fricmb.integrate.compile.template import template
 @template
 def lookup(x: Any, p: Any, out: Any) -> None:
     """Table p at the time x[0], its derivative of order x[1]: out[0]."""
-    t, m = x[0], int(x[1]) + 1
+    t, m = x[0], int(x[1]) + 2
     n, width = int(p[1]), int(p[2])
     # the number of edges at or before t: where it would be if they were evenly spaced, else by halves
     low, high = 0, n
