@@ -6,6 +6,9 @@ A driven mass that rubs with the force f (of the drive's amplitude) and never st
 U^2}` times the static deflection, with :math:`V = 1/(1-\beta^2)` and :math:`U =
 \sin(\pi/\beta)/(\beta(1+\cos(\pi/\beta)))` at :math:`\beta` times its frequency: J. P. Den Hartog, Forced vibrations
 with combined Coulomb and viscous friction, Trans. ASME 53 (1931) 107-115.
+
+The picture shows the motion from rest in the phase plane; the settled cycle, in orange, reaches the amplitude of
+the formula.
 """
 
 import math

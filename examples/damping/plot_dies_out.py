@@ -4,6 +4,9 @@ How does a swing die out under dry friction?
 
 Along a straight line: in each half swing the mass moves about the point displaced by :math:`F/k`, so the next turn is
 nearer by :math:`2F/k` (the damper of a washing machine). It stops at the first turn nearer than :math:`F/k`.
+
+The dashed lines join the turning points of the formula. They are straight, where viscous damping would give curves
+that never end.
 """
 
 import matplotlib.pyplot as plt

@@ -5,6 +5,9 @@ How much dry friction tames a resonance?
 At its own frequency a force :math:`P\cos\omega t` does the work :math:`\pi P a` in a period, friction takes :math:`4 F
 a`: both grow with the amplitude a alike. Below :math:`F = \pi P/4` nothing stops the growth, by :math:`(\pi P - 4F)/k`
 a period (J. P. Den Hartog, Trans. ASME 53 (1931) 107-115).
+
+Below the critical friction the swings grow for ever, more slowly the nearer friction is to it. Above it they stay
+bounded.
 """
 
 import math

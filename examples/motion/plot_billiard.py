@@ -5,6 +5,8 @@ When does a sliding billiard ball begin to roll?
 Friction slows the ball and turns it. The moment :math:`\mu m g R` on the inertia :math:`\frac25 m R^2` acts on the
 speed of the rim :math:`R\omega` like a force on a mass of :math:`\frac25 m`, so ball and rim are two bodies that rub on
 each other. They meet at :math:`t = 2 v_0/(7\mu g)` with :math:`\frac57 v_0`, whatever the friction.
+
+The two speeds approach each other in straight lines and are equal from the moment of rolling on.
 """
 
 import matplotlib.pyplot as plt

@@ -5,6 +5,9 @@ How much does a capstan add to the pull of a hand?
 Rope over the angle :math:`d\varphi` of a turning drum is pressed on by :math:`T d\varphi` and pulled by :math:`\mu T
 d\varphi`: tension grows by :math:`e^{\mu\varphi}` (L. Euler, 1769). Of 24 pieces of rope, pressed on by the mean
 tension of their ends, each makes :math:`(1 + \mu d\varphi/2)/(1 - \mu d\varphi/2)`.
+
+The tension grows exponentially round the drum, a straight line on this axis; dots are the tensions between the
+pieces.
 """
 
 import math

@@ -5,6 +5,9 @@ Why does chalk screech when it is pushed?
 A rod slides on its tip at the angle a. Drawn, friction lifts it; pushed, friction digs it in. For a uniform rod at rest
 in turning, :math:`N/(mg) = 1/(1 + 3\cos^2 a \pm 3\mu \sin a\cos a)` (P. Painleve, 1895; F. Genot and B. Brogliato, Eur.
 J. Mech. A 18 (1999) 653): pushed with :math:`\mu` near 4/3 it has no bound at :math:`\tan a = 2`.
+
+Lines are the formula, dots are fricmb. Drawn, the tip bears less than the weight. Pushed, it bears up to six times
+the weight, at the angle at which the chalk screeches.
 """
 
 import matplotlib.pyplot as plt

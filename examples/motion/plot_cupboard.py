@@ -4,6 +4,9 @@ Does a pushed cupboard slide or tip?
 
 It slides under :math:`\mu m g`. Pushed at height h its feet, b apart, then bear :math:`\frac{mg}{2} \pm \mu m
 g\frac{h}{b}` (moments about a foot): above :math:`h = b/(2\mu)` the rear foot would have to pull, and it tips first.
+
+The higher the push, the more the front foot bears and the less the rear one. At the dashed line the rear foot bears
+nothing.
 """
 
 import matplotlib.pyplot as plt

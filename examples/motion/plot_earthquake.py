@@ -6,6 +6,9 @@ For a pulse of ground acceleration :math:`a`, that leaves the ground at speed :m
 earthquakes on dams and embankments, Geotechnique 15 (1965) 139-160) gives :math:`\frac{V^2}{2\mu g}(1 - \mu g/a)`: the
 building is brought to V by :math:`\mu g` alone, the ground by :math:`a`; the slip is the area between two straight
 lines.
+
+The house follows the ground along a straight line that friction alone determines. The shaded area between the two
+speeds is the slip.
 """
 
 import matplotlib.pyplot as plt

@@ -5,6 +5,9 @@ How far does a robot's joint trail its target?
 Its controller turns it with :math:`k_p` times the error, so dry friction F costs an error of :math:`F/k_p`; where the
 joint turns round it stands until the target has come back by twice that. At the turn the joint's own deceleration
 helps, :math:`(F - J A \omega^2)/k_p` is left. Four times the gain trails a quarter.
+
+The error is flat while the joint turns, and changes sign while the joint stands at its turning points. With four
+times the gain it is a quarter.
 """
 
 import matplotlib.pyplot as plt

@@ -5,6 +5,8 @@ How many boxes of a row feel a push?
 Boxes stand in a row with springs between them, and the first one is pushed harder and harder. Slowly pushed, n boxes
 that slide resist with n times the friction f of one: the next one starts when the push reaches (n + 1) f, and no box
 beyond feels anything.
+
+Each line is a box. Box n leaves the axis when the push reaches n + 1 times the friction of one.
 """
 
 from itertools import pairwise

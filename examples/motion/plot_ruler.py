@@ -5,6 +5,9 @@ Why do two fingers under a ruler meet in its middle?
 The farther finger bears less, so it slides - until :math:`\mu_k N` of it has grown to :math:`\mu_s N` of the other.
 With distances a, b from the middle they bear :math:`W b/(a+b)` and :math:`W a/(a+b)`, so they change places at
 :math:`a/b = \mu_k/\mu_s`, and the distances at which they stop are a geometric series that ends in the middle.
+
+A line is flat while that finger sticks. The fingers slide in turns, and the distances from the middle fall by the
+same ratio each time.
 """
 
 import matplotlib.pyplot as plt

@@ -4,6 +4,8 @@ In which order does a moving table catch blocks on it?
 
 Three blocks lie on each other on a table that moves off at 1 m/s. The joints are coupled through the blocks between
 them, and are caught one after the other.
+
+Above are the speeds of the blocks, below the transitions. The lowest block is caught first, the highest one last.
 """
 
 import matplotlib.pyplot as plt

@@ -5,6 +5,8 @@ Can you pull a cloth from under a glass?
 Under the glass the cloth slides for the time :math:`\tau` with :math:`V\tau - \mu_1 g\tau^2/2 = L`. The glass has then
 moved by :math:`s_1 = \mu_1 g \tau^2/2` and slides on the table as far as its speed :math:`\mu_1 g\tau` carries it:
 :math:`s_1 \mu_1/\mu_2`.
+
+The glass speeds up while the cloth is under it, and slows down on the table along a second parabola.
 """
 
 import math

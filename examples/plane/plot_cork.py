@@ -4,6 +4,9 @@ Why does a cork come out if you turn it?
 
 Friction has one size and the direction of slip. Pulled out at v while its rim turns at u, the cork is held along its
 axis by :math:`\mu N v/\sqrt{v^2 + u^2}` only: turned fast, it takes hardly any pull.
+
+The line is the formula, the dots are runs: turned three times as fast as it is pulled, the cork needs a third of
+the pull.
 """
 
 import matplotlib.pyplot as plt

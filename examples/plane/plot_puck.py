@@ -4,6 +4,8 @@ Which way does a puck go across a moving belt?
 
 Friction in two dimensions at its simplest: a puck is thrown across a belt. Seen from the ground its path is curved;
 seen from the belt it is a straight line that ends after :math:`|V|/(\mu g)`.
+
+The two lines are the same motion, seen from the ground and from the belt.
 """
 
 import math

@@ -5,6 +5,9 @@ Which comes to rest first, sliding or spinning?
 Neither. Sliding takes friction from the spin and spinning from the slide, so whichever lags is slowed less, and a
 uniform disc ends both at one instant, with :math:`v/(R\omega) = 0.653` whatever its start: Z. Farkas, G. Bartels, T.
 Unger, D. E. Wolf, Phys. Rev. Lett. 90 (2003) 248302.
+
+Each line is a disc with another start, from the upper right to rest at the origin. All end along the dashed line of
+the published ratio.
 """
 
 import matplotlib.pyplot as plt

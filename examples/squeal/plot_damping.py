@@ -5,6 +5,10 @@ Can damping make a brake squeal?
 Yes, if only one of the two modes that meet is damped. Damped alike (c each) they squeal from :math:`\mu = \frac34(1 +
 2c^2)` on (the roots of the model of :doc:`/gallery/squeal/plot_flutter` with :math:`s^2 + cs` for :math:`s^2`: its
 stiffness has eigenvalues :math:`2 \pm i\delta`, and :math:`\delta = c\sqrt2`).
+
+The map shows the largest growth rate over the friction and the damping of one mode; the other is damped with 0.02.
+The black line is the limit of squeal. Where the first mode has hardly any damping it lies below 3/4, the limit
+without damping.
 """
 
 import numpy as np

@@ -5,6 +5,9 @@ At which friction does a brake squeal?
 On an elastic lining two modes draw near as friction rises, meet and one of them grows, though friction does not depend
 on speed: N. Hoffmann, M. Fischer, R. Allgaier, L. Gaul, Mech. Res. Commun. 29 (2002) 197-205. With their stiffnesses
 :math:`(2 - \omega^2)^2 = 1 - 4\mu/3`: the modes meet at :math:`\mu = 3/4` and :math:`\omega = \sqrt2`.
+
+The picture shows the two frequencies above, which meet at the critical friction, and the growth rates below, which
+part there.
 """
 
 import numpy as np

@@ -5,6 +5,9 @@ What is the period of stick-slip?
 A mass on a belt rides along until its spring tears it off, :math:`D = (\mu_s - \mu_k)N/k` beyond where slip is in
 balance. It swings about that with :math:`\omega = \sqrt{k/m}` until it is as fast as the belt, D on the other side, and
 rides for :math:`2D/v`: :math:`T = 2(\pi - \arctan(D\omega/v))/\omega + 2D/v`.
+
+Above, the velocity of the mass: level while it rides on the belt. Below, the friction force: it follows the spring
+up to break-away and falls back.
 """
 
 import math

@@ -4,6 +4,8 @@ How fast does clutch judder grow?
 
 A lining whose friction falls with slip speed by :math:`\mu'` acts as a negative damper. A small swing of the drive line
 (inertia :math:`m`, damping :math:`c`) then grows like :math:`e^{\alpha t}` with :math:`\alpha = -(c + \mu' N)/(2m)`.
+
+The dashed lines are the exponential of the formula.
 """
 
 import math

@@ -5,6 +5,9 @@ How fast does the bit of a sticking drill string turn?
 It stands until the pipe has wound up to break-away, :math:`D` above what slip needs, and swings free about the speed
 :math:`\Omega` of the table with amplitude :math:`\sqrt{\Omega^2 + (D\omega)^2}` (it starts with speed 0, displaced by
 :math:`D`): its peak is :math:`\Omega + \sqrt{\Omega^2 + (D\omega)^2}`, more than twice the table's.
+
+The bit stands still, then spins up to more than twice the speed of the table, again and again; the mean is the
+speed of the table.
 """
 
 import math

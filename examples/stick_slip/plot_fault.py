@@ -6,6 +6,9 @@ Friction of rock weakens by :math:`b - a` with each e-fold of speed, but only ov
 through a spring stiffer than :math:`k_c = \frac{N(b-a)}{L}\left(1 + \frac{mV^2}{NaL}\right)` it creeps, through a
 softer one it quakes: J. R. Rice and A. L. Ruina, J. Appl. Mech. 50 (1983) 343-349 (the roots of the linearised
 equations).
+
+On the left the spring is softer than the critical one, and a small disturbance grows. On the right it is stiffer,
+and the disturbance dies out.
 """
 
 import matplotlib.pyplot as plt

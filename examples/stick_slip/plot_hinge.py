@@ -5,6 +5,9 @@ When does a hinge squeak?
 When it is opened slowly: friction that falls with speed feeds the swinging leaf by :math:`-\mu'(v) N` against its
 damping :math:`c`. With :math:`\mu = \mu_k + (\mu_s - \mu_k) e^{-v/v_s}` they are equal at :math:`v_c = v_s \ln\,((\mu_s
 - \mu_k) N/(c v_s))`; below that speed steady sliding is lost.
+
+On the left the hinge is opened more slowly than the critical speed: the leaf begins to stick and slip. On the right
+it is opened faster and turns smoothly.
 """
 
 import math

@@ -4,6 +4,8 @@ What does a law of my own do?
 
 A friction law is one small class. This one falls with the logarithm of the slip speed, as friction of rock does. The
 mass on the belt is torn off when its spring (k = 1) has reached mu_s N = 1.5, first after 1.5/0.1 = 15 of time.
+
+On the left is the law; on the right what it does to a mass on a belt.
 """
 
 from dataclasses import dataclass

@@ -5,6 +5,8 @@ What does the sawtooth of a pin on a disc tell?
 The force rises to :math:`\mu_s N`, where the pin breaks loose. It swings about :math:`\mu_k N` and is caught again as
 far on the other side (without damping the swing is its own mirror image): at :math:`(2\mu_k - \mu_s) N`. So the middle
 of the tooth is the friction of slip; its mean over time is more, for the pin sticks on the way up.
+
+The dashed lines are both coefficients. The teeth rise to the upper one; their middle is the lower one.
 """
 
 import matplotlib.pyplot as plt

@@ -4,6 +4,9 @@ What does a bow do to a string?
 
 It carries the string along and lets it fly back once in each period, 2 L/c, by which a kink runs round the string. The
 string slips for that share of the period by which the bow divides it: H. Helmholtz, On the Sensations of Tone (1863).
+
+The string moves with the bow for most of each period and flies back in the rest, about as fast as Helmholtz's
+motion (dashed).
 """
 
 import matplotlib.pyplot as plt

@@ -6,6 +6,8 @@ The period of stick-slip depends on belt speed, friction and stiffness. Its deri
 knows how its time moves with a parameter. Multiplied by the parameter and divided by the period,
 :math:`(p/T)\,dT/dp`, they say by how many per cent the period changes for one per cent. Belt speed and stiffness
 shorten it, the drop of friction lengthens it.
+
+Each bar is a parameter: to the right it lengthens the period, to the left it shortens it.
 """
 
 import matplotlib.pyplot as plt

@@ -4,6 +4,8 @@ How far does the rim of a singing glass swing?
 
 The finger drives the rim until the rim keeps up with it: sticking to it, it cannot be faster. So the swing is
 :math:`v/\omega` whatever the law of friction, louder for a quicker finger; and the note is that of the glass.
+
+The rim starts from rest, grows within some periods, and keeps the size of the formula (dashed).
 """
 
 import matplotlib.pyplot as plt

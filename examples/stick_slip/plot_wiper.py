@@ -5,6 +5,8 @@ How long does a wiper's lip hang when it turns round?
 Dragged one way the lip leans by :math:`\mu N/k`, then it leans the other way. In between it sticks to the glass, which
 has to come back by :math:`2\mu N/k` from its turn, and carries the lip's mass: it lets go after the time :math:`\tau`
 with :math:`(kA - mA\omega^2) \cos\omega\tau = kA - 2\mu N`.
+
+The lip leans to one side, rides on the glass to the other while it sticks, and leans there.
 """
 
 import math
