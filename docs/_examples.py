@@ -211,6 +211,15 @@ sol = fm.simulate(scene, t_end=1.0)
 print(sol.velocity("small.angle")[-1], sol.velocity("large.angle")[-1])
 figure = scene.draw()
 """,
+    "Wheel": """
+disc = fm.RigidBody("disc", mass=2.0, inertia=0.01, position=(0.0, 0.1), velocity=(3.0, 0.0))
+floor = fm.Wheel("floor", disc, radius=0.1, friction=fm.laws.Coulomb(mu_s=0.2))
+weight = fm.Gravity("weight", acceleration={"y": -9.81})
+scene = fm.Scene("a disc that is thrown", [disc, floor, weight])
+sol = fm.simulate(scene, t_end=1.0)
+print(sol.events[0], sol.velocity("disc.x")[-1])  # it rolls from v/(3 mu g) on, at 2/3 of its speed
+figure = scene.draw()
+""",
     "Rope": """
 import math
 

@@ -20,6 +20,7 @@ TELLING = {
     "four_bar": ["crank.angle", "rocker.angle"],
     "band_brake": ["drum.angle", "holder.x"],
     "belt_drive": ["drive.angle", "driven.angle"],
+    "wheel_on_slope": ["disc.x", "disc.angle"],
     "drive_train": ["wheel.angle", "disc.angle"],
     "heavy_top": ["top.axis_x", "top.axis_z"],
     "rising_top": ["top.axis_z", "top.spin"],

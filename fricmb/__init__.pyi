@@ -55,6 +55,7 @@ from .scene import Stop as Stop
 from .scene import Torque as Torque
 from .scene import TorsionDamper as TorsionDamper
 from .scene import TorsionSpring as TorsionSpring
+from .scene import Wheel as Wheel
 from .scene import coordinate as coordinate
 from .scene import ground_point as ground_point
 from .scene import parameter as parameter

@@ -34,6 +34,7 @@ from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
+from fricmb.models.wheel_on_slope import wheel_on_slope
 from fricmb.models.wheelset import wheelset
 from fricmb.models.wobbling_disc_brake import wobbling_disc_brake
 
@@ -67,6 +68,7 @@ __all__ = [
     "sprag_slip",
     "stick_slip_chain",
     "turntable",
+    "wheel_on_slope",
     "wheelset",
     "wobbling_disc_brake",
 ]

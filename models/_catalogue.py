@@ -35,6 +35,7 @@ from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
+from fricmb.models.wheel_on_slope import wheel_on_slope
 from fricmb.models.wheelset import wheelset
 from fricmb.models.wobbling_disc_brake import wobbling_disc_brake
 from fricmb.values import DIMENSIONLESS, SI, Units
@@ -86,6 +87,7 @@ _MODELS = (
     Model(build=sprag_slip, t_end=1.0, units=SI),
     Model(build=band_brake, t_end=1.2, units=SI),
     Model(build=belt_drive, t_end=3.5, units=SI),
+    Model(build=wheel_on_slope, t_end=2.0, units=SI),
     Model(build=slider_crank, t_end=1.0, units=SI),
     Model(build=painleve_rod, t_end=0.2, units=SI),
     Model(build=four_bar, t_end=2.0, units=SI),

@@ -12,7 +12,7 @@ PURPOSES: dict[str, tuple[str, ...]] = {
         "space.Spherical", "space.Universal", "space.Fixed", "space.Rod",
     ),
     "surfaces that something slides or rolls on": (
-        "RollerOnLine", "RollerOnCircle", "space.OnPlane", "space.InCylinder", "space.WheelRail",
+        "RollerOnLine", "RollerOnCircle", "Wheel", "space.OnPlane", "space.InCylinder", "space.WheelRail",
     ),
     "friction": ("Contact", "DryFriction", "space.DryFriction", "space.Pad"),
     "springs and dampers": (

@@ -37,6 +37,7 @@ from fricmb.scene import (
     Rope,
     Torque,
     TorsionSpring,
+    Wheel,
 )
 from fricmb.values import value_of
 
@@ -98,6 +99,9 @@ class _Linkage:
             gyration.append(float(np.sqrt(value_of(body.inertia) / value_of(body.mass))))
         for joint in self.joints:
             for end in (joint.a, joint.b):
+                if isinstance(joint, Wheel) and end is joint.a:
+                    reach = float(value_of(joint.radius))
+                    corners += [corners[0] + [reach, reach], corners[0] - [reach, reach]]
                 if owner(end) == "ground":
                     corners.append(np.array(self._spot(end)[1:]))
         size = float(np.ptp(np.array(corners), axis=0).max()) if corners else 0.0
@@ -148,6 +152,8 @@ class _Linkage:
         """Of a wheel: that of a gear it meshes in, else such that a disc has its inertia, if that is to be seen."""
         whole = self.sketch.unit / _PIN
         for joint in self.joints:
+            if isinstance(joint, Wheel) and owner(joint.a) == body.name:
+                return float(value_of(joint.radius))
             if isinstance(joint, Gear) and body.name in (owner(joint.a), owner(joint.b)):
                 ratio = abs(float(value_of(joint.ratio)))
                 first = owner(joint.a) == body.name
@@ -203,7 +209,8 @@ class _Linkage:
             angle = float(value_of(joint.angle))
             sketch.marks.append(Mark(kind="line", at=b, angle=angle, size=max(long, 1.3 * self._reach(a, b, angle))))
             if getattr(joint, "friction", None) is not None:
-                sketch.touches.append(Touch(name=joint.name, at=a))
+                at = self._foot(joint, a, b) if isinstance(joint, Wheel) else a
+                sketch.touches.append(Touch(name=joint.name, at=at))
         elif isinstance(joint, RollerOnCircle):
             sketch.marks.append(Mark(kind="circle", at=b, size=float(value_of(joint.radius))))
             if joint.friction is not None:
@@ -218,6 +225,17 @@ class _Linkage:
             sketch.marks.append(Mark(kind="support" if fixed else "weld", at=b if fixed else a))
         elif isinstance(joint, DrivenAngle):
             sketch.marks.append(Mark(kind="turn", at=moved, size=2.2 * sketch.unit))
+
+    def _foot(self, wheel: Wheel, a: Spot, b: Spot) -> Spot:
+        """Where a wheel touches its line, which is no point of the wheel: a shape of its own."""
+        sketch, radius = self.sketch, float(value_of(wheel.radius))
+        here = np.zeros((3, self.n))
+        for i in range(self.n):
+            turn = sketch.angle(b, i) + float(value_of(wheel.angle))
+            here[:2, i] = sketch.where(a, i) - radius * np.array([-np.sin(turn), np.cos(turn)])
+        sketch.shapes.append(Shape(name="", face="dot", outline=disc(0.05 * sketch.unit, 16)))
+        sketch.places = np.concatenate((sketch.places, here[None]))
+        return len(sketch.shapes) - 1, 0.0, 0.0
 
     def _rope(self, rope: Rope) -> None:
         """Its drum as a circle, and what runs off it to both ends."""

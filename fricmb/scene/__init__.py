@@ -32,6 +32,7 @@ from fricmb.scene._stops import Backlash, Stop
 from fricmb.scene._symbols import coordinate, speed
 from fricmb.scene._tree import Branch, Loop, Topology, topology
 from fricmb.scene._turning import Gravity, Torque, TorsionDamper, TorsionSpring
+from fricmb.scene._wheel import Wheel
 from fricmb.values import Parameter, parameter
 
 __all__ = [
@@ -83,6 +84,7 @@ __all__ = [
     "TorsionDamper",
     "TorsionSpring",
     "Uses",
+    "Wheel",
     "check_axis",
     "check_ends",
     "coordinate",

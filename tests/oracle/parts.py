@@ -357,6 +357,22 @@ def around(R: float) -> Any:
     return seen
 
 
+def wheel() -> Case:
+    """A disc that a pushed axle and a torque on it let roll and slide on the floor."""
+    m, inertia, R = 1.5, 0.02, 0.2
+    body = fm.RigidBody("m", mass=m, inertia=inertia, position=(0.0, R), velocity=(0.3, 0.0))
+    parts = [
+        body, fm.Wheel("c", body, radius=R, friction=LAW), fm.Gravity("g", acceleration={"y": -2.0}),
+        fm.Force("f", body, axis="x", value=6.0 * sympy.sin(1.3 * T)),
+        fm.Torque("w", body, value=0.5 * sympy.cos(2 * T)),
+    ]  # fmt: skip
+    W = np.array([[1.0], [R]])
+    contact = Contact(name="c", W=W, N=constant(m * 2.0), mu=constant(0.4), mu_s=constant(0.5))
+    act = lambda t, q, v: [6.0 * math.sin(1.3 * t), 0.5 * math.cos(2.0 * t)]  # noqa: E731
+    problem = numbers([0.0, 0.0], [0.3, 0.0], 5.0, (contact,), act, [[m, 0.0], [0.0, inertia]])
+    return made("Wheel", parts, ("m.x", "m.angle"), problem)
+
+
 def rope() -> Case:
     """Two blocks on a rope over a fixed drum; the coordinate is that of the second."""
     a, b = fm.Body("a", mass=1.2, velocity={"x": -0.2}), fm.Body("b", mass=0.7, velocity={"x": 0.2})
@@ -487,6 +503,6 @@ CASES: dict[str, Callable[[], Case]] = {
     "Torque": turning, "DryFriction": dry_friction, "Stop": stop, "Backlash": backlash,
     "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
     "normal.Prescribed": prescribed, "Fixed": welded, "Prismatic": prismatic, "RollerOnLine": on_line,
-    "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "Rope": rope,
+    "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "Rope": rope, "Wheel": wheel,
     "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,
 }  # fmt: skip
