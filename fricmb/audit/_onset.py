@@ -51,6 +51,8 @@ def _one(
     D = float((W**2 / s.mass).sum())
     N = float(found.N[k][0])
     fastest = float(np.abs(rows.g[int(s.names.row[k]), within]).max())
+    if fastest == 0.0:
+        return  # slip that is held again at the instant at which it begins
     rate, speed = _growth(law, D, N, fastest)
     if rate <= 0.0 or rate * (t_end - t) < 4.0:
         return

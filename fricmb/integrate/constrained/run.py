@@ -86,6 +86,7 @@ def run_mechanism(
         chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
         if code == DONE:
+            chunks.note_changes(problem.contacts, start, y.mode, y.n)
             _settle(workspace, problem, start, t_end)
             code = chunks.fill(go_on, y, memory, progress)
         chunks.take()

@@ -17,13 +17,17 @@ from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State, copy_state
-from fricmb.integrate.problem import LAW_SMOOTH, SLIP, Floats
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.event_functions import BY_EITHER, find_changing_contact, margin
 from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact
 from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 from fricmb.integrate.step.step_error import step_error
+
+#: Roundings of the time within which a release happens at once: another contact has just let go, and in a step as short
+#: as that forces between its ends are round-off of velocities.
+AT_ONCE = 1024.0
 
 
 @declared
@@ -105,6 +109,9 @@ def locate(
             new = exact_root(packed, s, y, end, one, acc, contact, step, step, found)
             if new < 0.0:
                 return contact
+        if f < 0.0 and y.mode[contact] == STICK and step <= AT_ONCE * t_unit:
+            copy_state(y, end)
+            return contact
         slipping = y.mode[contact] == SLIP and packed.ports.law[contact] != LAW_SMOOTH
         if f < 0.0:
             if f_hi == f_hi and f_lo == f_lo and same < 0:

@@ -17,7 +17,7 @@ from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.contact.disc_projection import release
 from fricmb.integrate.model.forces import Scratch
 from fricmb.integrate.model.friction_cone import break_away, load_factor
-from fricmb.integrate.model.friction_discs import share
+from fricmb.integrate.model.friction_discs import relative_acceleration, share
 from fricmb.integrate.model.law_values import coefficient, point_along
 from fricmb.integrate.model.problem_structs import Packed, Ports, packed_of
 from fricmb.integrate.model.state import State
@@ -103,7 +103,7 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
         elif r.part[k] == 2:
             r.mode[k] = SLIP
     for trial in range(6 * nc + 10):
-        if not try_modes(packed, y, r, s):
+        if not try_modes(packed, y, r, s) or torn(y, r, big):
             break
         worst, back = find_wrong(y, r, held, least * big, big)
         if worst >= 0:
@@ -124,6 +124,20 @@ def solve_rest(packed: Packed, s: Scratch, y: State, r: Rest) -> int:
         return -1
     take_modes(packed, y, r, y.n, y.F)
     return 1
+
+
+@kernel
+def torn(y: State, r: Rest, big: float) -> bool:
+    """Whether redundant contacts that are held are drawn apart by what they rub on: no forces, however large, do that.
+
+    A body between a belt that turns round and the ground rests on neither's account; forces of least squares are small.
+    """
+    ports, found = r.ports, False
+    for k in range(r.mode.shape[0] if ports.soft > 0.0 else 0):
+        for a in range(ports.row[k], ports.row[k + 1] if r.mode[k] == STICK else ports.row[k]):
+            rate = relative_acceleration(ports, y.a0, r.w.F[0], a)
+            found = found or (ports.D[a, a] > 0.0 and abs(rate) > 1e-6 * big)
+    return bool(found)
 
 
 @kernel

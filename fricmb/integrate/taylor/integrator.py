@@ -106,7 +106,7 @@ class Taylor(Integrator):
             if t_eval is not None:
                 empty = no_samples(problem.n, problem.m, len(t_eval))
                 net = with_arrays(net, **{**empty, "times": np.ascontiguousarray(t_eval, dtype=float)})
-            settle_start(net)
+            settle_start(net, start.mode is not None)
             marks = Checkpoints(problem.n)
             code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
             done = _trajectory(problem, net, degree, marks, code, t_eval)

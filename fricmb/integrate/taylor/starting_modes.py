@@ -148,10 +148,32 @@ def release_groups(net: Net) -> None:
 
 
 @kernel
-def settle(net: Net, given: bool) -> None:
+def keep_sliding(net: Net, h: float) -> bool:
+    """Let what slid when the run before ended slide on, though it has next to no speed yet, where it speeds up.
+
+    It has just broken away.  What slows down comes to rest here.  Whether there is such a contact.
+    """
+    some = False
+    for c in range(net.mode.shape[0]):
+        if net.groups.planar[c] < 0 and net.groups.rests[c] == 1 and net.since[c] == GOES_ON:
+            set_mode(net, c, SLIP, net.sigma[c])
+            some = True
+    if some:
+        taylor_series(net, h)
+    for c in range(net.mode.shape[0] if some else 0):
+        if net.groups.planar[c] < 0 and net.groups.rests[c] == 1 and net.since[c] == GOES_ON:
+            if net.sigma[c] * relative_row(net, c, 1, h) >= 0.0:
+                net.groups.rests[c] = 0
+            else:
+                set_mode(net, c, STICK, net.sigma[c])
+    return some
+
+
+@kernel
+def settle(net: Net, given: bool, known: bool) -> None:
     """Modes at the start and (``given``) behind a breakpoint, from velocities or, where these are 0, forces.
 
-    Changes behind a breakpoint are transitions.
+    Changes behind a breakpoint are transitions, and so are those of a run that goes on (``known``: its modes are).
     """
     before_it = net.step
     h = min(net.longest, net.stops[net.n_stop] - net.time)
@@ -163,6 +185,8 @@ def settle(net: Net, given: bool) -> None:
             net.mark[c] = displacement(net, c, net.q[net.first_dof[c]], 0.0)
     signal_series(net, net.time, h)
     look_at_speeds(net, given, before_it)
+    if not given and known:
+        keep_sliding(net, h)
     taylor_series(net, h)
     release_plain(net)
     release_groups(net)
@@ -170,13 +194,13 @@ def settle(net: Net, given: bool) -> None:
         if net.groups.planar[c] == SECOND:
             continue
         now, before = direction_of(net, c), net.groups.before[c]
-        if given and now != before:
+        if (given or known) and now != before:
             kind = EVENT_STICK if now == STICK else (EVENT_SLIP if before == STICK else EVENT_REVERSAL)
             keep_event(net, net.time, c, kind)
 
 
 @run_entry
-def settle_start(net: Net) -> None:
-    """Modes at the start of a run."""
+def settle_start(net: Net, known: bool) -> None:
+    """Modes at the start of a run; ``known``: they were there when another ended."""
     set_window(net)
-    settle(net, False)
+    settle(net, False, known)

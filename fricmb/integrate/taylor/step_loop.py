@@ -188,7 +188,7 @@ def drive_taylor(net: Net, until: int) -> int:
             if net.n_stop > 0 and net.series.shape[0] > 0:
                 if net.n_events + net.mode.shape[0] > net.events.shape[0]:
                     return FULL
-                settle(net, True)
+                settle(net, True, False)
             net.phase = BEGIN
         if net.phase == BEGIN:
             if net.n_steps >= net.steps.shape[0] or list_may_be_full(net):

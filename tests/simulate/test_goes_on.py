@@ -1,0 +1,81 @@
+"""Runs that go on from the very instant of a transition tell of it once; runs that had to stop go on."""
+
+import numpy as np
+import pytest
+import sympy
+
+import fricmb as fm
+
+
+@pytest.mark.parametrize(
+    ("scene", "t_end", "method", "rtol"),
+    [
+        (fm.models.stick_slip_chain(3), 60.0, "taylor", 1e-8),
+        (fm.models.stick_slip_chain(3), 60.0, "radau", 1e-9),
+        (fm.models.belt_oscillator(mu_s=1.5, mu_k=1.0), 60.0, "collocation", 1e-8),
+        (fm.models.dry_pendulum(), 8.0, "radau", 1e-9),
+    ],
+    ids=["taylor", "radau", "collocation", "joints"],
+)
+def test_a_run_cut_at_a_transition_joins_with_as_many(scene, t_end, method, rtol):
+    """The first part may end just short of the transition, or just behind it."""
+    one = fm.simulate(scene, t_end=t_end, rtol=rtol, method=method)
+    told = [(e.contact, e.kind) for e in one.events]
+    for e in list(one.events)[:26]:
+        first = fm.simulate(scene, t_end=e.t, rtol=rtol, method=method)
+        then = fm.simulate(scene, t_end=t_end, rtol=rtol, method=method, initial=first)
+        assert [(x.contact, x.kind) for x in fm.Solution.join([first, then]).events] == told, e
+
+
+def gripped(grip):
+    """A body of mass 1 that a belt carries which slows down and turns round at t = 2; it rubs on the ground by 0.5."""
+    a, belt = fm.Body("a", mass=1.0, velocity={"x": 0.2}), fm.Driven("belt", velocity={"x": 0.2 - 0.1 * fm.t})
+    sole = fm.Contact("grip", a, belt, law=fm.laws.Coulomb(mu_s=1.0), normal_force=grip)
+    rub = fm.Contact("rub", a, law=fm.laws.Coulomb(mu_s=0.5), normal_force=1.0)
+    return fm.Scene("gripped", [a, belt, sole, rub])
+
+
+@pytest.mark.parametrize("method", ["auto", "bdf"])
+@pytest.mark.parametrize(
+    ("grip", "x", "told"),
+    [
+        (10.0, 1.0 - 1.25, [("rub", "reversal")]),
+        (0.55, 0.2 - 0.05 * 9.0 / 2.0, [("grip", "slip"), ("rub", "reversal")]),
+        (0.45, 0.2, [("grip", "slip"), ("rub", "stick")]),
+    ],
+)
+def test_a_body_between_a_belt_that_turns_round_and_the_ground(grip, x, told, method):
+    """It goes on with the belt, slips on both, or stays on the ground: no forces hold it on both."""
+    sol = fm.simulate(gripped(grip), t_end=5.0, method=method, time_limit=60)
+    np.testing.assert_allclose(sol["a.x"][-1], x, rtol=1e-10)
+    assert [(e.contact, e.kind) for e in sol.events] == told
+    np.testing.assert_allclose(sol.events.t, 2.0, rtol=1e-12)
+    assert sol.audit().ok
+
+
+LAWS = {
+    "coulomb": fm.laws.Coulomb(mu_s=1.0),
+    "falls": fm.laws.Coulomb(mu_s=1.0, mu_k=0.7),
+    "table": fm.laws.Tabulated(speed=(0.0, 0.1, 1.0), mu=(1.0, 0.8, 0.7)),
+}
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+@pytest.mark.parametrize("heavier", [1.0, 1.0 + 1e-9, 1.1])
+def test_two_blocks_that_are_let_go_at_once_do_what_one_does(law, heavier):
+    """On a shaken belt, tied by a spring that they never stretch."""
+    A, w = 1.2, 5.0
+    belt = fm.Driven("belt", velocity={"x": -(A / w) * sympy.cos(w * fm.t)})
+
+    def run(masses):
+        blocks = [fm.Body(f"b{i}", mass=m, velocity={"x": -A / w}) for i, m in enumerate(masses)]
+        pairs = enumerate(zip(blocks, masses, strict=True))
+        soles = [fm.Contact(f"c{i}", b, belt, law=law, normal_force=m) for i, (b, m) in pairs]
+        ties = [fm.Spring("k", *blocks, axis="x", stiffness=0.5)] if len(blocks) > 1 else []
+        return fm.simulate(fm.Scene("shaken", [*blocks, belt, *ties, *soles]), t_end=20.0, rtol=1e-8, time_limit=60)
+
+    one, two = run([1.0]), run([1.0, heavier])
+    np.testing.assert_allclose([two["b0.x"][-1], two["b1.x"][-1]], one["b0.x"][-1], atol=3e-9)
+    kinds = [e.kind for e in one.events]
+    assert [[e.kind for e in two.events.of(contact=f"c{i}")] for i in (0, 1)] == [kinds, kinds]
+    assert two.audit().ok
