@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from fricmb.laws import Coulomb
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
-from fricmb.scene._rigid import angle_of, start_angle
-from fricmb.values import value_of
+from fricmb.scene._rigid import angle_of, start_angle, start_place
+from fricmb.values import is_list, value_of
 
 
 @dataclass(frozen=True, eq=False)
 class Gear(Joint):
     """Angles in a fixed ratio: ``angle of a - start = -ratio (angle of b - start)``.  Reaction: torque on a.
 
-    Only torques are passed on.  The force between the teeth is not there, nor the load that it brings to the bearings
-    of both wheels: friction in their pins does not see it.
+    Without ``pressure_angle`` only torques are passed on: bearings of the wheels do not feel the force between the
+    teeth, nor does friction in their pins.
 
     Parameters
     ----------
@@ -25,6 +26,13 @@ class Gear(Joint):
     a, b : RigidBody or one of its points
     ratio : float
         Radius of b over that of a; < 0 for an internal gear or a belt.
+    pressure_angle : float, optional
+        Of the teeth, in radians, between -pi/2 and pi/2 (20 degrees are 0.349): the force between them acts on both
+        wheels at the pitch point between their centres, on lines that lean by this angle.  Teeth push the wheels
+        apart on the flank that carries while the torque on a is counter-clockwise if the angle is > 0, clockwise if it
+        is < 0; under a torque the other way the part across would have the wrong sign.  Centres have to stay in place.
+    centres : (float, float, float, float), optional
+        X and y of the centre of a, then of b, for the pressure angle; default: as the ends are declared.
     efficiency : float, optional
         Share of the power taken from a that b gets, where a drives, > 0 and < 1; None: no losses.
     efficiency_back : float, optional
@@ -41,6 +49,10 @@ class Gear(Joint):
 
     Notes
     -----
+    With the centres apart by ``D e`` the pitch radius of a is ``r = D/(1 + ratio)``, and the force on a is
+    ``lam n/(r cos alpha)`` with the torque lam on a and ``n = cos(alpha) t - sin(alpha) e``, t being e turned by 90
+    degrees.
+
     The loss is dry friction between the teeth, in the ratio of their load: with the tooth load lam (the torque that
     passes, seen at a) and the rate w of a, ``F = -mu |lam| sgn(w)`` acts as ``c F`` on a and ``(1 - c) ratio F``
     against b.  Torques on the wheels are ``lam + c F`` and ``ratio (lam - (1 - c) F)``, from which with the
@@ -72,6 +84,8 @@ class Gear(Joint):
     takes_friction: ClassVar[bool] = True
     _: KW_ONLY
     ratio: Any
+    pressure_angle: Any = None
+    centres: Any = None
     efficiency: Any = None
     efficiency_back: Any = None
 
@@ -79,6 +93,8 @@ class Gear(Joint):
         self._check_losses()
         super().__post_init__()
         self._settle("ratio")
+        if self.pressure_angle is not None:
+            self._check_teeth()
         if self.friction is not None and value_of(self.ratio) == 0.0:
             self._refuse("ratio", self.ratio, "another than 0 beside an efficiency")
         self.local_coordinates()
@@ -101,18 +117,55 @@ class Gear(Joint):
         if self.friction is None:
             self._set("friction", Coulomb(mu_s=1.0))
 
+    def _check_teeth(self) -> None:
+        angle = self._number("pressure_angle", self.pressure_angle)
+        if not abs(value_of(angle)) < math.pi / 2:
+            self._refuse("pressure_angle", angle, "a number between -pi/2 and pi/2")
+        self._set("pressure_angle", angle)
+        one, other = self._centres()
+        if 1.0 + value_of(self.ratio) == 0.0 or math.dist(one, other) == 0.0:
+            self._refuse("pressure_angle", angle, "left out where centres are in one place, or the ratio is -1")
+        self._set("centres", (*one, *other))
+
+    def _centres(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """As given, else as declared; kept, since whoever compares gears reads their own fields alone."""
+        if self.centres is not None:
+            if not is_list(self.centres) or len(self.centres) != 4:
+                self._refuse("centres", self.centres, "four numbers, x and y of a, then of b")
+            ax, ay, bx, by = (float(value_of(self._number("centres", entry))) for entry in self.centres)
+            return (ax, ay), (bx, by)
+        found = [start_place(end) or {} for end in (self.a, self.b)]
+        first, second = ((at["x"], at["y"]) for at in found)
+        return first, second
+
+    def _mesh(self, x: Any, y: Any) -> Any:
+        """What the centres have moved along the line of action, over the arm of the force about the centre of a."""
+        import sympy
+
+        ax, ay, bx, by = self.centres
+        along = bx - ax, by - ay
+        whole = along[0] ** 2 + along[1] ** 2
+        # e/r of the unit vector e between the centres, by D e = r (1 + ratio) e
+        e = tuple((1 + self.ratio) * c / whole for c in along)
+        lean = sympy.tan(self.pressure_angle)
+        return (-e[1] - lean * e[0]) * (x + along[0]) + (e[0] - lean * e[1]) * (y + along[1])
+
     def labels(self) -> tuple[str, ...]:
         """Slip is that of a."""
         return ("angle",)
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """Both angles from their declared start on."""
+        """Both angles from their declared start on; with a pressure angle also the vector between the centres."""
         held = (("a", self.a), ("b", self.b))
-        return tuple(angle_of(self, argument, end) - LinearForm((), start_angle(end)) for argument, end in held)
+        turned = tuple(angle_of(self, argument, end) - LinearForm((), start_angle(end)) for argument, end in held)
+        if self.pressure_angle is None:
+            return turned
+        return (*turned, *(self.a.motion(c) - self.b.motion(c) for c in "xy"))
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """The teeth."""
-        return (x[0] + self.ratio * x[1],)
+        mesh = 0 if self.pressure_angle is None else self._mesh(x[2], x[3])
+        return (x[0] + self.ratio * x[1] + mesh,)
 
     def _loss(self) -> tuple[Any, Any]:
         """Coefficient mu of the friction over the tooth load, and the share c of it that acts on a."""

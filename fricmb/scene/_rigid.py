@@ -253,6 +253,20 @@ def start_angle(end: End) -> float:
     return float(value_of(owner.angle)) if isinstance(owner, RigidBody) else 0.0
 
 
+def start_place(end: End) -> dict[str, float] | None:
+    """Where an end is as declared, by letter; None for one that is a point of something else than a rigid body."""
+    if end.owner is GROUND:
+        return {"x": end.x, "y": end.y} if isinstance(end, GroundPoint) else {}
+    if not isinstance(end, Body | RigidBody | RigidPoint):
+        return None
+    owner: Any = end.owner
+    at = {letter: float(value_of(v)) for letter, v in owner.start_values("position").items()}
+    if isinstance(end, RigidPoint):
+        (u, v), c, s = end.offset, math.cos(at["angle"]), math.sin(at["angle"])
+        at = {"x": at["x"] + c * u - s * v, "y": at["y"] + s * u + c * v}
+    return at
+
+
 def plane_motion(owner: Part, argument: str, end: Any) -> tuple[LinearForm, LinearForm]:
     """X and y of an end."""
     if not isinstance(end, End):

@@ -10,11 +10,10 @@ from typing import Any, ClassVar
 from fricmb.errors import SceneError
 from fricmb.laws import Coulomb, FrictionLaw
 from fricmb.scene._axes import check_axis, components, from_vector, is_direction_tuple, is_end
-from fricmb.scene._bodies import Body
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
 from fricmb.scene._part import GROUND, LETTERS, End
-from fricmb.scene._rigid import GroundPoint, RigidBody, RigidPoint, angle_of
+from fricmb.scene._rigid import angle_of, start_place
 from fricmb.values import is_list, is_one_of, value_of
 
 
@@ -44,7 +43,8 @@ class Rope(Joint):
     friction : float or Coulomb
         Coefficient of friction mu of the rope on the drum; a law with mu_s > mu_k holds more before it slips.
     length : float, optional
-        Sum of the distances of both ends from the drum along the directions; default: as the ends are declared.
+        Sum of the distances of both ends from the drum along the directions; default: as the ends are declared here,
+        also where a scene gives them other positions later.
     when_slack : "end" or "open"
         What happens where a tension would have to be negative: the run ends there with an error that says so, or goes
         on without the rope, and ends with an error where that is taut again.
@@ -176,15 +176,8 @@ class Rope(Joint):
 
     def _start(self, end: End, axis: Any) -> float:
         """How far from the origin an end is along its direction, as declared."""
-        if end.owner is GROUND:
-            at = {"x": end.x, "y": end.y} if isinstance(end, GroundPoint) else {}
-        elif isinstance(end, Body | RigidBody | RigidPoint):
-            owner: Any = end.owner
-            at = {letter: float(value_of(v)) for letter, v in owner.start_values("position").items()}
-            if isinstance(end, RigidPoint):
-                (u, v), c, s = end.offset, math.cos(at["angle"]), math.sin(at["angle"])
-                at = {"x": at["x"] + c * u - s * v, "y": at["y"] + s * u + c * v}
-        else:
+        at = start_place(end)
+        if at is None:
             raise SceneError(f"{self._label()}: length must be given where {end.end_name!r} is an end")
         return sum(c * at.get(letter, 0.0) for letter, c in self._vector(end, axis))
 

@@ -143,6 +143,65 @@ def test_what_cannot_be_is_refused_by_name():
         ("efficiency_back must be left out without efficiency", {"efficiency_back": 0.9}),
         ("friction must be left out without efficiency", {"friction": fm.laws.Coulomb(mu_s=0.1)}),
         ("ratio must be another than 0", {"ratio": 0.0, "efficiency": 0.9}),
+        ("pressure_angle must be a number between -pi/2 and pi/2", {"pressure_angle": 1.6}),
+        ("pressure_angle must be left out where centres are in one place", {"ratio": -1.0, "pressure_angle": 0.3}),
+        ("centres must be four numbers", {"pressure_angle": 0.3, "centres": 1.0}),
     ]:
         with pytest.raises(fm.SceneError, match=match):
             fm.Gear("g", a, b, **{"ratio": 1.0, **given})
+
+
+@pytest.mark.parametrize(("ratio", "apart"), [(2.0, (0.6, 0.0)), (2.0, (0.0, -0.6)), (-3.0, (0.4, 0.3))])
+def test_teeth_load_the_bearings(ratio, apart):
+    """With the torque T on a: T/(r cos alpha) on both, that on a apart from b by T tan(alpha)/r, along by T/r."""
+    alpha, T = math.radians(20.0), 5.0
+    a = fm.RigidBody("a", mass=1.0, inertia=JA)
+    b = fm.RigidBody("b", mass=1.0, inertia=JB, position=apart)
+    pins = [fm.Revolute("pa", a), fm.Revolute("pb", b, fm.ground_point(*apart))]
+    teeth = fm.Gear("teeth", a, b, ratio=ratio, pressure_angle=alpha)
+    loads = [fm.Torque("drive", a, value=-T), fm.Torque("load", b, value=-ratio * T)]
+    sol = fm.simulate(fm.Scene("s", [a, b, *pins, teeth, *loads]), t_end=1.0, rtol=1e-9)
+    assert sol.reaction("teeth")[0, -1] == pytest.approx(T, rel=1e-12)
+    np.testing.assert_allclose(sol.velocity("a.angle"), 0.0, atol=1e-12)
+    D = np.array(apart)
+    e = D / np.linalg.norm(D) * (1.0 if ratio > -1.0 else -1.0)
+    r = np.linalg.norm(D) / abs(1.0 + ratio)
+    t = np.array([-e[1], e[0]])
+    force = T / r * t - T / r * math.tan(alpha) * e
+    np.testing.assert_allclose(sol.reaction("pa")[:, -1], -force, rtol=1e-10)
+    np.testing.assert_allclose(sol.reaction("pb")[:, -1], force, rtol=1e-10)
+    # torque of the force at the pitch point about both centres
+    about = lambda arm, push: arm[0] * push[1] - arm[1] * push[0]  # noqa: E731
+    assert about(r * e, force) == pytest.approx(T)
+    assert about(r * e - D, -force) == pytest.approx(ratio * T)
+
+
+def test_friction_in_the_pins_feels_the_teeth():
+    """Steady turning: T = lam (1 + mu p/(r cos alpha)) at a, and the load on b is less by the same at b."""
+    alpha, mu, p, T, ratio, D = -math.radians(20.0), 0.2, 0.03, 6.0, 2.0, 0.6
+    rub = {"radius": p, "friction": fm.laws.Coulomb(mu_s=mu)}
+    a = fm.RigidBody("a", mass=1.0, inertia=JA, angular_velocity=4.0)
+    b = fm.RigidBody("b", mass=1.0, inertia=JB, position=(D, 0.0), angular_velocity=-2.0)
+    pins = [fm.Revolute("pa", a, **rub), fm.Revolute("pb", b, fm.ground_point(D, 0.0), **rub)]
+    teeth = fm.Gear("teeth", a, b, ratio=ratio, pressure_angle=alpha)
+    arm = D / (1.0 + ratio) * math.cos(alpha)
+    lam = T / (1.0 + mu * p / arm)
+    loads = [fm.Torque("drive", a, value=T), fm.Torque("load", b, value=ratio * lam - mu * p / arm * lam)]
+    sol = fm.simulate(fm.Scene("s", [a, b, *pins, teeth, *loads]), t_end=1.0, rtol=1e-9)
+    np.testing.assert_allclose(sol.velocity("a.angle"), 4.0, rtol=1e-9)
+    np.testing.assert_allclose(sol.reaction("teeth")[0], -lam, rtol=1e-9)
+    assert sol.audit().ok
+
+
+def test_sensitivity_to_the_pressure_angle():
+    rub = {"radius": 0.03, "friction": fm.laws.Coulomb(mu_s=0.2)}
+    a = fm.RigidBody("a", mass=1.0, inertia=JA, angular_velocity=4.0)
+    b = fm.RigidBody("b", mass=1.0, inertia=JB, position=(0.6, 0.0), angular_velocity=-2.0)
+    pins = [fm.Revolute("pa", a, **rub), fm.Revolute("pb", b, fm.ground_point(0.6, 0.0), **rub)]
+    loads = [fm.Torque("drive", a, value=6.0), fm.Torque("load", b, value=9.0)]
+    scene = fm.Scene("s", [a, b, *pins, fm.Gear("teeth", a, b, ratio=2.0, pressure_angle=-0.35), *loads])
+    name = "teeth.pressure_angle"
+    sol = fm.simulate(scene, t_end=1.0, rtol=1e-9, sensitivities=(name,))
+    up, low = (fm.simulate(scene.with_parameters({name: -0.35 + h}), t_end=1.0, rtol=1e-12) for h in (1e-4, -1e-4))
+    right = (up["a.angle"][-1] - low["a.angle"][-1]) / 2e-4
+    assert sol.sensitivity("a.angle", name)[-1] == pytest.approx(right, rel=1e-6)
