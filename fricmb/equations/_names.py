@@ -58,9 +58,10 @@ def slot_symbol(part: Any, path: str, value: Any) -> Any:
         name, _, index = rest.partition(".")
         return subscript(_LAW_LETTERS.get(name, name), *([index] if index else []), part.name)
     letter = letters.get(head, head)
-    match = re.fullmatch(rf"{letter}_?(\w{{1,3}})", part.name)
+    # "k1x", "k_ab", "cx", "kxy" are a letter and its index; "mass" is a word
+    match = re.fullmatch(rf"{letter}(?:_(\w{{1,3}})|(\w|[xyz]{{2,3}}|(?=\w*\d)\w{{2,3}}))", part.name)
     if match and head == next(iter(letters), None):
-        return subscript(letter, match[1])
+        return subscript(letter, match[1] or match[2])
     return subscript(letter, *([rest] if rest else []), part.name)
 
 

@@ -20,6 +20,8 @@ SHOWN = {
     "landing": "index.html",
     "tutorial": "tutorials/block_on_belt.html",
     "own scene": "tutorials/own_scene.html",
+    "shaken": "tutorials/shaken.html",
+    "coming from": "howto/coming_from.html",
     "law": "reference/generated/fricmb.laws.Stribeck.html",
     "class": "reference/generated/fricmb.Solution.html",
     "analysis": "reference/generated/fricmb.analysis.complex_eigenvalues.html",
@@ -27,7 +29,16 @@ SHOWN = {
     "gallery": "gallery/index.html",
     "example": "gallery/stick_slip/plot_belt.html",
 }
-SIZES = {"desk": (1280, 800), "phone": (375, 740)}
+SIZES = {"desk": (1400, 900), "phone": (390, 740)}
+#: Code that is folded in the middle of a line though a desk has room for it: lines of up to a hundred characters.
+FOLDED = """() => [...document.querySelectorAll('article div.highlight pre')].flatMap((pre) => {
+  if (pre.closest('dl')) return [];  // beside a margin
+  const lines = pre.textContent.replace(/\\n$/, '').split('\\n');
+  const style = getComputedStyle(pre);
+  const inner = pre.clientHeight - parseFloat(style.paddingTop) - parseFloat(style.paddingBottom);
+  const high = lines.length * parseFloat(style.lineHeight) + 2;
+  return Math.max(...lines.map((line) => line.length)) <= 100 && inner > high ? [lines[0]] : [];
+})"""
 TROUBLE = """() => {
   const found = [], width = document.documentElement.clientWidth;
   if (document.documentElement.scrollWidth > width + 1)
@@ -141,6 +152,65 @@ def test_page_is_whole(name, size, theme, address, visit):
     background = page.evaluate("getComputedStyle(document.body).backgroundColor")
     shade = sum(map(int, background[background.index("(") + 1 : -1].split(",")[:3]))
     assert (shade < 200) == (theme == "dark"), background
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SHOWN)
+def test_code_is_as_wide_as_a_desk(name, address, visit):
+    page, _ = visit(f"{address}/{SHOWN[name]}")
+    assert page.evaluate(FOLDED) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SHOWN)
+def test_pictures_are_dark_on_dark_pages(name, address, visit):
+    """Plots on white have their lightness turned round by a filter."""
+    light, _ = visit(f"{address}/{SHOWN[name]}")
+    dark, _ = visit(f"{address}/{SHOWN[name]}", theme="dark")
+    filters = "[...document.querySelectorAll('article img')].map((e) => getComputedStyle(e).filter)"
+    assert set(light.evaluate(filters)) <= {"none"}
+    assert all("invert" in found for found in dark.evaluate(filters))
+
+
+@pytest.mark.slow
+def test_equations_are_typeset(address, visit):
+    """What a cell returns as LaTeX is a formula, no text."""
+    page, _ = visit(f"{address}/{SHOWN['own scene']}")
+    assert "\\begin{" not in page.inner_text("article")
+    assert page.query_selector("article .output mjx-container, article .cell_output mjx-container") is not None
+
+
+@pytest.mark.slow
+def test_types_of_public_names_are_links(address, visit):
+    page, _ = visit(f"{address}/{SHOWN['analysis']}")
+    assert page.query_selector(".classifier a[href*='fricmb.Scene.html']") is not None
+
+
+@pytest.mark.slow
+def test_benchmark_shows_one_table_and_folds_the_rest(address, visit):
+    page, _ = visit(f"{address}/{SHOWN['benchmark']}")
+    shown = "[...document.querySelectorAll('article table')].filter((e) => !e.closest('details'))"
+    assert page.evaluate(f"{shown}.length") == 2  # times, and the other packages
+    assert page.evaluate("document.querySelectorAll('article details').length") >= 6
+
+
+@pytest.mark.slow
+def test_wide_tables_scroll_on_a_phone(address, visit):
+    page, _ = visit(f"{address}/reference/errors.html", "phone")
+    wide = "[...document.querySelectorAll('article .table-wrapper')].filter((e) => e.scrollWidth > e.clientWidth + 1)"
+    assert page.evaluate(f"{wide}.length") > 0
+    assert page.evaluate(f"{wide}.every((e) => ['auto', 'scroll'].includes(getComputedStyle(e).overflowX))")
+
+
+@pytest.mark.slow
+def test_search_leaves_out_decisions(address, visit):
+    page, _ = visit(f"{address}/search.html?q=friction")
+    page.wait_for_timeout(3000)
+    links = page.eval_on_selector_all("#search-results a[href]", "all => all.map((a) => a.href)")
+    assert len(links) > 10
+    assert not [link for link in links if "/decisions/" in link]
+    landing, _ = visit(f"{address}/index.html")
+    assert not landing.eval_on_selector_all(".sidebar-tree a[href*='decisions/']", "all => all.map((a) => a.href)")
 
 
 @pytest.mark.slow

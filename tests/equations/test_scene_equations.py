@@ -234,3 +234,17 @@ def test_law_with_states_shows_their_rates():
     assert [str(state) for state in contact.states] == ["z_c_x"]
     assert contact.coefficient is None
     assert r"\frac{d}{d t} z_{c, x}" in eq.latex()
+
+
+def test_words_stay_words():
+    """A body called "mass" has the mass m_mass, no "m_ass"; a parameter called "load" is set upright, no product."""
+    mass, load = fm.Body("mass", mass=1.0), fm.parameter("load", 1.0)
+    parts = [
+        fm.Spring("k1x", mass, axis="x", stiffness=1.0), fm.Damper("cx", mass, axis="x", damping=1.0),
+        fm.Contact("sole", mass, law=fm.laws.Coulomb(mu_s=0.5), normal_force=load),
+    ]  # fmt: skip
+    latex = fm.Scene("words", [mass, *parts]).equations().latex()
+    assert r"m_{mass} \ddot{x}_{mass}" in latex
+    assert "k_{1x}" in latex
+    assert "c_{x}" in latex
+    assert r"\mathrm{load} \mu_{s, sole}" in latex
