@@ -57,7 +57,7 @@ def size_of(x: complex) -> float:
 
 @kernel
 def eliminate(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
-    """Factor a narrow band as LAPACK's ``gbtf2`` does, passing over entries that are 0."""
+    """Factor a narrow band as LAPACK's ``gbtf2`` does, passing over entries that are 0; pivots are left inverted."""
     n, half, length = int(sizes[0]), int(sizes[1]), int(sizes[3])
     for j in range(n):
         for i in range(half):
@@ -79,6 +79,7 @@ def eliminate(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
             at = diagonal + (c - j) * (length - 1)
             ab[at], ab[at + p] = ab[at + p], ab[at]
         inverse = 1.0 / ab[diagonal]
+        ab[diagonal] = inverse
         for i in range(1, below + 1):
             ab[diagonal + i] *= inverse
         for c in range(j + 1, last + 1):
@@ -104,7 +105,7 @@ def substitute(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats 
             for i in range(1, min(half, n - 1 - j) + 1):
                 b[j + i] -= ab[j * length + 2 * half + i] * x
     for j in range(n - 1, -1, -1):
-        x = b[j] / ab[j * length + 2 * half]
+        x = b[j] * ab[j * length + 2 * half]
         b[j] = x
         if x != 0.0:
             for i in range(1, min(2 * half, j) + 1):
@@ -113,7 +114,10 @@ def substitute(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats 
 
 @kernel
 def spread_of_pivots(ab: Floats, sizes: Pivots) -> float:
-    """Smallest over largest pivot magnitude of a factored matrix: a cheap sign of near singularity."""
+    """Smallest over largest pivot magnitude of a factored matrix: a cheap sign of near singularity.
+
+    (The same of inverses, which narrow bands hold.)
+    """
     length = sizes[3]
     diagonal = sizes[1] + sizes[2]
     low, high = np.inf, 0.0

@@ -168,6 +168,7 @@ def inside(st: Stages, c: Control, past: Differences) -> None:
     With s = x - 1 in steps back from the end:  y(x) = sum_j D_j s (s+1) ... (s+j-1) / j!.
     """
     k = past.order
+    st.fresh = 0
     for l in range(st.tab.c.shape[0]):
         s = st.tab.c[l] - 1.0
         i = 0

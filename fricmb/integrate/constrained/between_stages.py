@@ -46,6 +46,9 @@ def put_rates(y: State, st: Stages, h: float) -> None:
 @kernel
 def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
     """Slip velocities and loads at the stages after the last of Newton's changes."""
+    if st.fresh == 1:
+        return
+    st.fresh = 1
     for i in range(st.tab.c.shape[0]):
         move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
         forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])

@@ -252,8 +252,10 @@ def end_step(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages
     if not settle(mech, k, w, end):
         return False
     # energies: the stages' powers, integrated by the formula itself
+    known = st.fresh == 1 and k.s.ddu.shape[0] == 0
     for i in range(s):
-        stage_powers(mech, k, y, st, c, h, i)
+        stage_powers(mech, k, y, st, c, h, i, known)
+    st.fresh = 1
     for a in range(n_c + 2):
         end.work[a] = y.work[a]
         for i in range(s):
@@ -262,10 +264,11 @@ def end_step(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages
 
 
 @kernel
-def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int) -> None:
-    """Powers at stage i into ``c.power[i]``."""
+def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int, known: bool) -> None:
+    """Powers at stage i into ``c.power[i]``; ``known``: slip and loads are up to date, and forces on signals none."""
     move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
-    forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
+    if not known:
+        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i])
 
 

@@ -33,7 +33,8 @@ class Stages(Layout):
     """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, size * ldab) and pivots.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
-    convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved.
+    convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved;
+    ``fresh`` 1 where N and g are those of the values there, after the last of Newton's changes.
     """
 
     tab: Tableau
@@ -59,6 +60,7 @@ class Stages(Layout):
     found: float
     turns: Turns
     felt: Felt
+    fresh: int
 
 
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
@@ -73,7 +75,7 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
         np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
-        turns_of(problem, tab, size), felt_of(problem, s),
+        turns_of(problem, tab, size), felt_of(problem, s), 0,
     )  # fmt: skip
 
 
@@ -177,10 +179,11 @@ def newton_change(mech: Mech, st: Stages) -> None:
     size, s = mech.order.place.shape[0], tab.c.shape[0]
     for i in range(tab.lam.shape[0]):
         for a in range(size):
-            value = 0.0j
+            real = imaginary = 0.0
             for j in range(s):
-                value += tab.Tinv[i, j] * st.R[j, a]
-            st.w[i, a] = value
+                real += tab.Tinv[i, j].real * st.R[j, a]
+                imaginary += tab.Tinv[i, j].imag * st.R[j, a]
+            st.w[i, a] = complex(real, imaginary)
         solve_system(mech, st, i)
     for j in range(s):
         for a in range(size):
@@ -219,7 +222,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
     tab = st.tab
     s = tab.c.shape[0]
     last = np.inf
-    st.found = 1.0
+    st.found, st.fresh = 1.0, 0
     for iteration in range(ITERATIONS):
         for i in range(s):
             stage_residual(mech, k, y, st, h, i)
