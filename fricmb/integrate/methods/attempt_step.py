@@ -29,7 +29,7 @@ from fricmb.integrate.run.outcomes import (
     FAIL_STEP,
     REJECTED,
 )
-from fricmb.integrate.step.element_bends import bend_ahead, go_over_bend
+from fricmb.integrate.step.bends_without_joints import bend_ahead, go_over_bend
 from fricmb.integrate.step.event_functions import find_changing_contact
 from fricmb.integrate.step.exact_structure import rung_below
 from fricmb.integrate.step.knots import NOWHERE, beside_knots, knot_ahead

@@ -37,7 +37,7 @@ from fricmb.integrate.model.state import State, copy_state
 from fricmb.integrate.output.recorder import STEP, Rows, record
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_LAW, HANDOVER, REJECTED
-from fricmb.integrate.step.element_bends import bends_in_step
+from fricmb.integrate.step.bends_without_joints import bends_in_step
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.knots import bends_between
 from fricmb.integrate.step.one_step import add_to_position, newton_tolerances, state_noise
@@ -200,7 +200,7 @@ def bdf_step(
         return HANDOVER
     if packed.ports.knots.shape[0] > 0 and passes_knot(packed, s, y, end, one, acc):
         return HANDOVER
-    if packed.bends.address.shape[0] > 0 and bends_in_step(packed, s, y, end, acc):
+    if packed.bends.address.shape[0] > 0 and bends_in_step(packed, s, y, end, one, acc):
         return HANDOVER
     if end.fault > 0.0:
         return FAIL_LAW

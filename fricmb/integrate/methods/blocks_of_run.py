@@ -7,7 +7,7 @@ from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.step import band_matrix
-from fricmb.integrate.step.element_bends import bend_ahead, bends_in_step
+from fricmb.integrate.step.bends_without_joints import bend_ahead, bends_in_step
 
 #: Whatever the steps are.
 CORE = (

@@ -11,8 +11,8 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.problem import LAW_SMOOTH, STICK
+from fricmb.integrate.step.bends_without_joints import begins_at_bend
 from fricmb.integrate.step.contact_unknowns import PortState
-from fricmb.integrate.step.element_bends import begins_at_bend
 from fricmb.integrate.step.event_functions import force_noise
 from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.law_defect import law_defect
