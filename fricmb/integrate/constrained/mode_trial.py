@@ -164,7 +164,7 @@ def largest_acceleration(mech: Mech, k: Moving, w: Instant, y: State) -> float:
     would make everything else look like round-off.
     """
     row = mech.port.row
-    value = max(1e-290, np.sqrt(most_light(mech, k, y)) * weighed(mech, y.a))
+    value = max(1e-290, float(np.sqrt(most_light(mech, k, y)) * weighed(mech, y.a)))
     for a in range(y.ga.shape[0]):
         value = max(value, abs(y.ga[a]))
     there = value
@@ -177,4 +177,4 @@ def largest_acceleration(mech: Mech, k: Moving, w: Instant, y: State) -> float:
                 if k.answer[a] >= 0.0:
                     could = min(could, abs(y.F[a]) * k.answer[a])
             value = max(value, could)
-    return value
+    return float(value)
