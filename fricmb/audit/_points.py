@@ -19,6 +19,8 @@ from fricmb.integrate.trajectory import Samples
 _PER_STEP, _IN_ALL = 8, 40_000
 #: Where sticking friction peaks above this share of its limit, it is looked at more closely.
 _NEAR, _CLOSER, _PEAKS = 0.5, 8, 200
+#: Steps no longer than this part of the time hold nothing but the way over a jump.
+_CARRIED = 5e-10
 
 
 def row_unit(row: Row, unit: Floats, shape: tuple[int, ...]) -> Floats:
@@ -138,7 +140,9 @@ class Points:
         for k, law in hard.items():
             self._cone(k, law, rows)
         h = np.diff(rows.t)
-        steps = np.flatnonzero((h > 0.0) & (rows.mode[list(hard)] == STICK).any(axis=0)[:-1])
+        # where forces jump a state is carried over the place in the modes that it had, by some roundings of the time
+        real = h > _CARRIED * np.abs(rows.t[1:])
+        steps = np.flatnonzero(real & (rows.mode[list(hard)] == STICK).any(axis=0)[:-1])
         room = max(int(_IN_ALL // max(1, len(s.names.contacts))), 200)
         if steps.size > room:
             steps = steps[:: -(-steps.size // room)]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import sympy
+from scipy.integrate import solve_ivp
 
 import fricmb as fm
 
@@ -79,3 +80,61 @@ def test_two_blocks_that_are_let_go_at_once_do_what_one_does(law, heavier):
     kinds = [e.kind for e in one.events]
     assert [[e.kind for e in two.events.of(contact=f"c{i}")] for i in (0, 1)] == [kinds, kinds]
     assert two.audit().ok
+
+
+GAP, STIFF, VISCOUS, DRY = 0.05, 2000.0, 1.0, 0.3
+
+
+def backlash(t_end):
+    """Motor and load with play, by solve_ivp from touch to touch: positions, and transitions of the dry load."""
+    t, y, s, side, told = 0.0, np.zeros(4), 0, 0, []
+
+    def mesh(z, side):
+        return (STIFF * (z[0] - z[1] - side * GAP) + VISCOUS * (z[2] - z[3])) if side else 0.0
+
+    while t < t_end - 1e-13:
+
+        def rate(u, z, s=s, side=side):
+            F = mesh(z, side)
+            return [z[2], 0.0 if s == 0 else z[3], (np.sin(2 * np.pi * u) - F) / 0.01, s and (F - DRY * s) / 0.05]
+
+        def touch(u, z, side=side):
+            return side * (z[0] - z[1]) - GAP if side else abs(z[0] - z[1]) - GAP
+
+        def turn(u, z, s=s, side=side):
+            return DRY - abs(mesh(z, side)) if s == 0 else z[3] * s
+
+        touch.terminal, turn.terminal, touch.direction, turn.direction = True, True, -1 if side else 1, -1
+        o = solve_ivp(rate, (t, t_end), y, method="DOP853", rtol=1e-12, atol=1e-14, events=[touch, turn], max_step=0.01)
+        t, y = o.t[-1], o.y[:, -1].copy()
+        if len(o.t_events[0]):
+            was, side = side, 0 if side else int(np.sign(y[0] - y[1]))
+            y[0] = y[1] + (was or side) * GAP * (1 + (1e-12 if side else -1e-12))
+            if s == 0 and abs(mesh(y, side)) > DRY:
+                s = int(np.sign(mesh(y, side)))
+                told.append("slip")
+        elif len(o.t_events[1]):
+            F, before = mesh(y, side), s
+            y[3], s = 0.0, int(np.sign(F)) if abs(F) > DRY or before == 0 else 0
+            told.append("slip" if before == 0 else "reversal" if s else "stick")
+    return y[:2], told
+
+
+@pytest.mark.parametrize(("method", "rtol"), [("auto", 1e-5), ("auto", 1e-6), ("bdf", 1e-8), ("auto", 1e-9)])
+def test_play_whose_damping_sets_in_at_once(method, rtol):
+    """The force of the mesh jumps as it touches, and lets go of a load that rests; functions that say where differ."""
+    motor, load = fm.Body("m", mass=0.01), fm.Body("l", mass=0.05)
+    apart = fm.coordinate("m.x") - fm.coordinate("l.x")
+    rate = fm.speed("m.x") - fm.speed("l.x")
+    spring = STIFF * (sympy.Max(apart - GAP, 0) - sympy.Max(-apart - GAP, 0))
+    F = spring + VISCOUS * rate * sympy.Piecewise((1, sympy.Abs(apart) > GAP), (0, True))
+    scene = fm.Scene("play", [
+        motor, load, fm.Force("motor", motor, axis="x", value=sympy.sin(2 * sympy.pi * fm.t)),
+        fm.Force("to_motor", motor, axis="x", value=-F), fm.Force("to_load", load, axis="x", value=F),
+        fm.Contact("dry", load, law=fm.laws.Coulomb(mu_s=DRY), normal_force=1.0),
+    ])  # fmt: skip
+    exact, told = backlash(3.0)
+    sol = fm.simulate(scene, t_end=3.0, rtol=rtol, method=method, time_limit=60)
+    np.testing.assert_allclose([sol["m.x"][-1], sol["l.x"][-1]], exact, atol=4.0 * rtol + 1e-8)
+    assert [e.kind for e in sol.events] == told
+    assert sol.audit().ok, sol.audit()

@@ -231,8 +231,14 @@ def end_round_off(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, ou
 
     Of contacts that come to rest together, such as two points of a pad, one is left slipping a little.  Its speed is a
     few roundings of the velocities of the bodies: too small for a step to end it, and more than the round-off of one
-    velocity.  Or it would come to rest within a time that is nothing beside the step.
+    velocity.  Or it would come to rest within a time that is nothing beside the step.  Or forces jump there, and what
+    rests lets go behind the jump alone.
     """
+    if packed.bends.address.shape[0] > 0 and clock.at_once <= PATIENCE and go_over_bend(packed, s, y):
+        clock.at_once += 1
+        clock.h = clock.usual
+        clock.growth = np.inf
+        return settled(transition(packed, s, y, -1, False, r, old, out))
     kept = r.small.copy()
     found = False
     for k in range(y.mode.shape[0]):

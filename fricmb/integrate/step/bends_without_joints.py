@@ -83,7 +83,10 @@ def before_bend(
 
 @kernel
 def go_over_bend(packed: Packed, s: Scratch, y: State) -> bool:
-    """Carry y over the bend that it has come to, by a few roundings of the time; False where there is none at once."""
+    """Carry y over the bend that it has come to, by a few roundings of the time; False where there is none at once.
+
+    As far again as to the first function that changes its sign: several may do so there, each by its own round-off.
+    """
     count, n = packed.bend_start[packed.bend_start.shape[0] - 1], y.q.shape[0]
     before, behind, q, v = np.empty(count), np.empty(count), y.q.copy(), y.v.copy()
     set_instant(packed.signals, s, y.t, y.q, y.v)
@@ -98,7 +101,10 @@ def go_over_bend(packed: Packed, s: Scratch, y: State) -> bool:
         put_signs(packed.bends, packed.bend_start, s, behind)
         for b in range(count):
             if (before[b] < 0.0) != (behind[b] < 0.0):
-                y.q[:], y.v[:] = q, v
+                way *= 2.0
+                for i in range(n):
+                    y.q[i] += way * y.v[i]
+                    y.v[i] += way * y.a[i]
                 y.t += way
                 return True
     return False
