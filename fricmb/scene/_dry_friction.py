@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,16 +10,17 @@ from fricmb.laws import Coulomb, FrictionLaw
 from fricmb.scene._axes import Direction, check_axis, is_direction_tuple
 from fricmb.scene._contact import Contact
 from fricmb.scene._joint import Joint
-from fricmb.scene._joints import Prismatic, Revolute
+from fricmb.scene._joints import Revolute
 from fricmb.scene._part import GROUND, End, Part
-from fricmb.scene._rigid import RigidBody
 from fricmb.scene._turning import relative_angle
 from fricmb.values import is_list, value_of
 
 #: The word for the relative angle of two bodies that turn in the plane.
 ANGLE = "angle"
 #: What an axis may be.
-_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute or Prismatic of the plane"
+_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute of the plane"
+#: What is said of other joints: the angle of a guide is a number of its own, which a copy of it would not follow.
+ONLY_PINS = "a Revolute of the plane; along a guide that does not turn give the direction, (cos, sin) of its angle"
 
 
 def law_of_limits(part: Part, static: Any, kinetic: Any, law: FrictionLaw | None) -> FrictionLaw:
@@ -69,9 +69,9 @@ class DryFriction(Contact):
         Unique in a scene, without dots.
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
-    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+    axis : "x", "y", "z", "angle", tuple of float, or Revolute
         Coordinate of a less that of b: along a letter or a direction tuple; "angle" of bodies that turn in the plane.
-        A joint stands for the angle of its bodies, or for its guide where the body that holds the guide does not turn.
+        A pin stands for the angle of its bodies.
     static : float, Parameter or expression of parameters
         Force (torque) that breaks away, >= 0.
     kinetic : float, Parameter or expression of parameters, optional
@@ -174,11 +174,7 @@ class DryFriction(Contact):
         _, other = joint_ends(self, a, b, joint)
         if isinstance(joint, Revolute):
             return other, ANGLE
-        if isinstance(joint, Prismatic) and not isinstance(joint.b.owner, RigidBody):
-            angle = value_of(joint.angle)
-            return other, (math.cos(angle), math.sin(angle))
-        accepted = "a Revolute, or a Prismatic whose guide does not turn (b is no RigidBody); in space take"
-        self._refuse("axis", joint.name, f"{accepted} fm.space.DryFriction")
+        self._refuse("axis", joint.name, ONLY_PINS)
 
     # -- what a contact asks ------------------------------------------------------------------------------------
     def _checked_axes(self) -> tuple[Any, ...]:

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
 from fricmb.scene._axes import check_axis, check_ends, direction
-from fricmb.scene._dry_friction import ANGLE, joint_ends
+from fricmb.scene._dry_friction import ANGLE, ONLY_PINS, joint_ends
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joint import Joint
-from fricmb.scene._joints import Prismatic, Revolute
+from fricmb.scene._joints import Revolute
 from fricmb.scene._part import GROUND, End
-from fricmb.scene._rigid import RigidBody, angle_of
+from fricmb.scene._rigid import angle_of
 from fricmb.scene._turning import relative_angle
 from fricmb.values import is_list, value_of
 
 #: What an axis may be.
-_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute or Prismatic of the plane"
+_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute of the plane"
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,14 +58,9 @@ class _Touching(Element):
         """Ends and axis that a joint stands for."""
         _, other = joint_ends(self, self.a, self.b, joint)
         self._set("b", other)
-        if isinstance(joint, Revolute):
-            self._set("axis", ANGLE)
-        elif isinstance(joint, Prismatic) and not isinstance(joint.b.owner, RigidBody):
-            angle = value_of(joint.angle)
-            self._set("axis", (math.cos(angle), math.sin(angle)))
-        else:
-            accepted = "a Revolute, or a Prismatic of the plane whose guide does not turn (b is no RigidBody)"
-            self._refuse("axis", joint.name, accepted)
+        if not isinstance(joint, Revolute):
+            self._refuse("axis", joint.name, ONLY_PINS)
+        self._set("axis", ANGLE)
 
     def _check_axis(self) -> None:
         if self.axis is None:
@@ -136,7 +130,7 @@ class Stop(_Touching):
         Unique in a scene, without dots.
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
-    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+    axis : "x", "y", "z", "angle", tuple of float, or Revolute
         The coordinate x, of a less that of b, as in :class:`DryFriction`.
     lower, upper : float, optional
         Its limits, one of them or both, lower < upper.
@@ -202,7 +196,7 @@ class Backlash(_Touching):
         Unique in a scene, without dots.
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
-    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+    axis : "x", "y", "z", "angle", tuple of float, or Revolute
         The coordinate, of a less that of b, as in :class:`DryFriction`.
     ratio : float, optional
         In place of ``axis``, of two wheels in mesh: the coordinate is ``angle of a + ratio (angle of b)``, as of a

@@ -49,10 +49,7 @@ def test_a_joint_stands_for_its_coordinate():
     for first, sign in ((ARM, 1.0), (OTHER, -1.0)):
         (turn,) = fm.DryFriction("dry", first, axis=pin, static=1.0).directions()
         assert dict(turn.form.terms) == {"arm.angle": sign, "other.angle": -sign}
-    guide = fm.Prismatic("guide", ARM, angle=0.3)
-    (along,) = fm.DryFriction("dry", ARM, axis=guide, static=1.0).directions()
-    assert dict(along.form.terms) == pytest.approx({"arm.x": math.cos(0.3), "arm.y": math.sin(0.3)})
-    refused("whose guide does not turn", ARM, axis=fm.Prismatic("guide", ARM, OTHER), static=1.0)
+    refused("axis must be a Revolute of the plane; along a guide", ARM, axis=fm.Prismatic("g", ARM), static=1.0)
     refused("a must be of a body that the joint 'pin' ties: 'arm' or 'other'", BLOCK, axis=pin, static=1.0)
     refused("b must be left out, or the other end of the joint, 'other'", ARM, BLOCK, axis=pin, static=1.0)
 
