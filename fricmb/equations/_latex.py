@@ -21,5 +21,5 @@ def typeset(expression: Any) -> str:
 
 def _symbols(expression: Any) -> set[Any]:
     """Symbols whose names SymPy would set as a product of letters: "load"; Greek letters and marks have a command."""
-    free = getattr(expression, "free_symbols", set())
+    free: set[Any] = getattr(expression, "free_symbols", set())
     return {symbol for symbol in free if "\\" not in sympy.latex(symbol)}
