@@ -18,6 +18,8 @@ from fricmb.integrate.run.slices import slice_over
 NEVER, AGAIN, NO_END = -1.0, -2.0, -3.0
 #: Looks of one search.
 MOST_LOOKS = 1e8
+#: Looks after which it is asked whether the force can get there at all.
+OFTEN = 256.0
 
 
 @kernel
@@ -58,6 +60,37 @@ def stuck_force(run: Run, t: float, b: int, horizon: float) -> float:
     for a in range(m):
         bound += run.out[2, a] * run.out[2, a]
     return math.sqrt(bound)
+
+
+@kernel
+def never_leaves(run: Run, t: float, left: float) -> bool:
+    """Whether the force, ``out[0]`` at t as of :func:`stuck_force`, stays within the cone for ``left`` from t on.
+
+    Free vibration that loses energy or keeps it never swings further than it does now, and constant loads leave its
+    middle where it is.  What rises in proportion to time may do so for as long as the run goes on.
+    """
+    m = run.belt.shape[0]
+    total = 0.0
+    for a in range(m):
+        middle, reach = run.out[0, a], abs(run.free[a, 1]) * left
+        for j in range(run.stuck_blocks):
+            w2, damp = run.w2[1, j], run.damp[1, j]
+            x0, x1, _ = fundamental(w2, damp, t)
+            velocity = run.v[j] + run.a[j] * x0 + run.k[j] * x1
+            acceleration = run.a[j] * (1.0 - damp * x0 - w2 * x1) + run.k[j] * x0
+            if w2 <= 0.0 or damp < 0.0:
+                if run.v[j] != 0.0 or run.a[j] != 0.0 or run.k[j] != 0.0:
+                    return False
+                continue
+            rise = run.k[j] + w2 * run.v[j] + damp * run.a[j]
+            if abs(rise) > 1e-13 * (abs(w2 * run.v[j]) + abs(damp * run.a[j])):
+                return False  # its load changes
+            x = -(acceleration + damp * velocity) / w2
+            size = math.sqrt(x * x + velocity * velocity / w2)
+            middle -= run.hold_u[a, j] * x + run.hold_v[a, j] * velocity
+            reach += (abs(run.hold_u[a, j]) + abs(run.hold_v[a, j]) * math.sqrt(w2)) * size
+        total += (abs(middle) + reach) ** 2
+    return bool(math.sqrt(total) < run.mu_s_N * (1.0 - 1e-9))
 
 
 @kernel
@@ -103,6 +136,8 @@ def release_time(run: Run, longest: float, begun: int) -> float:
     while run.looks < MOST_LOOKS:
         run.looks += 1.0
         bound = stuck_force(run, t, b, cap)
+        if run.looks % OFTEN == 1.0 and never_leaves(run, t, longest - t):
+            return NEVER
         F = 0.0
         FdF = 0.0
         dF = 0.0
