@@ -95,3 +95,17 @@ def test_a_law_that_turns_between_two_stages_beside_an_idle_body(name):
         for rtol in (1e-4, 1e-6, 1e-8):
             sol = fm.simulate(scene, t_end=12.0, rtol=rtol, method="radau")
             assert np.abs(sol.at(times)["mass.x"] - want).max() < 5.0 * rtol * np.abs(want).max()
+
+
+@pytest.mark.parametrize("name", ["Karnopp", "Iwan", "Gonthier", "Dahl"])
+def test_states_that_move_nothing_cost_no_steps_beside_an_idle_body(name):
+    """Newton's method solves for states, too: what it left of one that fades kept steps at the rate of its fading."""
+    parts = models.belt_oscillator(law=getattr(fm.laws, name).example()).parts
+    beside = fm.Scene("beside", [*parts, fm.RigidBody("idle", mass=1.0, inertia=1.0)])
+    alone, other = (
+        fm.simulate(scene, t_end=12.0, rtol=1e-6, method="radau") for scene in (fm.Scene("alone", parts), beside)
+    )
+    assert other.stats.n_steps < 2 * alone.stats.n_steps
+    times = np.linspace(0.1, 12.0, 60)
+    apart = np.abs(alone.at(times)["mass.x"] - other.at(times)["mass.x"]).max()
+    assert apart < 2e-6 * np.abs(alone.at(times)["mass.x"]).max()

@@ -20,7 +20,7 @@ from fricmb.integrate.constrained.event_functions import has_come_to_rest, viola
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, settle, state_noise
+from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, measure_states, settle, state_noise
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import may_have_passed, near_singular, way_left
 from fricmb.integrate.constrained.slip_rows import keep_held
@@ -88,6 +88,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
         base.z[i] = past.new[2 * n + i]
     base.t = y.t + h - beta_h
     measure(mech, c, y, h, one.scale)
+    measure_states(c, y, h, one)
     accuracy = max(NEWTON * share_of(c, past), 1e-13)
     for _ in range(2):
         copy_state(y, end)

@@ -97,6 +97,13 @@ def measure(mech: Mech, c: Control, y: State, h: float, scale: Floats) -> None:
 
 
 @kernel
+def measure_states(c: Control, y: State, h: float, st: Stages) -> None:
+    """What counts as 1 in states of laws, into ``st.felt.size``: Newton solves for one that moves nothing, too."""
+    for a in range(y.z.shape[0]):
+        st.felt.size[a] = max(c.z[a], abs(y.z[a]) + h * abs(y.zd[a]), c.noise_z[a], 1e-290)
+
+
+@kernel
 def state_noise(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, part: float) -> None:
     """Sizes of internal states that are noise: ``part`` of what the slip of a step would bring them by.
 
@@ -172,6 +179,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
         c.made = h
         prepare_turns(mech, st)
     measure(mech, c, y, h, st.scale)
+    measure_states(c, y, h, st)
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])

@@ -218,7 +218,10 @@ def is_noise(mech: Mech, st: Stages) -> bool:
 
 @block
 def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> int:
-    """Newton from the values in ``st`` until a change of velocities is below ``accuracy`` scales; iterations or 0."""
+    """Newton from the values in ``st`` until changes of velocities and states are below ``accuracy`` of their sizes.
+
+    Returns the number of iterations, or 0 where they do not converge.
+    """
     tab = st.tab
     s = tab.c.shape[0]
     last = np.inf
@@ -237,6 +240,8 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
                 sound += 0.0 * st.R[i, a]
             for a in range(st.scale.shape[0]):
                 change = max(change, abs(st.R[i, a]) / st.scale[a])
+            for a in range(st.z.shape[1]):
+                change = max(change, abs(st.R[i, st.R.shape[1] - st.z.shape[1] + a]) / st.felt.size[a])
             at = 0
             for part in (st.V, st.lam, st.F, st.z):
                 for a in range(part.shape[1]):
