@@ -195,6 +195,8 @@ def newton_change(mech: Mech, st: Stages) -> None:
 
 #: Newton's iterations in a step before it is given up.
 ITERATIONS = 12
+#: Part by which a change of a state counts beside one of a velocity: most iterations more are for states alone.
+STATES = 0.1
 #: Round-off of velocities in a Newton change, beside what the kinetic energy at the stages could bring.
 NOISE = 1e-15
 
@@ -241,7 +243,8 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
             for a in range(st.scale.shape[0]):
                 change = max(change, abs(st.R[i, a]) / st.scale[a])
             for a in range(st.z.shape[1]):
-                change = max(change, abs(st.R[i, st.R.shape[1] - st.z.shape[1] + a]) / st.felt.size[a])
+                off = abs(st.R[i, st.R.shape[1] - st.z.shape[1] + a])
+                change = max(change, STATES * off / st.felt.size[a])
             at = 0
             for part in (st.V, st.lam, st.F, st.z):
                 for a in range(part.shape[1]):
