@@ -11,7 +11,7 @@ import sympy
 
 from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
-from fricmb.equations._inputs import series_in, time_inputs
+from fricmb.equations._inputs import series_in, time_inputs, whole_tape
 from fricmb.equations._split import affine, split
 from fricmb.integrate.signals.pieces import LOWEST
 from fricmb.signal._symbols import Series
@@ -84,6 +84,8 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
     uniform = bool(outputs[2] == 0)
     facts = {"closed": closed, "switches": switches(value, t, parameters), "uniform": uniform, "inputs": inputs}
     facts["series"] = series
+    if given == "force":
+        facts["whole"] = whole_tape(value, t, parameters)
     return facts, _code.kernel([t], [*parameters, offset], outputs, title)
 
 

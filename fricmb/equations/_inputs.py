@@ -53,6 +53,16 @@ def series_in(value: Any, t: Any, parameters: Sequence[Any], rates: int = 0) -> 
     return found
 
 
+def whole_tape(value: Any, t: Any, parameters: Sequence[Any]) -> list[list[Any]] | None:
+    """The tape of an expression of time; None where it has an operation without bounds."""
+    tape = _Tape(t, parameters)
+    try:
+        tape.of(_explicit(value))
+    except _Unbounded:
+        return None
+    return tape.entries
+
+
 def _explicit(part: Any) -> Any:
     """With functions that tapes do not have written by those that they have."""
     part = part.replace(sympy.tan, lambda u: sympy.sin(u) / sympy.cos(u))

@@ -165,7 +165,8 @@ class Signals:
     A signal of a driven body is its position, velocity and acceleration; of a time-dependent force the force as u; of a
     ``slide`` the slide velocity as u' (its u is unused).  ``breakpoints`` are stepped to exactly; integrators evaluate
     on the inner side of the interval between two of them.  ``uniform`` (n_u,): 1 where a signal is known to be linear
-    in time (empty: nothing is known).  ``kinks``: times at which functions of time are continuous and bend, to which
+    in time (empty: nothing is known).  ``forces``: of each signal that is a force the whole function, for bounds (None
+    where there are none).  ``kinks``: times at which functions of time are continuous and bend, to which
     steps go without anything else that is done at a breakpoint.  ``inputs``: all functions of time, those in normal
     forces and elements as well.
     """
@@ -174,6 +175,7 @@ class Signals:
     breakpoints: Floats = field(default_factory=lambda: _f(0))
     uniform: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     inputs: tuple[Input, ...] = ()
+    forces: tuple[Input | None, ...] = ()
     kinks: Floats = field(default_factory=lambda: _f(0))
 
 

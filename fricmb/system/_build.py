@@ -20,7 +20,7 @@ from fricmb.system._bends import bends_of
 from fricmb.system._breakpoints import switches_of
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._gravity import add_gravity
-from fricmb.system._inputs import inputs_of
+from fricmb.system._inputs import forces_of, inputs_of
 from fricmb.system._leaps import leaps_of
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
@@ -159,7 +159,10 @@ def _problem(
     table = signals.table.build(n, n_u)
     problem = Problem(
         linear=linear,
-        signals=SignalArrays(table=table, breakpoints=breakpoints, uniform=signals.uniform(), inputs=inputs),
+        signals=SignalArrays(
+            table=table, breakpoints=breakpoints, uniform=signals.uniform(), inputs=inputs,
+            forces=forces_of([(s.template, s.parameters[:-1]) for s in signals.held]),
+        ),
         contacts=contact_arrays,
         elements=elements,
         bends=bends_of((*structure.bends, *contacts.bends), n, n_u),

@@ -23,3 +23,15 @@ def inputs_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Inpu
             )
             found[given] = None
     return tuple(found)
+
+
+def forces_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Input | None, ...]:
+    """Of each signal that is a force the whole function, where it has bounds."""
+    found: list[Input | None] = []
+    for template, parameters in timed:
+        tape = template.facts.get("whole")
+        entries = None if tape is None else tuple(map(tuple, tape))
+        tables = tuple(table_at(parameters[fact["table"]]) for fact in template.facts.get("series", ()))
+        given = Input(tape=entries, parameters=tuple(parameters), tables=tables)
+        found.append(None if tape is None else given)
+    return tuple(found)

@@ -117,7 +117,7 @@ class Table:
     @property
     def degree(self) -> int:
         """Of the pieces."""
-        return self.given.shape[1] - 1
+        return int(self.given.shape[1]) - 1
 
     def ranges(self, low: Floats, high: Floats, order: int) -> tuple[Floats, Floats]:
         """Bounds of a derivative on intervals of time (k,)."""

@@ -21,6 +21,7 @@ from fricmb.integrate.taylor.layout import GOES_ON
 from fricmb.integrate.taylor.network import OF_RUN, Net
 from fricmb.integrate.taylor.prepare import net_lent, no_samples, refusal
 from fricmb.integrate.taylor.prepare_groups import has_planar
+from fricmb.integrate.taylor.quiet import quiet_of
 from fricmb.integrate.taylor.starting_modes import settle_start
 from fricmb.integrate.taylor.step_loop import (
     CREEPS,
@@ -128,7 +129,11 @@ def set_start(
     breaks = np.concatenate([problem.signals.breakpoints, problem.signals.kinks])
     inside = np.unique(breaks[(breaks > start.t) & (breaks < t_end)])
     limits = steps_of_run(problem, start.t, t_end, tolerance)
-    net = with_arrays(net, stops=np.append(inside, t_end), edge=limits.edge, within=limits.longest)
+    ends, least, most, gain = quiet_of(problem, start.t, t_end)
+    net = with_arrays(
+        net, stops=np.append(inside, t_end), edge=limits.edge, within=limits.longest, quiet_edge=ends,
+        quiet_least=least, quiet_most=most, quiet_gain=gain,
+    )  # fmt: skip
     span = t_end - start.t
     w = fastest(problem)
     degree = net.Q.shape[0] - 1

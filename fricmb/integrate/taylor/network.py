@@ -51,7 +51,7 @@ class Net(Layout):
     Corrections: ``local``, ``grown``, ``kind`` (cap,), ``place`` (n,), ``dQ``, ``dR``, ``old`` (3, P+3).
     Kept: ``events`` (e, 3); ``steps`` (s, 2) start and length; ``times`` (n_t,), ``left``: whether the left-hand value
     is wanted, ``out_...``: what was found there; ``stops``: breakpoints and the end; ``edge``,
-    ``within``: how long inputs let steps be.
+    ``within``: how long inputs let steps be; ``quiet_...``: see ``quiet``; ``leaps_to``: the end of a step at rest.
     ``groups``: what contacts need that are not plain.
     """
 
@@ -117,6 +117,7 @@ class Net(Layout):
     reached: float
     crept: float
     made: float
+    leaps_to: float
     n_steps: int
     n_shorter: int
     n_events: int
@@ -161,6 +162,11 @@ class Net(Layout):
     stops: Floats
     edge: Floats
     within: Floats
+    quiet_edge: Floats
+    quiet_least: Floats2
+    quiet_most: Floats2
+    quiet_gain: Floats2
+    quiet_work: Floats
     groups: Groups
 
 

@@ -185,6 +185,7 @@ def _work_pattern(n: int, m: int, n_u: int, P: int, widest: int) -> Pattern:
         **dict.fromkeys(("sigma", "loss", "mark", "slack", "due", "since"), (m,)), "heap_t": heap, "flat": (3, n),
         "dQ": (P + 2, widest), "dR": (P + 1, widest), "old": (3, P + 3), "events": (max(64, 4 * m), 3),
         "steps": (256, 2), "stops": (1,), "edge": (2,), "within": (1,),
+        "quiet_edge": (1,), "quiet_least": (0, 0), "quiet_most": (0, 0), "quiet_gain": (0, 0), "quiet_work": (m,),
     }  # fmt: skip
     return Pattern(Net, floats, {"heap_c": heap, "local": (widest,), "place": (n,)})
 

@@ -141,6 +141,8 @@ def finish_step(net: Net) -> int:
     net.n_steps = at + 1
     stop = net.stops[net.n_stop]
     t = net.time + h
+    if net.leaps_to > 0.0:  # the same time wherever the leap began
+        t, net.leaps_to = net.leaps_to, 0.0
     if t >= stop - 8.0 * EPS * abs(stop):
         t = stop
         net.n_stop += 1

@@ -13,6 +13,7 @@ from fricmb.integrate.taylor.landing import land_all, take_off
 from fricmb.integrate.taylor.layout import EPS, WORK
 from fricmb.integrate.taylor.network import Net, has_planes
 from fricmb.integrate.taylor.polynomials import rescale
+from fricmb.integrate.taylor.quiet import leap
 from fricmb.integrate.taylor.signals import ROUNDING, signal_series
 
 #: Errors in units of the tolerance from which on, and parts of the step down to which, its polynomials say nothing.
@@ -99,6 +100,8 @@ def choose_step(net: Net) -> bool:
                 rescale(net, idle / h)
                 net.step = idle
                 return False
+        if net.quiet_edge.shape[0] > 1 and leap(net, h, left):
+            return False
         error = tail_error(net, h)
         if error < BEYOND and net.allowed > BRIEF:
             break

@@ -24,9 +24,12 @@ NUMBERS, ROWS = 3_000_000, 20_000_000
 GRAIN = 1e-14
 #: Steps at a time on the way to samples.
 STRIDE = 16
-#: Arrays of the state.
+#: Steps that one of the times asked for may cost where a run leaps over rest.
+ASKED = 10
+#: Arrays that a run has once, which the first of the states keeps; those of each.
+ONCE = ("stops", "edge", "within", "quiet_edge", "quiet_least", "quiet_most", "quiet_gain")
 STATE = (
-    "q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "window", "stops", "edge", "within",
+    "q", "v", "top", "mode", "sigma", "loss", "mark", "since", "large", "free", "window",
 )  # fmt: skip
 
 
@@ -40,7 +43,8 @@ class Checkpoints:
 
     def add(self, net: Net) -> None:
         """Keep the present state."""
-        state = {name: getattr(net, name).copy() for name in STATE}
+        names = STATE if self.held else (*STATE, *ONCE)
+        state = {name: getattr(net, name).copy() for name in names}
         self.held.append({**state, "t": net.time, "numbers": numbers_of(net)})
         if len(self.held) > self._most:
             del self.held[1::2]
@@ -141,14 +145,14 @@ class TaylorRun(Trajectory):
                 return samples_of(problem, with_arrays(lent, **no_samples(problem.n, problem.m)), slice(0, 0))
             state = self._state_before(float(t[0]))
             for name in STATE:
-                if name not in ("stops", "edge", "within"):
-                    getattr(lent, name)[:] = state[name]
+                getattr(lent, name)[:] = state[name]
             put_numbers(lent, state["numbers"])
             last = len(self.transitions.t)
             net = with_arrays(
-                lent, stops=state["stops"], edge=state["edge"], within=state["within"],
+                lent, **{name: self._marks[0][name] for name in ONCE},
                 events=np.zeros((last + problem.m + 1, 3)),
-                steps=np.zeros((2 * len(self._steps) + STRIDE, 2)),  # pauses at marks may end steps, too
+                # pauses at marks may end steps, too, and each of the times a leap at rest
+                steps=np.zeros((2 * len(self._steps) + ASKED * len(t) + STRIDE, 2)),
                 **{**no_samples(problem.n, problem.m, len(t)), "times": np.ascontiguousarray(t), "left": left},
             )  # fmt: skip
             net.n_samples = 0
