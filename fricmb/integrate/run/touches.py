@@ -112,6 +112,8 @@ def is_continuous(contacts: Contacts) -> NDArray[np.bool_]:
 
 def without_touches(trajectory: Trajectory, row: Ints, continuous: NDArray[np.bool_], rtol: float) -> Trajectory:
     """The run, or the same without its touches where it has some; ``row``: of its contacts among rows of slip."""
+    if not continuous.any():
+        return trajectory
     found = [
         touch
         for c in np.unique(trajectory.transitions.contact).tolist()

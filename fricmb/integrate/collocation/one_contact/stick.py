@@ -18,8 +18,8 @@ from fricmb.integrate.run.slices import slice_over
 NEVER, AGAIN, NO_END = -1.0, -2.0, -3.0
 #: Looks of one search.
 MOST_LOOKS = 1e8
-#: Looks after which it is asked whether the force can get there at all.
-OFTEN = 256.0
+#: Looks after which it is asked whether the force can get there at all: again and again, and the first time.
+OFTEN, FIRST = 256.0, 32.0
 
 
 @kernel
@@ -136,7 +136,7 @@ def release_time(run: Run, longest: float, begun: int) -> float:
     while run.looks < MOST_LOOKS:
         run.looks += 1.0
         bound = stuck_force(run, t, b, cap)
-        if run.looks % OFTEN == 1.0 and never_leaves(run, t, longest - t):
+        if run.looks % OFTEN == FIRST and never_leaves(run, t, longest - t):
             return NEVER
         F = 0.0
         FdF = 0.0
