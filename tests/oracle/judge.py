@@ -105,8 +105,11 @@ class Worker:
             self.process.start()
         self.pipe.send(arguments)
         before = self.spent()
-        while not self.pipe.poll(0.2) and self.spent() - before < self.limit:
+        while not self.pipe.poll(0.2) and self.spent() - before < self.limit and self.process.is_alive():
             pass
+        if not self.process.is_alive() and not self.pipe.poll(0.0):
+            self.stop()
+            return Outcome("crashed", "the process died")
         if self.pipe.poll(0.0):
             try:
                 outcome = self.pipe.recv()
