@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 WITHIN = 16
 #: Halvings of such a place.
 HALVINGS = 60
+#: Errors of speeds over ``rtol`` times the greatest one, up to which a force of 0 is no parting.
+ERRORS = 10.0
+#: In place of ``rtol`` for runs of fixed steps.
+FIXED = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,31 +58,69 @@ def touches(sol: Solution, name: str) -> Touches:
     t = np.append(t, steps[-1])
     found: list[tuple[float, float, str]] = []
     for i, side in enumerate(sides):
-        pushes = _pushes(sol, part, i)
-        found += [(begin, end, side) for begin, end in _spans(pushes, t)]
+        found += [(begin, end, side) for begin, end in _Limit(sol, part, i).touches(t)]
     found.sort()
     begin, end = (np.array([span[i] for span in found], dtype=float) for i in (0, 1))
     return Touches(begin=begin, end=end, side=[span[2] for span in found])
 
 
-def _pushes(sol: Solution, part: Any, i: int) -> Callable[[Floats], Floats]:
-    """A function of times (n_t,) that is above 0 where limit ``i`` of those there are is pressed and pushes."""
-    own = part.numeric()
-    ratio = getattr(own, "ratio", None)
+@dataclass(frozen=True)
+class _Limit:
+    """One limit of a part, over times (n_t,): where it is pressed, pushes, and where errors alone feign that it parts.
 
-    def of(t: Floats) -> Floats:
-        seen = sol.at(t)
-        x, rate = (from_scene(seen, quantity, part.name) for quantity in ("elongation", "rate"))
+    A great loss brings the speed of parting to where the force is 0, and there it stays to round-off until the spring
+    is free: the sign of the computed force is that of an error.
+    """
+
+    sol: Solution
+    part: Any
+    i: int
+
+    def terms(self, t: Floats) -> tuple[Floats, Floats, Floats]:
+        """Depth, the force of parting over speed and stiffness, and the rate of the depth."""
+        own = self.part.numeric()
+        ratio = getattr(own, "ratio", None)
+        seen = self.sol.at(t)
+        x, rate = (from_scene(seen, quantity, self.part.name) for quantity in ("elongation", "rate"))
         if ratio is not None:
             x, rate = (rows[0] + ratio * rows[1] for rows in (x, rate))
         else:
             x, rate = x[0], rate[0]
-        depth, speed = own.depths(x, rate)[i]
+        depth, speed = own.depths(x, rate)[self.i]
         share = np.clip(depth / own.damping_depth, 0.0, 1.0) if own.damping_depth is not None else 0.0 * depth
         grip = own.stiffness * depth * own.hunt_crossley + own.damping * share**2 * (3.0 - 2.0 * share)
-        return np.asarray(np.minimum(depth, depth + grip * speed / own.stiffness))
+        return depth, grip / own.stiffness, speed
 
-    return of
+    def depth(self, t: Floats) -> Floats:
+        """How far the spring is pressed."""
+        return self.terms(t)[0]
+
+    def pushes(self, t: Floats) -> Floats:
+        """Above 0 where there is a force."""
+        depth, grip, speed = self.terms(t)
+        return np.asarray(np.minimum(depth, depth + grip * speed))
+
+    def presses(self, t: Floats) -> Floats:
+        """Above 0 where the spring is pressed and there may be a force, within errors."""
+        depth, grip, speed = self.terms(t)
+        return np.asarray(np.minimum(depth, depth + grip * (speed + self.error)))
+
+    @cached_property
+    def error(self) -> float:
+        """Of the rate."""
+        tolerance = self.sol.stats.rtol if self.sol.stats.rtol is not None else FIXED
+        return ERRORS * tolerance * float(np.max(np.abs(self.terms(np.unique(self.sol.t))[2]), initial=0.0))
+
+    def touches(self, t: Floats) -> list[tuple[float, float]]:
+        """Each from where it first pushes to where it last does; to where it is free, if it does not part before."""
+        found, pushed = [], _spans(self.pushes, t)
+        for low, high in _spans(self.presses, t):
+            within = [span for span in pushed if low <= span[0] <= high]
+            if within:
+                last = np.array([high])
+                parts = self.presses(last)[0] <= 0.0 < self.depth(last)[0]
+                found.append((within[0][0], within[-1][1] if parts else high))
+        return found
 
 
 def _spans(pushes: Callable[[Floats], Floats], t: Floats) -> list[tuple[float, float]]:

@@ -50,6 +50,10 @@ def read_csv(path: Path, over: Over) -> Measured:
             values[i, j] = number
     if len(values) < 2:
         raise FileError(f"{path}: expected at least two lines of numbers")
+    for j, name in enumerate(names[:width]):
+        if name in names[:j]:
+            both = f"{names.index(name) + 1} and {j + 1}"
+            raise FileError(f"{path}: expected another name for each column, found {name!r} over columns {both}")
     columns = {
         name: values[:, j] if values[:, j].imag.any() else values[:, j].real for j, name in enumerate(names[:width])
     }
@@ -78,8 +82,9 @@ def _names(rows: list[list[str]], decimal_comma: bool) -> tuple[list[str], int]:
         if all(_number(cell, decimal_comma) is not None for cell in row if cell.strip()):
             # of several lines above the numbers the first has the names, those below units and the like
             heads = [head for head in rows[:first] if len(head) >= len(row) - (not row[-1].strip())]
-            names = [cell.strip().strip('"') for cell in heads[0]] if heads else []
-            return [*names, *(f"column {j + 1}" for j in range(len(names), len(row)))], first
+            cells = [cell.strip().strip('"') for cell in heads[0]] if heads else []
+            names = [*cells, *[""] * (len(row) - len(cells))]
+            return [name or f"column {j + 1}" for j, name in enumerate(names)], first
     return [], len(rows)
 
 

@@ -43,6 +43,7 @@ class _Touching(Element):
             self._take_joint(self.axis)
         check_ends(self, self.a, self.b)
         self._check_axis()
+        self._check_limits()
         super().__post_init__()
         for argument in ("damping", "hunt_crossley"):
             self._set(argument, self._number(argument, getattr(self, argument), minimum=0.0))
@@ -51,7 +52,6 @@ class _Touching(Element):
         elif value_of(self.damping) > 0.0:
             accepted = "given beside damping, the depth over which that comes in: without it the force would jump"
             self._refuse("damping_depth", None, accepted)
-        self._check_limits()
         self.local_coordinates()
 
     def _take_joint(self, joint: Joint) -> None:
@@ -176,6 +176,9 @@ class Stop(_Touching):
     def _check_limits(self) -> None:
         if self.lower is None and self.upper is None:
             raise SceneError(f"{self._label()}: lower or upper must be given")
+        for argument in ("lower", "upper"):
+            if getattr(self, argument) is not None:
+                self._set(argument, self._number(argument, getattr(self, argument)))
         if self.lower is not None and self.upper is not None and value_of(self.lower) >= value_of(self.upper):
             self._refuse("upper", self.upper, f"above lower = {value_of(self.lower):g}")
 

@@ -352,6 +352,8 @@ def _from_pandas(value: Any) -> Signal:
 def _vector(field: str, value: Any) -> Floats:
     try:
         found = np.array(value, dtype=float)
+        if isinstance(value, np.ma.MaskedArray):  # what is masked is missing: _check_finite names its place
+            found[np.ma.getmaskarray(value)] = np.nan
     except (TypeError, ValueError):
         found = None
     if found is None or found.ndim != 1 or np.iscomplexobj(value):

@@ -207,3 +207,12 @@ def test_arguments_and_missing_libraries(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyuff", None)
     with pytest.raises(MissingExtraError, match=r'pyuff: pip install "fricmb\[uff\]"'):
         fm.measure.read(tmp_path / "a.uff")
+
+
+def test_a_name_over_two_columns_is_an_error(tmp_path):
+    path = tmp_path / "twice.csv"
+    path.write_text("time,F,F\n0,1,3\n1,2,4\n")
+    with pytest.raises(FileError, match="another name for each column, found 'F' over columns 2 and 3"):
+        fm.measure.read(path)
+    path.write_text("time,F,,\n0,1,3,5\n1,2,4,6\n")
+    assert [s.name for s in fm.measure.read(path).signals] == ["F", "column 3", "column 4"]

@@ -100,7 +100,7 @@ def test_a_winch_pulls_until_its_rope_slips():
 
 def test_slack_ends_a_run_or_lets_the_rope_go():
     scene = capstan(0.2, 1.0, 8.0 - 20.0 * fm.t)
-    with pytest.raises(fm.IntegrationError, match="rope"):
+    with pytest.raises(fm.IntegrationError, match=r"'rope' is lost: its reaction .* ropes pull"):
         fm.simulate(scene, t_end=2.0)
     sol = fm.simulate(capstan(0.2, 1.0, 8.0 - 20.0 * fm.t, when_slack="open"), t_end=1.0)
     assert sol.events[-1].kind == "open"

@@ -155,3 +155,52 @@ def test_wheels_in_mesh_with_play():
     kept = 0.1 * sol.velocity("b.angle") - 2.0 * 0.02 * sol.velocity("a.angle")
     np.testing.assert_allclose(kept, -2.0 * 0.02 * 5.0, atol=1e-9)
     assert sol.energy.kinetic[-1] + sol.energy.potential[-1] == pytest.approx(0.25, rel=1e-9)
+
+
+@pytest.mark.parametrize("loss", [10.0, 50.0])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_one_touch_where_the_loss_takes_nearly_all(loss, rtol):
+    """The block parts at 1/loss, where the force is 0 to round-off, and is free where the spring is."""
+    speed, w2 = 4.0, 100.0
+    block = fm.Body("block", mass=1.0, velocity={"x": speed})
+    ends = fm.Stop("ends", block, axis="x", upper=1.0, stiffness=w2, hunt_crossley=loss)
+    sol = fm.simulate(fm.Scene("s", [block, ends]), t_end=3.0, rtol=rtol)
+
+    def rates(t, y):
+        return [y[1], -w2 * y[0] * (1.0 + loss * y[1])]
+
+    def free(t, y):
+        return y[0] + (t < 0.01)
+
+    free.terminal = True
+    end = solve_ivp(rates, (0.0, 3.0), [0.0, speed], "Radau", events=free, rtol=1e-11, atol=1e-13).t[-1]
+    touches = sol.touches("ends")
+    assert len(touches) == 1
+    np.testing.assert_allclose(touches.begin, 0.25, atol=1e-8)
+    np.testing.assert_allclose(touches.end, 0.25 + end, atol=rtol)
+
+
+def test_a_flank_that_is_pulled_away_faster_than_its_spring_is_told_so():
+    """A force pulls for a while, and the block comes back before the spring is free: two touches."""
+    k, damping, depth, pull = 100.0, 20.0, 1e-3, 40.0
+    block = fm.Body("block", mass=1.0, position={"x": 1.5}, velocity={"x": 0.0})
+    force = fm.Force("pull", block, axis="x", value=sympy.Piecewise((-pull, fm.t < 0.07), (2 * pull, True)))
+    ends = fm.Stop("ends", block, axis="x", upper=1.0, stiffness=k, damping=damping, damping_depth=depth)
+    sol = fm.simulate(fm.Scene("s", [block, ends, force]), t_end=0.2, rtol=1e-8)
+
+    def pushes(d, v):
+        return k * d + damping * v
+
+    def rates(t, y):
+        return [y[1], -max(0.0, pushes(*y)) + (-pull if t < 0.07 else 2 * pull)]
+
+    def turn(t, y):
+        return pushes(*y)
+
+    options = {"events": turn, "rtol": 1e-11, "atol": 1e-13, "max_step": 1e-3}
+    first = solve_ivp(rates, (0.0, 0.07), [0.5, 0.0], **options)
+    second = solve_ivp(rates, (0.07, 0.2), first.y[:, -1], **options)
+    assert second.y[0].min() > depth  # never free
+    touches = sol.touches("ends")
+    np.testing.assert_allclose(touches.begin, [0.0, second.t_events[0][0]], atol=1e-6)
+    np.testing.assert_allclose(touches.end, [first.t_events[0][0], 0.2], atol=1e-6)

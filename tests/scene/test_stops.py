@@ -76,3 +76,9 @@ def test_force():
 def test_touches_belong_to_stops():
     sol = fm.simulate(fm.Scene("s", [fm.Body("block", mass=1.0)]), t_end=1.0)
     refused("touches: 'block' must be a Stop or a Backlash", lambda: sol.touches("block"))
+
+
+@pytest.mark.parametrize("given", [([0.0, 1.0], [1.0, 2.0]), fm.Signal([0.0, 1.0], [1.0, 2.0]), math.inf, "far"])
+def test_limits_are_numbers(given):
+    refused("Stop 's': upper must be a finite number, got", lambda: stop(upper=given))
+    refused("Stop 's': lower must be a finite number, got", lambda: stop(lower=given))

@@ -134,3 +134,10 @@ def test_a_position_whose_speed_is_noise_is_warned_of():
         fm.Driven("table", position={"x": clean})
         fm.Driven("table", position={"x": noisy.lowpass(6.0)})
         fm.Driven("table", velocity={"x": noisy})
+
+
+def test_masked_values_are_missing():
+    masked = np.ma.array([1, 5, 3], mask=[False, True, False])
+    with pytest.raises(fm.SceneError, match=r"y holds nan at place 1 \(t = 1\)"):
+        fm.Signal([0.0, 1.0, 2.0], masked)
+    assert fm.Signal([0.0, 1.0, 2.0], np.ma.array([1, 5, 3]))([0.5]) == pytest.approx([3.0])
