@@ -78,7 +78,7 @@ def test_touches_belong_to_stops():
     refused("touches: 'block' must be a Stop or a Backlash", lambda: sol.touches("block"))
 
 
-@pytest.mark.parametrize("given", [([0.0, 1.0], [1.0, 2.0]), fm.Signal([0.0, 1.0], [1.0, 2.0]), math.inf, "far"])
+@pytest.mark.parametrize("given", [([0.0, 1.0], [1.0, 2.0]), fm.Signal([0.0, 1.0], [1.0, 2.0]), float("inf"), "far"])
 def test_limits_are_numbers(given):
     refused("Stop 's': upper must be a finite number, got", lambda: stop(upper=given))
     refused("Stop 's': lower must be a finite number, got", lambda: stop(lower=given))

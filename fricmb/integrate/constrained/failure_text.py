@@ -54,8 +54,10 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     if code == FAIL_LOST:
         held = (joints.one_sided != 0) & (joints.hands_over == 0)
         name = joints.names[int(np.argmin(np.where(held, y.lam[np.minimum(row, len(y.lam) - 1)], np.inf)))]
-        only = "and cannot turn round (surfaces only push, ropes pull)"
-        return f"contact of {name!r} is lost: its reaction has fallen to 0 {only}"
+        return (
+            f"contact of {name!r} is lost: its reaction has fallen to 0 and cannot turn round"
+            " (surfaces only push, ropes pull)"
+        )
     if code == FAIL_HIT:
         opened = (joints.hands_over != 0) & (joints.dropped[np.minimum(row, len(y.lam) - 1)] == 2)
         name = joints.names[int(np.argmin(np.where(opened, out.gap, np.inf)))]
