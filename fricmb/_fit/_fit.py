@@ -12,6 +12,7 @@ from fricmb._calls import answers
 from fricmb._fit._data import Measured, numbers, read
 from fricmb._fit._model import Model
 from fricmb._fit._offsets import checked_offsets
+from fricmb._fit._regression import regress
 from fricmb._fit._result import Fit
 from fricmb._fit._uncertainty import uncertainty
 from fricmb._simulate import simulate
@@ -29,6 +30,8 @@ _EXACT = 1e-4
 #: Around a fit, others set out at these multiples of its standard errors, until so many have found nothing that is
 #: better by more than this part.
 _REACHES, _IDLE, _BETTER = (2.0, 5.0, 10.0), 6, 1e-4
+#: Residuals of a start below this part of the extent of the data: it is fitted to all of them at once.
+_NEAR = 0.5
 #: A standard error of more than this part of the distance of the bounds says no more than they do.
 _BLIND = 0.5
 #: Residuals of all the data that are larger than those of a part by what chance does this seldom are those of a false
@@ -125,9 +128,12 @@ def fit(
     low, high = np.array(list(bounds.values())).T
     rng, best = np.random.default_rng(0), None
     with bar(len(stages), "window", "fit", progress) as stretch:
-        for i in range(starts):
-            p = first if i == 0 else _another(model, low, high, rng)
-            found = _through(model, stages, p, bounds, priors or {}, loss, stretch if i == 0 else None)
+        begin, good = _begin(model, first, low, high)
+        if good:  # so near that the data need not grow
+            best = _through(model, stages, begin, bounds, priors or {}, loss, stretch, whole=True)
+        for i in range(0 if best is not None and best.plausible else starts):
+            p = begin if i == 0 else first if i == 1 and begin is not first else _another(model, low, high, rng)
+            found = _through(model, stages, p, bounds, priors or {}, loss, stretch if i == 0 and not good else None)
             if best is None or found.cost < best.cost:
                 best = found
             if found.plausible:
@@ -162,18 +168,40 @@ class _Found:
         return self.cost <= self.likely
 
 
+def _begin(model: Model, first: Floats, low: Floats, high: Floats) -> tuple[Floats, bool]:
+    """Where to start, and whether that is near: the first guess, or a regression if it explains the data better."""
+    found = regress(model.scene, model.names, first, low, high, model.measured, model.offset)
+    if found is None:
+        return first, False
+    model.residuals(first)  # a mistake in what was asked is said here
+    try:
+        better, worse = model.noise(found), model.noise(first)
+    except FricmbError:
+        return first, False
+    return (found, better < _NEAR * _extent(model.measured)) if better < worse else (first, False)
+
+
 def _through(
     model: Model, stages: list[float], p: Floats, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss,
-    shown: Any,
+    shown: Any, whole: bool = False,
 ) -> _Found:  # fmt: skip
-    """From the first window to the last, each started where the one before has ended."""
+    """From the first window to the last, each started where the one before has ended.
+
+    ``whole``: all the data are fitted at once, and their parts only looked at afterwards.
+    """
     from scipy.stats import f as f_distribution
 
     noise: list[float] = []
     freedom: list[int] = []
+    if whole:
+        part = model.until(stages[-1])
+        p, _ = _solve(part, p, bounds, priors, loss, False)
+        model.runs += part.runs
     for i, t in enumerate(stages):
         part = model.until(t)
-        p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
+        if not whole or i == len(stages) - 1:
+            p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
+        part.noise(p)
         model.runs += part.runs
         model.cycle = part.cycle
         noise.append(part.noise(p))
@@ -329,7 +357,8 @@ def _solve(
         residuals, np.clip(p, low + 1e-9 * (high - low), high - 1e-9 * (high - low)), jac=jacobian, bounds=(low, high),
         x_scale=high - low, loss=loss, xtol=tight, ftol=tight, gtol=tight, max_nfev=200,
     )  # fmt: skip
-    return np.asarray(found.x), jacobian(found.x)
+    x = np.asarray(found.x)
+    return x, np.concatenate([model.exact_jacobian(x), prior_J]) if last else jacobian(x)
 
 
 def _result(

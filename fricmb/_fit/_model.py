@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -21,8 +22,20 @@ from fricmb.solution import Solution
 _FAR = 1e8
 #: Transitions that a run has not had yet are waited for this much longer than the last one measured.
 _LONGER = 1.25
-#: Parameters move by this share for signals without exact derivatives: runs agree to far more digits.
+#: Parameters move by this share for differences: runs agree to far more digits.
 _STEP = 1e-4
+
+
+@dataclass(kw_only=True)
+class Costs:
+    """Seconds that a run takes, without derivatives and with them: inf until it is known."""
+
+    plain: float = np.inf
+    exact: float = np.inf
+
+    def differences_are_cheaper(self, n_p: int) -> bool:
+        """Whether two runs for each parameter take less time than one with derivatives."""
+        return np.isfinite(self.exact) and 2 * n_p * self.plain < 0.7 * self.exact
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +67,10 @@ class Model:
     cycle: Cycle | None = None
     #: Those found last.
     offsets: dict[str, float] = field(default_factory=dict)
+    costs: Costs = field(default_factory=Costs)
+    #: Whether derivatives are exact whatever they cost.
+    exact: bool = False
+    _values: dict[bytes, list[Floats]] = field(default_factory=dict)
     _kept: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
 
     def until(self, t: float) -> Model:
@@ -61,7 +78,7 @@ class Model:
         early = tuple(m.until(t) for m in self.measured)
         return Model(
             scene=self.scene, names=self.names, measured=tuple(m for m in early if m.x.size), options=self.options,
-            offset=self.offset, cycle=self.cycle,
+            offset=self.offset, cycle=self.cycle, costs=self.costs,
         )  # fmt: skip
 
     def residuals(self, p: Floats) -> Floats:
@@ -71,11 +88,19 @@ class Model:
         taken back.
         """
         try:
-            return self._at(p)[0]
+            if p.tobytes() in self._kept or not self._plain:
+                return self._at(p)[0]
+            return np.concatenate([without_offset(m, x)[0] if m.name in self.offset else x
+                                   for m, x in zip(self.measured, self._predicted(p), strict=True)])
         except FricmbError:
-            if self.runs == 1:
+            if self.runs <= 1:
                 raise
             return np.full(sum(m.x.size for m in self.measured), _FAR)
+
+    @property
+    def _plain(self) -> bool:
+        """Whether residuals come from runs without derivatives: signals do, and times of transitions."""
+        return all(m.kind != "period" for m in self.measured)
 
     def noise(self, p: Floats) -> float:
         """Standard deviation of the residuals by their degrees of freedom."""
@@ -89,6 +114,15 @@ class Model:
     def jacobian(self, p: Floats) -> Floats:
         """Derivative (n, n_p) of the residuals."""
         return self._at(p)[1]
+
+    def exact_jacobian(self, p: Floats) -> Floats:
+        """The same by exact derivatives whatever they cost: standard errors follow from it."""
+        self.exact, before = True, self.exact
+        self._kept.clear()
+        try:
+            return self.jacobian(p)
+        finally:
+            self.exact = before
 
     def _at(self, p: Floats) -> tuple[Floats, Floats]:
         key = p.tobytes()
@@ -111,16 +145,70 @@ class Model:
         t_eval = t if t.size else None
         return simulate(self.with_values(p), t_end=float(max(ends)), t_eval=t_eval, **{**self.options, **more})
 
+    def _predicted(self, p: Floats) -> list[Floats]:
+        """Residuals of each measurement by a run without derivatives, offsets still in them."""
+        key = p.tobytes()
+        if key not in self._values:
+            self._values.clear()
+            self.runs += 1
+            self._values[key] = self._of_run(self._timed(p, "plain"))
+        return self._values[key]
+
+    def _timed(self, p: Floats, kind: str, **more: Any) -> Solution | None:
+        """A run; how long one takes is kept, that of compiling taken off."""
+        begin = time.perf_counter()
+        sol = self.run(p, **more)
+        if sol is not None:
+            if more:
+                sol.derivatives.known(sol.names)
+            took = time.perf_counter() - begin - float(sol.stats.compile_s)
+            setattr(self.costs, kind, min(getattr(self.costs, kind), max(took, 1e-6)))
+        return sol
+
+    def _of_run(self, sol: Solution | None) -> list[Floats]:
+        assert sol is not None
+        found = []
+        for m in self.measured:
+            if m.kind == "event":
+                found.append((_times(m, sol)[0] - m.x) / m.sigma)
+            else:
+                places = np.searchsorted(sol.t, m.t)
+                found.append((sol.scalar(m.name, "data")[places] - m.x) / m.sigma)
+        return found
+
     def _computed(self, p: Floats) -> tuple[Floats, Floats]:
-        self.runs += 1
-        sol = self.run(p, sensitivities=self.names)
-        beside = self._beside(sol, p)
-        parts = [self._one(m, sol, p, beside) for m in self.measured]
+        if self._plain and not self.exact and self.costs.differences_are_cheaper(p.size):
+            parts = self._differences(p)
+        else:
+            self.runs += 1
+            sol = self._timed(p, "exact", sensitivities=self.names)
+            beside = self._beside(sol, p)
+            parts = [self._one(m, sol, p, beside) for m in self.measured]
         for i, m in enumerate(self.measured):
             if m.name in self.offset:
                 x, J, self.offsets[m.name] = without_offset(m, *parts[i])
                 parts[i] = x, J
         return np.concatenate([x for x, _ in parts]), np.concatenate([J for _, J in parts])
+
+    def _differences(self, p: Floats) -> list[tuple[Floats, Floats]]:
+        """Residuals and their derivatives from two runs for each parameter."""
+        middle = self._predicted(p)
+        columns = []
+        for i in range(p.size):
+            ends = []
+            for sign in (-1.0, 1.0):
+                moved = p.copy()
+                moved[i] += sign * _STEP * max(abs(p[i]), _STEP)
+                try:
+                    ends.append((moved[i], self._of_run(self.run(moved))))
+                except FricmbError:  # the scene cannot have it: this run stands for it
+                    ends.append((p[i], middle))
+            self.runs += 2
+            (low, first), (high, last) = ends
+            if low == high:
+                raise SceneError(f"parameters: the scene has no values beside {p[i]:g} of {self.names[i]}")
+            columns.append([(b - a) / (high - low) for a, b in zip(first, last, strict=True)])
+        return [(x, np.array([column[k] for column in columns]).T) for k, x in enumerate(middle)]
 
     def _beside(self, sol: Solution | None, p: Floats) -> tuple[Beside, ...]:
         """Runs with a value a little lower and higher, for signals that have no exact derivatives."""
@@ -163,13 +251,18 @@ class Model:
         return (self.cycle.period - m.x) / m.sigma, slopes / m.sigma[:, None]
 
 
-def _events(m: Measured, sol: Solution, names: tuple[str, ...]) -> tuple[Floats, Floats]:
-    """Times of the first transitions of a kind; those that have not come count with the end of the run."""
+def _times(m: Measured, sol: Solution) -> tuple[Floats, Any]:
+    """Times of the first transitions of a kind, and these; those that have not come count with the end of the run."""
     contact, _, kind = m.name.rpartition(".")
     if contact not in sol.contact_names:
         raise unknown_name("contact in data", contact, sol.contact_names)
     found = sol.events.of(kind=kind, contact=contact)[: m.x.size]
-    t = np.concatenate([found.t, np.full(m.x.size - len(found), sol.t_end)])
+    return np.concatenate([found.t, np.full(m.x.size - len(found), sol.t_end)]), found
+
+
+def _events(m: Measured, sol: Solution, names: tuple[str, ...]) -> tuple[Floats, Floats]:
+    """Residuals of times of transitions and their derivatives."""
+    t, found = _times(m, sol)
     J = np.zeros((m.x.size, len(names)))
     for i, event in enumerate(found):
         J[i] = [event.sensitivity(name) for name in names]

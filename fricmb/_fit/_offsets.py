@@ -36,9 +36,10 @@ def checked_offsets(given: Any, measured: tuple[Measured, ...]) -> frozenset[str
     return frozenset(names)
 
 
-def without_offset(m: Measured, residual: Floats, J: Floats) -> tuple[Floats, Floats, float]:
+def without_offset(m: Measured, residual: Floats, J: Floats | None = None) -> tuple[Floats, Floats, float]:
     """Residual (n,) and derivatives (n, n_p) at the best offset, and that offset of the measurement."""
     along = 1.0 / m.sigma
     size = along @ along
     b = float(along @ residual / size)
-    return residual - b * along, J - np.outer(along, along @ J / size), -b
+    slopes = np.zeros((residual.size, 0)) if J is None else J
+    return residual - b * along, slopes - np.outer(along, along @ slopes / size), -b
