@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from dataclasses import replace
+from typing import Any, get_args
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from fricmb._calls import answers
 from fricmb._fit._data import Measured, numbers, read
 from fricmb._fit._model import Model
 from fricmb._fit._offsets import checked_offsets
-from fricmb._fit._regression import regress
 from fricmb._fit._result import Fit
+from fricmb._fit._search import Loss, Search
 from fricmb._fit._uncertainty import uncertainty
 from fricmb._simulate import simulate
 from fricmb._simulate._arguments import check_options, check_scene, number
@@ -22,21 +22,10 @@ from fricmb.errors import FricmbError, SceneError, shown, unknown_name
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Scene
 
-Loss = Literal["linear", "soft_l1", "huber", "cauchy", "arctan"]
 #: Parts of the data that are fitted one after the other where the window grows.
 _WINDOWS = (0.06, 0.1, 0.16, 0.25, 0.4, 0.6, 0.8, 1.0)
-#: Residuals below this part of the extent of the data are none.
-_EXACT = 1e-4
-#: Around a fit, others set out at these multiples of its standard errors, until so many have found nothing that is
-#: better by more than this part.
-_REACHES, _IDLE, _BETTER = (2.0, 5.0, 10.0), 6, 1e-4
-#: Residuals of a start below this part of the extent of the data: it is fitted to all of them at once.
-_NEAR = 0.5
 #: A standard error of more than this part of the distance of the bounds says no more than they do.
 _BLIND = 0.5
-#: Residuals of all the data that are larger than those of a part by what chance does this seldom are those of a false
-#: minimum (3.5 standard deviations).
-_CHANCE = 2.3e-4
 
 
 @answers
@@ -108,9 +97,11 @@ def fit(
 
     Notes
     -----
-    :func:`scipy.optimize.least_squares` within the bounds, on derivatives that are exact through transitions; those of
-    accelerations and forces are differences of two runs for each parameter.  The
-    covariance is that of the linearised problem, ``s^2 (J^T J)^-1``; with ``sigma`` given s is 1.
+    :func:`scipy.optimize.least_squares` within the bounds.  Where places, speeds or accelerations say the whole motion,
+    it starts from a regression: the motion, put into the equations, gives masses, stiffnesses and friction without a
+    run; the first guess stays where it explains more.  Derivatives are exact through transitions, or differences where
+    a run takes so little time that these are quicker; those of accelerations and forces always are.  The covariance is
+    that of the linearised problem, ``s^2 (J^T J)^-1`` by exact derivatives; with ``sigma`` given s is 1.
     """
     check_scene(scene)
     _check_search(loss, starts)
@@ -122,143 +113,18 @@ def fit(
     _check(priors, sigma, names)
     model = Model(
         scene=scene, names=names, measured=measured, options={"rtol": rtol, **options},
-        offset=checked_offsets(offset, measured),
+        offset=checked_offsets(offset, measured), ranges=np.ptp(np.array(list(bounds.values())), axis=1),
     )
     stages = _stages(measured, window, len(names))
-    low, high = np.array(list(bounds.values())).T
-    rng, best = np.random.default_rng(0), None
     with bar(len(stages), "window", "fit", progress) as stretch:
-        begin, good = _begin(model, first, low, high)
-        if good:  # so near that the data need not grow
-            best = _through(model, stages, begin, bounds, priors or {}, loss, stretch, whole=True)
-        for i in range(0 if best is not None and best.plausible else starts):
-            p = begin if i == 0 else first if i == 1 and begin is not first else _another(model, low, high, rng)
-            found = _through(model, stages, p, bounds, priors or {}, loss, stretch if i == 0 and not good else None)
-            if best is None or found.cost < best.cost:
-                best = found
-            if found.plausible:
-                break
-        assert best is not None
-        if starts > 1:
-            best = _around(model, best, bounds, priors or {}, loss, rng)
+        search = Search(
+            model=model, stages=stages, first=first, bounds=bounds, priors=priors or {}, loss=loss, shown=stretch
+        )
+        best = search.best(starts)
     result = _result(best.model, model.runs, best.p, best.J, bounds, sigma is not None)
     if best.plausible:
         return result
-    explained = 1.0 - (best.cost / _extent(measured)) ** 2
-    doubt = (
-        f"residuals of all the data ({best.cost:.3g}) are larger than a part of them allows ({best.likely:.3g}),"
-        f" from {starts} starts: a false minimum, or the scene lacks something; R^2 is {explained:.6g} all the same"
-    )
-    return replace(result, notes=(*result.notes, doubt))
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Found:
-    """A fit through all windows; ``likely``: residuals of all the data that those of their first parts allow."""
-
-    model: Model
-    p: Floats
-    J: Floats
-    cost: float
-    likely: float
-
-    @property
-    def plausible(self) -> bool:
-        """Whether all the data are fitted as well as their first parts."""
-        return self.cost <= self.likely
-
-
-def _begin(model: Model, first: Floats, low: Floats, high: Floats) -> tuple[Floats, bool]:
-    """Where to start, and whether that is near: the first guess, or a regression if it explains the data better."""
-    found = regress(model.scene, model.names, first, low, high, model.measured, model.offset)
-    if found is None:
-        return first, False
-    model.residuals(first)  # a mistake in what was asked is said here
-    try:
-        better, worse = model.noise(found), model.noise(first)
-    except FricmbError:
-        return first, False
-    return (found, better < _NEAR * _extent(model.measured)) if better < worse else (first, False)
-
-
-def _through(
-    model: Model, stages: list[float], p: Floats, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss,
-    shown: Any, whole: bool = False,
-) -> _Found:  # fmt: skip
-    """From the first window to the last, each started where the one before has ended.
-
-    ``whole``: all the data are fitted at once, and their parts only looked at afterwards.
-    """
-    from scipy.stats import f as f_distribution
-
-    noise: list[float] = []
-    freedom: list[int] = []
-    if whole:
-        part = model.until(stages[-1])
-        p, _ = _solve(part, p, bounds, priors, loss, False)
-        model.runs += part.runs
-    for i, t in enumerate(stages):
-        part = model.until(t)
-        if not whole or i == len(stages) - 1:
-            p, J = _solve(part, p, bounds, priors, loss, i == len(stages) - 1)
-        part.noise(p)
-        model.runs += part.runs
-        model.cycle = part.cycle
-        noise.append(part.noise(p))
-        freedom.append(part.freedom(p))
-        if shown is not None:
-            shown.update()
-    # the variances of a part and of the whole, of errors that are alike, have Fisher's ratio: few data say little
-    ratios = f_distribution.isf(_CHANCE, freedom[-1], np.array(freedom))
-    allowed = max(float((np.array(noise) * np.sqrt(ratios)).min()), _EXACT * _extent(model.measured))
-    return _Found(model=part, p=p, J=J, cost=noise[-1], likely=allowed)
-
-
-def _around(
-    model: Model, best: _Found, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss,
-    rng: np.random.Generator,
-) -> _Found:  # fmt: skip
-    """The best of several fits that set out around one, as far as its errors and the bounds reach.
-
-    Trial runs get out of step with the data little by little, and false minima lie side by side: some standard errors
-    from one another, and hardly higher.
-    """
-    low, high = np.array(list(bounds.values())).T
-    idle = 0
-    while idle < _IDLE:
-        std = np.sqrt(np.diag(uncertainty(best.J, model.names).covariance))
-        std = np.where(np.isfinite(std), std, 0.0) * best.cost + np.where(np.isfinite(std), 0.0, high - low)
-        reach = np.minimum(_REACHES[idle % len(_REACHES)] * std, 0.5 * (high - low))
-        idle += 1
-        begin = np.clip(best.p + reach * rng.standard_normal(low.size), low, high)
-        try:
-            model.with_values(begin)
-        except FricmbError:  # mu_k above mu_s, say
-            continue
-        p, J = _solve(best.model, begin, bounds, priors, loss, False)
-        if best.model.noise(p) < best.cost * (1.0 - _BETTER):
-            p, J = _solve(best.model, p, bounds, priors, loss, True)
-            best, idle = replace(best, p=p, J=J, cost=best.model.noise(p)), 0
-    return best
-
-
-def _another(model: Model, low: Floats, high: Floats, rng: np.random.Generator) -> Floats:
-    """A start within the bounds that the scene accepts."""
-    for _ in range(100):
-        p = np.asarray(low + (high - low) * rng.random(low.size))
-        try:
-            model.with_values(p)
-        except FricmbError:  # mu_k above mu_s, say
-            continue
-        return p
-    raise SceneError("parameters: hardly any values within the bounds are ones that the scene accepts")
-
-
-def _extent(measured: tuple[Measured, ...]) -> float:
-    """Size of what was measured, in units of its errors."""
-    parts = [(m.x - (m.x.mean() if m.kind == "signal" else 0.0)) / m.sigma for m in measured]
-    values = np.concatenate(parts)
-    return float(np.sqrt(values @ values / values.size))
+    return replace(result, notes=(*result.notes, search.doubt(best)))
 
 
 def _bounds(scene: Scene, parameters: Any) -> tuple[dict[str, tuple[float, float]], Floats]:
@@ -334,31 +200,6 @@ def _stages(measured: tuple[Measured, ...], window: Any, n_p: int) -> list[float
     begin, end = min(0.0, float(t[0])), float(t[-1])
     ends = [begin + share * (end - begin) for share in _WINDOWS]
     return [*(e for e in ends[:-1] if (t <= e).sum() > n_p), np.inf]
-
-
-def _solve(
-    model: Model, p: Floats, bounds: Mapping[str, tuple[float, float]], priors: Any, loss: Loss, last: bool
-) -> tuple[Floats, Floats]:
-    """Least squares in one window: values, and the Jacobian there."""
-    from scipy.optimize import least_squares
-
-    low, high = np.array(list(bounds.values())).T
-    known = [(model.names.index(name), *given) for name, given in priors.items()]
-    prior_J = np.array([np.eye(len(p))[i] / std for i, _, std in known]).reshape(len(known), len(p))
-
-    def residuals(x: Floats) -> Floats:
-        return np.concatenate([model.residuals(x), [(x[i] - mean) / std for i, mean, std in known]])
-
-    def jacobian(x: Floats) -> Floats:
-        return np.concatenate([model.jacobian(x), prior_J])
-
-    tight = 1e-12 if last else 1e-4
-    found = least_squares(
-        residuals, np.clip(p, low + 1e-9 * (high - low), high - 1e-9 * (high - low)), jac=jacobian, bounds=(low, high),
-        x_scale=high - low, loss=loss, xtol=tight, ftol=tight, gtol=tight, max_nfev=200,
-    )  # fmt: skip
-    x = np.asarray(found.x)
-    return x, np.concatenate([model.exact_jacobian(x), prior_J]) if last else jacobian(x)
 
 
 def _result(

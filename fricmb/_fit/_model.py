@@ -24,6 +24,8 @@ _FAR = 1e8
 _LONGER = 1.25
 #: Parameters move by this share for differences: runs agree to far more digits.
 _STEP = 1e-4
+#: Differences are at least of this part of the distance of the bounds.
+_LEAST = 1e-6
 
 
 @dataclass(kw_only=True)
@@ -34,8 +36,8 @@ class Costs:
     exact: float = np.inf
 
     def differences_are_cheaper(self, n_p: int) -> bool:
-        """Whether two runs for each parameter take less time than one with derivatives."""
-        return np.isfinite(self.exact) and 2 * n_p * self.plain < 0.7 * self.exact
+        """Whether a run for each parameter takes less time than one with derivatives."""
+        return bool(np.isfinite(self.exact) and n_p * self.plain < 0.7 * self.exact)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +70,8 @@ class Model:
     #: Those found last.
     offsets: dict[str, float] = field(default_factory=dict)
     costs: Costs = field(default_factory=Costs)
+    #: Distances of the bounds (n_p,); 0 where they are not known.
+    ranges: Floats = field(default_factory=lambda: np.zeros(0))
     #: Whether derivatives are exact whatever they cost.
     exact: bool = False
     _values: dict[bytes, list[Floats]] = field(default_factory=dict)
@@ -78,7 +82,7 @@ class Model:
         early = tuple(m.until(t) for m in self.measured)
         return Model(
             scene=self.scene, names=self.names, measured=tuple(m for m in early if m.x.size), options=self.options,
-            offset=self.offset, cycle=self.cycle, costs=self.costs,
+            offset=self.offset, cycle=self.cycle, costs=self.costs, ranges=self.ranges,
         )  # fmt: skip
 
     def residuals(self, p: Floats) -> Floats:
@@ -96,6 +100,11 @@ class Model:
             if self.runs <= 1:
                 raise
             return np.full(sum(m.x.size for m in self.measured), _FAR)
+
+    @property
+    def differs(self) -> bool:
+        """Whether derivatives are differences, since that is quicker."""
+        return self._plain and not self.exact and self.costs.differences_are_cheaper(len(self.names))
 
     @property
     def _plain(self) -> bool:
@@ -177,7 +186,7 @@ class Model:
         return found
 
     def _computed(self, p: Floats) -> tuple[Floats, Floats]:
-        if self._plain and not self.exact and self.costs.differences_are_cheaper(p.size):
+        if self.differs:
             parts = self._differences(p)
         else:
             self.runs += 1
@@ -190,25 +199,30 @@ class Model:
                 parts[i] = x, J
         return np.concatenate([x for x, _ in parts]), np.concatenate([J for _, J in parts])
 
+    def _moved(self, p: Floats, i: int, sign: float) -> Floats:
+        """The values with one of them a little larger or smaller."""
+        moved = p.copy()
+        least = _LEAST * float(self.ranges[i]) if self.ranges.size else _STEP**2
+        moved[i] += sign * max(_STEP * abs(float(p[i])), least)
+        return moved
+
     def _differences(self, p: Floats) -> list[tuple[Floats, Floats]]:
-        """Residuals and their derivatives from two runs for each parameter."""
+        """Residuals and their derivatives from a further run for each parameter."""
         middle = self._predicted(p)
-        columns = []
-        for i in range(p.size):
-            ends = []
-            for sign in (-1.0, 1.0):
-                moved = p.copy()
-                moved[i] += sign * _STEP * max(abs(p[i]), _STEP)
-                try:
-                    ends.append((moved[i], self._of_run(self.run(moved))))
-                except FricmbError:  # the scene cannot have it: this run stands for it
-                    ends.append((p[i], middle))
-            self.runs += 2
-            (low, first), (high, last) = ends
-            if low == high:
-                raise SceneError(f"parameters: the scene has no values beside {p[i]:g} of {self.names[i]}")
-            columns.append([(b - a) / (high - low) for a, b in zip(first, last, strict=True)])
+        columns = [self._column(p, i, middle) for i in range(p.size)]
         return [(x, np.array([column[k] for column in columns]).T) for k, x in enumerate(middle)]
+
+    def _column(self, p: Floats, i: int, middle: list[Floats]) -> list[Floats]:
+        """Derivatives of all residuals by one parameter; towards smaller values where the scene has no larger one."""
+        for sign in (1.0, -1.0):
+            moved = self._moved(p, i, sign)
+            self.runs += 1
+            try:
+                ends = self._of_run(self.run(moved))
+            except FricmbError:
+                continue
+            return [(b - a) / (moved[i] - p[i]) for a, b in zip(middle, ends, strict=True)]
+        raise SceneError(f"parameters: the scene has no values beside {p[i]:g} of {self.names[i]}")
 
     def _beside(self, sol: Solution | None, p: Floats) -> tuple[Beside, ...]:
         """Runs with a value a little lower and higher, for signals that have no exact derivatives."""
@@ -221,8 +235,7 @@ class Model:
         """Where the scene cannot have one of both values, this run stands for it."""
         found = []
         for sign in (-1.0, 1.0):
-            moved = p.copy()
-            moved[i] += sign * _STEP * max(abs(p[i]), _STEP)
+            moved = self._moved(p, i, sign)
             try:
                 found.append((moved[i], self.run(moved)))
             except FricmbError:

@@ -21,14 +21,15 @@ from fricmb._fit._data import Measured
 from fricmb.analysis._forces import forces
 from fricmb.analysis.cycles._flow import initial_slots
 from fricmb.errors import FricmbError
-from fricmb.integrate.problem import Floats
+from fricmb.integrate.problem import Floats, Ints
 from fricmb.scene import Scene
 from fricmb.system import System, build
 
 #: Times at which the equations are asked, and most samples that a spline is laid through.
 _TIMES, _MOST = 240, 1500
-#: Slip slower than this part of the fastest counts as rest; parts of the data at their ends that are left out.
-_REST, _ENDS = 0.03, 0.02
+#: Slip slower than this part of the fastest counts as rest, either of two: where much is left out the equations hold
+#: better, where little is they know of friction at slow slip.  Parts of the data at their ends that are left out.
+_RESTS, _ENDS = (0.03, 0.003), 0.02
 #: Residuals where the scene cannot have such values.
 _FAR = 1e3
 #: Starts of the least squares within the bounds.
@@ -40,19 +41,22 @@ Curve = Callable[[Floats], Floats]
 def regress(
     scene: Scene, names: tuple[str, ...], first: Floats, low: Floats, high: Floats, measured: tuple[Measured, ...],
     offset: frozenset[str],
-) -> Floats | None:  # fmt: skip
-    """Values (n_p,) by which what was measured fits the equations best; None where it does not say the whole motion."""
+) -> list[Floats]:  # fmt: skip
+    """Values (n_p,) by which what was measured fits the equations best, some of them.
+
+    None where it does not say the whole motion.
+    """
     if scene.is_mechanism:
-        return None
+        return []
     try:
         motion = _motion(scene, measured)
         if motion is None:
-            return None
+            return []
         begin = _initial(scene, names, first, low, high, motion)
         problem = Regression(scene=scene, names=names, motion=motion, offsets=tuple(sorted(offset)))
-        return problem.solve(begin, low, high)
+        return [problem.solve(begin, low, high, rest) for rest in _RESTS]
     except (FricmbError, np.linalg.LinAlgError):
-        return None
+        return []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,9 +157,9 @@ class Regression:
     motion: Motion
     offsets: tuple[str, ...]
 
-    def solve(self, first: Floats, low: Floats, high: Floats) -> Floats:
-        """The best of a few descents within the bounds (n_p,)."""
-        kept = self._slips(first)
+    def solve(self, first: Floats, low: Floats, high: Floats, rest: float) -> Floats:
+        """The best of a few descents within the bounds (n_p,); ``rest``: slip, beside the fastest, that is none."""
+        kept = self._slips(first, rest)
         n, rng = first.size, np.random.default_rng(0)
         sizes = np.array([self.motion.sizes.get(name, 1.0) for name in self.offsets])
         ends = np.concatenate([low, -10.0 * sizes]), np.concatenate([high, 10.0 * sizes])
@@ -165,7 +169,7 @@ class Regression:
             p = first if i == 0 else low + (high - low) * rng.random(n)
             begin = np.concatenate([np.clip(p, low + 1e-9 * (high - low), high - 1e-9 * (high - low)), 0.0 * sizes])
             found = least_squares(
-                lambda x: self.residuals(x, kept), begin, bounds=ends, x_scale=scale, loss="soft_l1", f_scale=0.1,
+                self.residuals, begin, args=(kept,), bounds=ends, x_scale=scale, loss="soft_l1", f_scale=0.1,
                 ftol=1e-6, xtol=1e-6, max_nfev=25,
             )  # fmt: skip
             if best is None or found.cost < best.cost:
@@ -178,19 +182,20 @@ class Regression:
         return np.where(blind, first, best.x[:n])
 
     def _system(self, p: Floats) -> System:
-        found: System = build(self.scene.with_parameters(dict(zip(self.names, p[: len(self.names)].tolist(), strict=True))))
+        values = dict(zip(self.names, p[: len(self.names)].tolist(), strict=True))
+        found: System = build(self.scene.with_parameters(values))
         return found
 
-    def _slips(self, p: Floats) -> Floats:
+    def _slips(self, p: Floats, rest: float) -> Ints:
         """Times at which every contact slips, by their places."""
         g = self._forces(self._system(p), {})[2]
         every = np.arange(self.motion.t.size)
         if not g.size:
             return every
-        good = (np.abs(g) > _REST * np.abs(g).max(axis=1, keepdims=True)).any(axis=0)
+        good = (np.abs(g) > rest * np.abs(g).max(axis=1, keepdims=True)).any(axis=0)
         return np.flatnonzero(good) if good.sum() > 4 * p.size else every
 
-    def residuals(self, x: Floats, kept: Floats) -> Floats:
+    def residuals(self, x: Floats, kept: Ints) -> Floats:
         """What the equations and the measured forces leave over at the times kept, in parts of their size."""
         motion = self.motion
         try:

@@ -43,7 +43,7 @@ class Fit:
     notes : tuple of str
         What has to be known: parameters at a bound, or that cannot be told apart.
     runs : int
-        Number of runs with derivatives that it took.
+        Number of runs that it took.
     offsets : dict of str to float
         What was measured more than there was, by signal: constants that were found beside the parameters.
     """

@@ -53,7 +53,7 @@ def _normal(system: System, k: int, X: Floats) -> Floats:
     if contacts.normal[k] == NORMAL_CONSTANT:
         return np.full(X.shape[1], float(contacts.N[k]))
     x = arguments(contacts.normal_table, k, X)
-    return np.maximum(evaluate(contacts.normal_table, k, x, 3 + x.shape[1])[0], 0.0)
+    return np.asarray(np.maximum(evaluate(contacts.normal_table, k, x, 3 + x.shape[1])[0], 0.0))
 
 
 def _friction(system: System, k: int, g: Floats, N: Floats) -> Floats:
@@ -72,4 +72,4 @@ def _friction(system: System, k: int, g: Floats, N: Floats) -> Floats:
     mu: Floats = np.full(r.size, float(contacts.mu_0[k]))
     if contacts.law[k] == LAW_COEFFICIENT:
         mu = evaluate(contacts.law_table, k, np.column_stack([r, N]), 3)[0]
-    return -mu * N * np.divide(g, r, out=np.zeros_like(g), where=r > 0.0)
+    return np.asarray(-mu * N * np.divide(g, r, out=np.zeros_like(g), where=r > 0.0))
