@@ -41,7 +41,10 @@ def name(path):
 
 @pytest.mark.parametrize("page", CODED, ids=name)
 def test_code_on_the_page_runs(page, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+    """In a folder beside the data that pages read, as in the documentation."""
+    (tmp_path / "data").symlink_to(ROOT / "docs" / "data")
+    (tmp_path / "pages").mkdir()
+    monkeypatch.chdir(tmp_path / "pages")
     monkeypatch.setitem(os.environ, "MPLBACKEND", "Agg")
     file = tmp_path / f"{page.stem}.py"
     file.write_text("\n".join(BLOCK.findall(page.read_text(encoding="utf-8"))))
