@@ -192,3 +192,18 @@ def test_sensitivity_to_the_limit():
     (t_up, up), (t_low, low) = (np.array(swing(start, lambda *_, c=c: c))[:, -1] for c in (3.001, 2.999))
     assert sol.sensitivity("arm.angle", "dry.law.mu_s")[-1] == pytest.approx((up - low) / 0.002, rel=1e-4)
     assert sol.events[-1].sensitivity("dry.law.mu_s") == pytest.approx((t_up - t_low) / 0.002, rel=1e-4)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("size", [1.0, 1e9, 1e12])
+def test_friction_without_a_load_turns_with_slip_in_any_unit_of_force(method, size):
+    """A torque of twice the friction brakes at 3 until t = w/3, then turns back at 1."""
+    w, t_end = 5.0, 6.0
+    arm = fm.RigidBody("arm", mass=size, inertia=size, angular_velocity=w)
+    dry = fm.DryFriction("dry", arm, axis="angle", static=size)
+    drive = fm.Torque("drive", arm, value=-2.0 * size)
+    sol = fm.simulate(fm.Scene("s", [arm, fm.Revolute("pin", arm), dry, drive]), t_end=t_end, rtol=1e-8, method=method)
+    assert [e.kind for e in sol.events] == ["reversal"]
+    assert sol.events[0].t == pytest.approx(w / 3, rel=1e-9)
+    assert sol["arm.angle"][-1] == pytest.approx(w**2 / 6 - (t_end - w / 3) ** 2 / 2, rel=1e-9)
+    assert sol.audit().ok

@@ -52,12 +52,12 @@ def triggers(
         if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
             continue
         if mode[c] == STICK:
-            out.trigger[2 * c] = spare(mech, k, c, F, N, k.borne)
+            out.trigger[2 * c] = spare(mech, k, c, F, N)
         else:
             # away from rest slip has a direction of its own, and a force that passes through 0 none but round-off's
             away = plane(mech, c) and k.form[c] == 0
             speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
-            out.trigger[2 * c] = speed + out.top_slip * lack(N[c], k.borne)
+            out.trigger[2 * c] = speed + out.top_slip * lack(mech, k, c, N[c])
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if is_open(mech, j):
@@ -132,7 +132,7 @@ def has_come_to_rest(mech: Mech, k: Moving, out: Watch, y: State, end: State) ->
     """
     row = mech.port.row
     for c in range(end.mode.shape[0]):
-        if end.mode[c] != SLIP or not plane(mech, c) or lack(end.N[c], k.borne) > 0.0:
+        if end.mode[c] != SLIP or not plane(mech, c) or lack(mech, k, c, end.N[c]) > 0.0:
             continue
         speed = magnitude(row, c, end.g)
         slows = speed < magnitude(row, c, y.g) and slip_speed(row, c, end.n, end.F, end.ga) < 0.0
@@ -152,9 +152,9 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
         return not is_open(mech, j - 2 * n_c)
     if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
         return bool(mech.port.normal[j // 2] == NORMAL_LAW)
-    loaded = lack(y.N[j // 2], k.borne) == 0.0
+    loaded = lack(mech, k, j // 2, y.N[j // 2]) == 0.0
     for i in range(st.tab.c.shape[0]):
-        loaded = loaded and lack(st.N[i, j // 2], k.borne) == 0.0
+        loaded = loaded and lack(mech, k, j // 2, st.N[i, j // 2]) == 0.0
     return bool(loaded)
 
 

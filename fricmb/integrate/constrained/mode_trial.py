@@ -54,16 +54,16 @@ def wrong(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> float:
                 return float(1.0 + abs(y.ga[a]) / a_scale)  # no force keeps it from slipping across its guide
         limit = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
         force = magnitude(mech.port.row, c, y.F)
-        over = -spare(mech, k, c, y.F, y.N, k.borne)
+        over = -spare(mech, k, c, y.F, y.N)
         return over / max(limit, 1e-300) if over > SLACK * max(limit, force) else 0.0
-    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(y.N[c], k.borne)
+    against = -slip_speed(mech.port.row, c, y.n, y.F, y.ga) / a_scale - lack(mech, k, c, y.N[c])
     return against if against > (CREEP_IN_LOOPS if mech.port.soft[c] > 0.0 else CREEP) else 0.0
 
 
 @kernel
 def still(mech: Mech, k: Moving, y: State, c: int, a_scale: float) -> bool:
     """Whether others hold port c, which would slip but cannot without them: then it sticks."""
-    if y.mode[c] != SLIP or k.looped[c] == 0 or lack(y.N[c], k.borne) > 0.0:
+    if y.mode[c] != SLIP or k.looped[c] == 0 or lack(mech, k, c, y.N[c]) > 0.0:
         return False
     return bool(slip_speed(mech.port.row, c, y.n, y.F, y.ga) < CREEP_IN_LOOPS * a_scale)
 

@@ -9,7 +9,7 @@ from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, 
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, first_multiplier
 from fricmb.integrate.model.forces import evaluate
-from fricmb.integrate.model.friction_cone import cone_margin
+from fricmb.integrate.model.friction_cone import cone_margin, stick_limit
 from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
 
@@ -51,21 +51,28 @@ def slip_speed(row: Ints, c: int, n: Floats, F: Floats, x: Floats) -> float:
     return float(-along / size if size > 0.0 else along)
 
 
-#: Loads below this part of the largest force: friction under them moves nothing, and is not known better than that.
+#: Loads below this part of the largest force, and friction under them: it moves nothing, and is not known better.
 LIGHT = 1e-10
 
 
 @kernel
-def lack(load: float, largest: float) -> float:
-    """1 for a port without load, falling to 0 where its friction tells beside the largest force."""
-    return float(max(0.0, 1.0 - load / (LIGHT * largest))) if largest > 0.0 else 0.0
+def lack(mech: Mech, k: Moving, c: int, load: float) -> float:
+    """1 for port c without load, falling to 0 where its friction tells beside the largest force.
+
+    What it holds counts where that is more than its load: of dry friction without a load the coefficient is the force.
+    """
+    least = LIGHT * k.borne
+    if load >= least or not least > 0.0:
+        return 0.0
+    held = stick_limit(mech.port, mech.port.laws, c, k.s, max(load, 0.0))
+    return float(max(0.0, 1.0 - max(load, held) / least))
 
 
 @kernel
-def spare(mech: Mech, k: Moving, c: int, F: Floats, N: Floats, largest: float) -> float:
+def spare(mech: Mech, k: Moving, c: int, F: Floats, N: Floats) -> float:
     """Force that port c could still bear while it sticks; of one almost without load only what tells beside others."""
     left = cone_margin(mech.port, mech.port.laws, c, k.s, F, max(N[c], 0.0))
-    return float(left + LIGHT * largest * lack(N[c], largest))
+    return float(left + LIGHT * k.borne * lack(mech, k, c, N[c]))
 
 
 @kernel

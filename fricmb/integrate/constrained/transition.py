@@ -62,9 +62,9 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
 
 
 @kernel
-def bears(k: Moving, y: State, i: int) -> bool:
+def bears(mech: Mech, k: Moving, y: State, i: int) -> bool:
     """Whether the load of port i is more than a trifle beside the largest force."""
-    return bool(lack(y.N[i], k.borne) == 0.0)
+    return bool(lack(mech, k, i, y.N[i]) == 0.0)
 
 
 @kernel
@@ -77,7 +77,7 @@ def turn_with_slip(mech: Mech, k: Moving, y: State, size: float, but: int) -> No
     for i in range(y.mode.shape[0]):
         a = mech.port.row[i]
         if i != but and y.mode[i] == SLIP and not plane(mech, i) and mech.port.law[i] != LAW_SMOOTH:
-            small = (1e-11 if bears(k, y, i) else 1e-13) * size
+            small = (1e-11 if bears(mech, k, y, i) else 1e-13) * size
             y.n[a] = -y.n[a] if y.n[a] * y.g[a] < -small else y.n[a]
 
 
@@ -151,7 +151,7 @@ def change_modes(
     for i in range(n_c):
         part[i] = RESTED if y.mode[i] == STICK else SLIPS_ON
         # without load the direction of slip decides nothing: found anew it would be that of round-off
-        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.top_slip and bears(k, y, i):
+        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.top_slip and bears(mech, k, y, i):
             part[i] = ARRIVES
     forced = -1
     if 0 <= j < 2 * n_c:
