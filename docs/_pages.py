@@ -14,7 +14,7 @@ from fricmb.models import catalogue
 
 # Dimensions of arguments of models, by what they are called; "" where there is none.
 DIMENSIONS = {
-    "mass": "mass", "masses": "mass", "support": "mass", "pad_mass": "mass", "density": "mass/length",
+    "mass": "mass", "masses": "mass", "support": "mass", "pad_mass": "mass", "lever": "mass", "density": "mass/length",
     "inertia": "mass length^2", "inertia_across": "mass length^2", "inertia_axial": "mass length^2", "reach": "length",
     "arm": "length", "half_gauge": "length", "cylinder_radius": "length", "rise": "length/time",
     "yaw_stiffness": "force length/rad", "f11": "force", "f22": "force",
@@ -24,7 +24,8 @@ DIMENSIONS = {
     "stiffness": "force/length", "coupling": "force/length", "ground": "force/length", "k1": "force/length",
     "k2": "force/length", "k3": "force/length", "pad_stiffness": "force/length",
     "damping": "force time/length", "gravity": "length/time^2", "normal_force": "force", "friction": "force",
-    "amplitude": "force", "preload": "force", "load": "force", "torque": "force length",
+    "amplitude": "force", "preload": "force", "load": "force", "pull": "force", "pretension": "force",
+    "torque": "force length",
     "mu_k_N": "force", "mu_s_N": "force", "speed": "length/time", "belt": "length/time", "velocity": "length/time",
     "v0": "length/time", "u0": "length/time", "table": "length/time", "rotor_velocity": "modal",
     "frequency": "rad/time", "spin": "rad/time", "angular_velocity": "rad/time", "rates": "rad/time",
@@ -34,7 +35,7 @@ DIMENSIONS = {
 NUMBERS = [
     "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",
     "damping_ratio", "split", "modal_mass", "case", "n", "n_pad_modes", "n_rotor_modes", "n_contacts",
-    "nodal_diameters", "law", "laws", "pressure", "modes", "conicity",
+    "nodal_diameters", "law", "laws", "pressure", "modes", "conicity", "slope",
 ]  # fmt: skip
 DIMENSIONS |= dict.fromkeys(NUMBERS, "")
 # Where a model means something else by a name.
@@ -45,6 +46,9 @@ OTHERWISE = {
     ("slider_crank", "speed"): "rad/time",
     ("slider_crank", "friction"): "",
     ("andrews", "friction"): "",
+    ("band_brake", "speed"): "rad/time",
+    ("belt_drive", "speed"): "rad/time",
+    ("belt_drive", "load"): "force length",
     ("drive_train", "speed"): "rad/time",
     ("drive_train", "stiffness"): "force length/rad",
     ("drive_train", "damping"): "force length time/rad",
