@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
 from fricmb.integrate.compile.cache_files import say
@@ -13,7 +16,7 @@ from fricmb.integrate.run.stop import ended_by
 _Thing = TypeVar("_Thing")
 
 #: Seconds between looks for Ctrl-C, which not every system lets wake a thread that waits.
-_LOOK = 0.5
+_LOOK = 0.1
 
 
 def run_in_threads(
@@ -23,45 +26,69 @@ def run_in_threads(
 
     On Ctrl-C no further run is begun, and those under way are waited for; on a second one they are ended.
     """
-    waiting, found = deque(runs.items()), deque[tuple[int, bool, Any]]()
-    busy, news, stop = set(range(min(count, len(runs)))), threading.Event(), threading.Event()
+    waiting, stop = deque(runs.items()), threading.Event()
+    found: SimpleQueue[tuple[int, bool, Any] | None] = SimpleQueue()  # None: a thread has ended
 
-    def work(me: int) -> None:
-        with ended_by(stop):
-            while (task := _next(waiting)) is not None:
-                number, parameters = task
+    def work() -> None:
+        try:
+            with ended_by(stop):
+                while (task := _next(waiting)) is not None:
+                    number, parameters = task
+                    try:
+                        found.put((number, True, run(parameters)))
+                    except BaseException as error:  # raised where the sweep was called
+                        found.put((number, False, error))
+        finally:
+            found.put(None)
+
+    threads = [threading.Thread(target=work, name="fricmb sweep") for _ in range(min(count, len(runs)))]
+    with _counted_interrupts() as interrupts:
+        busy, said = len(threads), False
+        try:
+            for thread in threads:
+                thread.start()
+            while busy:
+                if interrupts and not said:
+                    said = True
+                    waiting.clear()
+                    say(f"interrupted: waiting for {busy} runs under way; Ctrl-C again ends them at once")
+                if len(interrupts) > 1:
+                    raise KeyboardInterrupt
                 try:
-                    found.append((number, True, run(parameters)))
-                except BaseException as error:  # raised where the sweep was called
-                    found.append((number, False, error))
-                news.set()
-        busy.discard(me)
-        news.set()
-
-    threads = [threading.Thread(target=work, name="fricmb sweep", args=(me,)) for me in busy]
-    for thread in threads:
-        thread.start()
-    stopped = False
-    try:
-        while busy or found:
-            try:
-                news.wait(_LOOK)
-                news.clear()
-                while (result := _next(found)) is not None:
+                    result = found.get(timeout=_LOOK)
+                except Empty:
+                    continue
+                if result is None:
+                    busy -= 1
+                else:
                     yield _good(*result)
-            except KeyboardInterrupt:
-                if stopped:
-                    raise
-                stopped = True
-                waiting.clear()
-                say(f"interrupted: waiting for {len(busy)} runs under way; Ctrl-C again ends them at once")
-    finally:
-        waiting.clear()
-        stop.set()
-        for thread in threads:
-            thread.join()
-    if stopped:
+        finally:
+            waiting.clear()
+            stop.set()
+            for thread in threads:
+                if thread.ident is not None:  # where not all could be started
+                    thread.join()
+    if interrupts:
         raise KeyboardInterrupt
+
+
+@contextmanager
+def _counted_interrupts() -> Iterator[list[int]]:
+    """One entry for each Ctrl-C inside, which raises nothing: raised between any two steps it would lose a result,
+    or leave a lock of the threads in a state of its own.
+
+    In the main thread, and where the user has no handler of their own; elsewhere it stays empty.
+    """
+    interrupts: list[int] = []
+    main = threading.current_thread() is threading.main_thread()
+    if not (main and signal.getsignal(signal.SIGINT) is signal.default_int_handler):
+        yield interrupts
+        return
+    signal.signal(signal.SIGINT, lambda number, frame: interrupts.append(number))
+    try:
+        yield interrupts
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _next(things: deque[_Thing]) -> _Thing | None:
