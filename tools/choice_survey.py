@@ -94,7 +94,7 @@ def pad(contacts: int) -> fm.Scene:
     return fm.Scene("pad", [body, disc, *rubs])
 
 
-def elements(contacts: int, nodes: int = 40) -> fm.Scene:
+def elements(contacts: int, nodes: int = 60) -> fm.Scene:
     """A bar of linear finite elements, whose mass matrix couples; some of its nodes rub."""
     unit = np.array([[1.0, -1.0], [-1.0, 1.0]])
     M, K = np.zeros((2, nodes, nodes))

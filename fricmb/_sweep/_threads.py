@@ -74,10 +74,10 @@ def run_in_threads(
 
 @contextmanager
 def _counted_interrupts() -> Iterator[list[int]]:
-    """One entry for each Ctrl-C inside, which raises nothing: raised between any two steps it would lose a result,
-    or leave a lock of the threads in a state of its own.
+    """One entry for each Ctrl-C inside, which raises nothing.
 
-    In the main thread, and where the user has no handler of their own; elsewhere it stays empty.
+    Raised between any two steps, it would lose a result or leave a lock of the threads in a state of its own.  The list
+    stays empty in other threads than the main one, and where the user has a handler of their own.
     """
     interrupts: list[int] = []
     main = threading.current_thread() is threading.main_thread()
