@@ -45,7 +45,8 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.problem import Codes
+from fricmb.integrate.model.friction_cone import stick_limit
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, Codes
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
 from fricmb.integrate.step.knots import NOWHERE, SLIGHT
@@ -81,7 +82,10 @@ def grow(mech: Mech, c: Control, out: Watch, k: Moving, y: State) -> None:
         out.top_slip = max(out.top_slip, abs(y.g[i]))
         out.top_force = max(out.top_force, abs(y.F[i]))
     for i in range(y.N.shape[0]):
-        out.top_force = max(out.top_force, abs(y.N[i]))
+        # a load that is given is a number of its own: dry friction without one has 1, in whatever unit
+        given = mech.port.normal[i] == NORMAL_CONSTANT and mech.port.law[i] != LAW_SMOOTH
+        load = stick_limit(mech.port, mech.port.laws, i, k.s, y.N[i]) if given else y.N[i]
+        out.top_force = max(out.top_force, abs(load))
     for j in range(mech.joint.port.shape[0]):
         if mech.joint.one_sided[j]:
             out.top_force = max(out.top_force, abs(y.lam[mech.joint.row[j]]))

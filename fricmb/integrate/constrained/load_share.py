@@ -13,7 +13,16 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.forces import is_open, move
-from fricmb.integrate.constrained.group_cones import cones_of, keep_loads, load_of, load_slopes, shares_of
+from fricmb.integrate.constrained.group_cones import (
+    cones_of,
+    idle,
+    keep_loads,
+    load_of,
+    load_slopes,
+    shares_of,
+    units_of,
+    without_idle,
+)
 from fricmb.integrate.constrained.loop_mobility import holds, may_share, mobility, rank
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -107,24 +116,30 @@ def share_cones(
 ) -> float:  # fmt: skip
     """The same where loads may follow the shares, by the cones with the most to spare."""
     keep_loads(mech, k, held, lam, answers, D)
-    Z = shares_of(D)
+    unit = np.zeros(F.shape[0])
+    Z = shares_of(D) * units_of(mech, k, held, N, F, D, unit)
+    relief, Z = without_idle(mech, k, held, N, F, lam, answers, unit, Z)
     x, weight, most = np.zeros(Z.shape[1]), np.zeros(held.shape[0] + mech.joint.port.shape[0]), 0.0
-    cones, top = cones_of(mech, k, held, N, F, lam, part, answers, Z)
-    for _ in range(ROUNDS if Z.shape[1] > 0 and cones.held.any() else 0):
-        most = most_spare(cones, top, x, weight)
+    cones = cones_of(mech, k, held, N, F + relief, lam, part, answers, unit, Z)
+    several = Z.shape[1] > 0 and cones.held.any()
+    if not several and relief.any():
+        apply_shares(mech, k, held, N, F, lam, answers, unit, cones, x)
+    for _ in range(ROUNDS if several else 0):
+        most = most_spare(cones, x, weight)
         nearest_enough(cones, most, x)
         for c in range(held.shape[0]):
             for a in range(mech.port.row[c], mech.port.row[c + 1]):
                 k.way[a] = -weight[c] / cones.size[c] * shared(cones, x, a)
-        if apply_shares(mech, k, held, N, F, lam, answers, cones, x) <= CURVED or most > ENOUGH:
+        if apply_shares(mech, k, held, N, F, lam, answers, unit, cones, x) <= CURVED or most > ENOUGH:
             break
-        cones, top = cones_of(mech, k, held, N, F, lam, part, answers, Z)
+        cones = cones_of(mech, k, held, N, F, lam, part, answers, unit, Z)
     return float(1.0 - most) if x.any() or weight.any() else 0.0
 
 
 @kernel
 def apply_shares(
-    mech: Mech, k: Moving, held: Codes, N: Floats, F: Floats, lam: Floats, answers: Floats2, cones: Cones, x: Floats
+    mech: Mech, k: Moving, held: Codes, N: Floats, F: Floats, lam: Floats, answers: Floats2, unit: Floats, cones: Cones,
+    x: Floats,
 ) -> float:  # fmt: skip
     """Give every port its share, with loads and reactions; what loads differ by from straight lines, in their size.
 
@@ -145,7 +160,8 @@ def apply_shares(
         for a in range(F.shape[0]):
             straight += by_force[a] * change[a]
         N[c] = load_of(mech, k, c, lam)
-        bent = max(bent, abs(N[c] - straight) / max(abs(N[c]), abs(straight), 1e-300))
+        if not idle(mech, k, c, N[c], by_force, unit):
+            bent = max(bent, abs(N[c] - straight) / max(abs(N[c]), abs(straight), 1e-300))
     for a in range(F.shape[0]):
         F[a] += change[a]
     return float(bent)

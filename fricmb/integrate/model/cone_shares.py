@@ -22,7 +22,7 @@ from fricmb.integrate.problem import Codes, Floats, Floats2, Ints
 
 #: Planes tried at most, and what margins, in the sizes of cones, are found to.
 PLANES, TIGHT = 400, 1e-14
-#: Margin, in sizes of cones, and share of the largest force beyond which nothing is looked for: groups that jam.
+#: Margin, in sizes of cones, and share beyond which nothing is looked for: groups that jam.
 FAR = 100.0
 #: Margin, in sizes of cones, that is enough: with more to spare shares stay as near as may be to those there were.
 ENOUGH = 1e-2
@@ -31,6 +31,7 @@ ENOUGH = 1e-2
 class Cones(Layout):
     """Cones of a group: cone c has rows ``row[c]:row[c+1]`` of F (m,) and Z (m, r), none where there is no friction.
 
+    Z is what shares of size 1 bring: forces as large as what the group bears, so that no number depends on units.
     ``held`` (k,) 0 leaves a cone out; ``limit`` (k,), ``slope`` (k, r), ``size`` (k,) its limit, how that follows the
     shares, and the unit of its margin.
     """
@@ -108,17 +109,17 @@ def solve_planes(B: Floats2, y: Floats, transposed: bool) -> bool:
 
 
 @kernel
-def most_spare(cones: Cones, unit: float, x: Floats, weight: Floats) -> float:
+def most_spare(cones: Cones, x: Floats, weight: Floats) -> float:
     """Shares x (r,) with the most to spare, and the margin of the tightest cone, in its size; below 0: nothing holds.
 
-    ``unit``: of forces.  ``weight`` (k,) becomes what each cone counts for in the bound that this is the most: those
+    ``weight`` (k,) becomes what each cone counts for in the bound that this is the most: those
     above 0 give way together.
     """
     d = x.shape[0] + 1
     B, b, who = np.zeros((d, d)), np.zeros(d), np.full(d, -1)
     for i in range(d):
         B[i, i] = 1.0
-        b[i] = FAR if i == d - 1 else FAR * unit * (1.0 + 0.01 * i)
+        b[i] = FAR if i == d - 1 else FAR * (1.0 + 0.01 * i)
     at, y, plane, best = np.zeros(d), np.zeros(d), np.zeros(d), x.copy()
     most = -np.inf
     for _ in range(PLANES):
@@ -138,14 +139,14 @@ def most_spare(cones: Cones, unit: float, x: Floats, weight: Floats) -> float:
                     weight[who[i]] += max(y[i], 0.0)
         beyond, wall = at[d - 1] - spare, -1
         for j in range(d - 1):
-            if abs(at[j]) > 2.0 * FAR * unit and abs(at[j]) / unit > beyond:
-                beyond, wall = abs(at[j]) / unit, j
+            if abs(at[j]) > 2.0 * FAR and abs(at[j]) > beyond:
+                beyond, wall = abs(at[j]), j
         if beyond <= TIGHT * max(1.0, abs(spare)):
             break
         if wall >= 0:
             plane[:] = 0.0
             plane[wall] = np.sign(at[wall])
-            bound = 2.0 * FAR * unit
+            bound = 2.0 * FAR
         else:
             plane_of(cones, at[: d - 1], c, plane)
             bound = spare - at[d - 1]
