@@ -25,7 +25,7 @@ class Gear(Joint):
     name : str
     a, b : RigidBody or one of its points
     ratio : float
-        Radius of b over that of a; < 0 for an internal gear or a belt.
+        Radius of b over that of a, not 0; < 0 for an internal gear or a belt.
     pressure_angle : float, optional
         Of the teeth, in radians, between -pi/2 and pi/2 (20 degrees are 0.349): the force between them acts on both
         wheels at the pitch point between their centres, on lines that lean by this angle.  Teeth push the wheels
@@ -93,10 +93,10 @@ class Gear(Joint):
         self._check_losses()
         super().__post_init__()
         self._settle("ratio")
+        if value_of(self.ratio) == 0.0:
+            self._refuse("ratio", self.ratio, "another than 0")
         if self.pressure_angle is not None:
             self._check_teeth()
-        if self.friction is not None and value_of(self.ratio) == 0.0:
-            self._refuse("ratio", self.ratio, "another than 0 beside an efficiency")
         self.local_coordinates()
 
     def _check_losses(self) -> None:

@@ -203,7 +203,7 @@ class Backlash(_Touching):
         The coordinate, of a less that of b, as in :class:`DryFriction`.
     ratio : float, optional
         In place of ``axis``, of two wheels in mesh: the coordinate is ``angle of a + ratio (angle of b)``, as of a
-        :class:`Gear` (radius of b over that of a; < 0 for an internal gear or a shaft).
+        :class:`Gear` (radius of b over that of a, not 0; < 0 for an internal gear or a shaft).
     gap : float
         The whole play, >= 0: from one flank to the other.
     stiffness : float
@@ -244,6 +244,8 @@ class Backlash(_Touching):
         if self.axis is not None:
             self._refuse("ratio", self.ratio, "left out beside axis")
         self._set("ratio", self._number("ratio", self.ratio))
+        if value_of(self.ratio) == 0.0:
+            self._refuse("ratio", self.ratio, "another than 0")
 
     def _check_limits(self) -> None:
         self._set("gap", self._number("gap", self.gap, minimum=0.0))

@@ -143,6 +143,7 @@ def test_what_cannot_be_is_refused_by_name():
         ("efficiency_back must be left out without efficiency", {"efficiency_back": 0.9}),
         ("friction must be left out without efficiency", {"friction": fm.laws.Coulomb(mu_s=0.1)}),
         ("ratio must be another than 0", {"ratio": 0.0, "efficiency": 0.9}),
+        ("ratio must be another than 0", {"ratio": 0.0}),
         ("pressure_angle must be a number between -pi/2 and pi/2", {"pressure_angle": 1.6}),
         ("pressure_angle must be left out where centres are in one place", {"ratio": -1.0, "pressure_angle": 0.3}),
         ("centres must be four numbers", {"pressure_angle": 0.3, "centres": 1.0}),

@@ -52,6 +52,7 @@ def test_what_cannot_be_is_refused_by_name():
     refused("axis must be a Revolute of the plane; along a guide", lambda: stop(WHEEL, axis=fm.Prismatic("g", WHEEL)))
     play = {"gap": 0.1, "stiffness": 1.0}
     refused("gap must be a finite number >= 0", lambda: fm.Backlash("m", BLOCK, axis="x", gap=-0.1, stiffness=1.0))
+    refused("ratio must be another than 0", lambda: fm.Backlash("m", WHEEL, OTHER, ratio=0.0, **play))
     refused("ratio must be left out beside axis", lambda: fm.Backlash("m", WHEEL, OTHER, axis="x", ratio=1.0, **play))
     refused("axis must be given", lambda: fm.Backlash("m", WHEEL, OTHER, **play))
     refused("a must turn", lambda: fm.Backlash("m", BLOCK, WHEEL, ratio=1.0, **play))
