@@ -23,6 +23,8 @@ _THIRD = 20.0**0.5
 _SLOPES = {"linear": 2.0**0.5, "hold": 0.0, "cubic": 3.0 * (2.0 / 3.0**0.5 - 1.0) ** 0.5}
 #: A spacing of so many usual ones is a gap; that part of a slope that is noise is much.
 _GAP, _MUCH = 3.0, 0.3
+#: A time may lie outside by this part of the ends: round-off, as for runs.
+_BEYOND = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,12 +141,31 @@ class Signal:
         return f"Signal {self.name!r}: {n} values, {span}, {self.kind}, {outside}"
 
     def __call__(self, x: Any) -> Any:
-        """Values at times, as numbers; of an expression in ``fm.t``, linear in it, the expression."""
+        """Values at times, as numbers; of an expression in ``fm.t``, linear in it, the expression.
+
+        Raises
+        ------
+        SceneError
+            For a time outside the values, where these are not to be had (``outside="refuse"``).
+        """
         if hasattr(x, "free_symbols"):
             from fricmb.signal._symbols import series_of
 
             return series_of(self._table, self.name, x)
-        return self._table.value(np.asarray(x, dtype=float))
+        times = np.asarray(x, dtype=float)
+        self._check_inside(times)
+        return self._table.value(times)
+
+    def _check_inside(self, times: Floats) -> None:
+        """Refuse times outside, but for the round-off of a time at an end."""
+        first, last = float(self.t[0]), float(self.t[-1])
+        margin = _BEYOND * max(abs(first), abs(last))
+        beyond = times[(times < first - margin) | (times > last + margin)]
+        if self.outside == "refuse" and beyond.size:
+            raise SceneError(
+                f"Signal {self.name!r}: known from t = {first:.10g} to {last:.10g}, asked for at"
+                f' {float(beyond[0]):.10g}; accepted is a time inside, or fm.Signal(..., outside="hold") or "zero"'
+            )
 
     @cached_property
     def _table(self) -> Table:

@@ -28,6 +28,15 @@ def test_values_between_and_outside():
     assert fm.Signal(T, y, "cubic")(inner) == pytest.approx(CubicSpline(T, y)(inner), abs=1e-13)
 
 
+def test_values_outside_are_refused_unless_said():
+    signal = fm.Signal(T, wave(T), name="push")
+    for x in (-0.1, [1.0, 4.1], np.inf):
+        with pytest.raises(fm.SceneError, match="Signal 'push': known from t = 0 to 4, asked for at"):
+            signal(x)
+    # an end is inside, round-off aside
+    assert signal(4.0 * (1.0 + 1e-15)) == pytest.approx(float(wave(4.0)), abs=1e-12)
+
+
 def test_expressions_print_differentiate_and_evaluate():
     signal = fm.Signal(T, wave(T), "cubic", name="push")
     expression = 2 * signal + fm.t
