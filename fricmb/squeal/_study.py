@@ -27,7 +27,7 @@ from fricmb.analysis.cycles._flow import initial_slots
 from fricmb.errors import FricmbError, shown, unknown_name
 from fricmb.integrate.run.ending_signals import as_interrupts
 from fricmb.integrate.run.one_thread import one_thread
-from fricmb.scene import ModalBody, parameter_unit
+from fricmb.scene import Element, ModalBody, parameter_unit
 from fricmb.squeal import _uncertain
 from fricmb.squeal._derivatives import Derivatives, derivatives
 from fricmb.squeal._feed import Feed, feed
@@ -87,7 +87,7 @@ def study(
     Raises
     ------
     AnalysisError
-        If there is no steady sliding at any place, or an argument cannot be.
+        If there is no steady sliding at any place, nothing that could slide, or an argument cannot be.
     UnknownNameError
         For a parameter that is not there.
 
@@ -101,6 +101,7 @@ def study(
     0.75
     """
     checked_scene(_WHO, scene)
+    _check_friction(scene)
     held = dict(checked_speeds(speeds))
     if not isinstance(over, Mapping) or not 1 <= len(over) <= 2:
         accepted = "a dict of one or two names of parameters, each with its values"
@@ -114,6 +115,17 @@ def study(
     made = Study(places=places, over=tuple(over), values=values, workers=workers, store=store, progress=progress)
     made._make()
     return made
+
+
+def _check_friction(scene: Scene) -> None:
+    """Refuse a scene without friction: parts, or matrices and forces that may stand for it (of FE, of a user)."""
+    forces = (part for part in scene.parts if isinstance(part, Element))
+    if scene.frictional or scene.matrices or any(type(f).define_force is not Element.define_force for f in forces):
+        return
+    raise AnalysisError(
+        f"{_WHO}: nothing slides in scene {scene.name!r}: it has no contact, no joint with friction, and no matrix or"
+        " force that may stand for one"
+    )
 
 
 def _true_modes(scene: Scene) -> float:

@@ -310,6 +310,13 @@ def test_what_cannot_be_is_refused(options, words):
         study(two_modes(), **options)
 
 
+def test_a_scene_in_which_nothing_slides_is_refused():
+    mass = fm.Body("mass", mass=1.0)
+    spring = fm.Spring("spring", mass, axis="x", stiffness=1.0)
+    with pytest.raises(fm.FricmbError, match="nothing slides in scene 'free': it has no contact"):
+        study(fm.Scene("free", [mass, spring]), over={"spring.stiffness": [1.0, 2.0]})
+
+
 @pytest.mark.parametrize(
     ("ask", "words"),
     [
