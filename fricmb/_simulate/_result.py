@@ -16,6 +16,7 @@ from fricmb._simulate._digits import digit_notes
 from fricmb._simulate._joined import JoinedRun, island_stats
 from fricmb._simulate._mechanics import SceneMechanics
 from fricmb._simulate._misses import miss_notes
+from fricmb._simulate._moved_centres import centre_notes
 from fricmb.errors import IntegrationError
 from fricmb.integrate import MotionSamples, Trajectory
 from fricmb.integrate.problem import LAW_COEFFICIENT, Floats
@@ -104,7 +105,7 @@ def find_notes(sol: Solution) -> tuple[str, ...]:
         notes = ledger_note(sol, rtol)
     except IntegrationError as error:
         notes = (f"energies are beyond what numbers hold: {error.reason}",)
-    return (*notes, *lock_notes(sol), *digit_notes(run, rtol), *miss_notes(sol, run, rtol))
+    return (*notes, *lock_notes(sol), *centre_notes(sol), *digit_notes(run, rtol), *miss_notes(sol, run, rtol))
 
 
 def _sound_part(

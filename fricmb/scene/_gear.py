@@ -30,7 +30,8 @@ class Gear(Joint):
         Of the teeth, in radians, between -pi/2 and pi/2 (20 degrees are 0.349): the force between them acts on both
         wheels at the pitch point between their centres, on lines that lean by this angle.  Teeth push the wheels
         apart on the flank that carries while the torque on a is counter-clockwise if the angle is > 0, clockwise if it
-        is < 0; under a torque the other way the part across would have the wrong sign.  Centres have to stay in place.
+        is < 0; under a torque the other way the part across would have the wrong sign.  Centres have to stay in place,
+        one beside the other: ``sol.stats.notes`` says by how much they moved.
     centres : (float, float, float, float), optional
         X and y of the centre of a, then of b, for the pressure angle; default: as the ends are declared.
     efficiency : float, optional

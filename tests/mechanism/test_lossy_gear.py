@@ -206,3 +206,32 @@ def test_sensitivity_to_the_pressure_angle():
     up, low = (fm.simulate(scene.with_parameters({name: -0.35 + h}), t_end=1.0, rtol=1e-12) for h in (1e-4, -1e-4))
     right = (up["a.angle"][-1] - low["a.angle"][-1]) / 2e-4
     assert sol.sensitivity("a.angle", name)[-1] == pytest.approx(right, rel=1e-6)
+
+
+@pytest.mark.parametrize("by_points", [False, True])
+def test_centres_that_move_are_told(by_points):
+    """A wheel without a pin is pushed away by the teeth; with one, or on a carriage that carries both, it stays."""
+
+    def run(held):
+        a = fm.RigidBody("a", mass=1.0, inertia=JA)
+        b = fm.RigidBody("b", mass=1.0, inertia=JB, position=(0.6, 0.0))
+        base = fm.RigidBody("base", mass=2.0, inertia=1.0)
+        ends = (a.point("c", (0.0, 0.0)), b.point("c", (0.0, 0.0))) if by_points else (a, b)
+        teeth = fm.Gear("teeth", *ends, ratio=2.0, pressure_angle=0.35)
+        parts = [a, b, teeth, fm.Torque("drive", a, value=1.0)]
+        if held == "carriage":
+            at = base.point("pa", (0.0, 0.0)), base.point("pb", (0.6, 0.0))
+            parts += [base, fm.Revolute("pa", a, at[0]), fm.Revolute("pb", b, at[1])]
+            parts += [fm.Prismatic("rail", base, fm.GROUND), fm.Force("F", base, axis="x", value=3.0)]
+        else:
+            parts += [fm.Revolute("pa", a)]
+            parts += [fm.Revolute("pb", b, fm.ground_point(0.6, 0.0))] if held == "pin" else []
+        return fm.simulate(fm.Scene("s", parts), t_end=1.0, rtol=1e-8)
+
+    for held in ("pin", "carriage"):
+        assert not any("centres" in note for note in run(held).stats.notes)
+    sol = run("")
+    way = np.hypot(sol["b.x"] - sol["a.x"] - 0.6, sol["b.y"] - sol["a.y"]).max() / 0.6
+    (note,) = (note for note in sol.stats.notes if "centres" in note)
+    assert "gear 'teeth'" in note
+    assert f"moved by up to {way:.2g} of their distance" in note
