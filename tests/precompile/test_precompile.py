@@ -121,6 +121,7 @@ def test_a_copy_is_made_where_the_cache_cannot_be_written(few, monkeypatch):
     """A file stands where its folder would be: nobody, not even root, can write into it."""
     (few / "file").write_text("")
     monkeypatch.setenv("FRICMB_CACHE_DIR", str(few / "file"))
+    monkeypatch.setattr(_compile, "runs", list)  # none: a kernel is as good as another
     files = compile_all(processes=1, into=few / "made")
     assert os.environ["FRICMB_CACHE_DIR"] == str(few / "file")
     assert {f"{path.parent.name}/{path.name}" for path in (few / "made").rglob("*") if path.is_file()} == set(files)
