@@ -68,7 +68,10 @@ class Derivatives:
         for name, *numbers in self.rows():
             shown = numbers if self.threshold is not None else numbers[:-1]
             widths = [12, 12, 12, 12, 14]
-            lines.append(f"{name:28} " + " ".join(f"{x:{w}.4g}" for x, w in zip(shown, widths, strict=False)))
+            cells = (f"{'-':>{w}}" if np.isnan(x) else f"{x:{w}.4g}" for x, w in zip(shown, widths, strict=False))
+            lines.append(f"{name:28} " + " ".join(cells))
+        if np.isnan(self.slopes).any():
+            lines.append("-: where the two modes have met, eigenvalues have no derivative; apart has one")
         return "\n".join(lines)
 
 

@@ -29,8 +29,8 @@ def test_there_are_thirty_and_they_are_in_groups():
 @pytest.mark.parametrize("file", SMALL, ids=name)
 def test_it_has_the_form(file):
     text = file.read_text(encoding="utf-8")
-    assert len(text.splitlines()) < 40
     title, rule, *rest = ast.get_docstring(ast.parse(text)).splitlines()
+    assert len(text.splitlines()) - len(rest) < 37  # without the prose
     assert title.endswith("?")
     assert set(rule) == {"="}
     assert len(rule) >= len(title)

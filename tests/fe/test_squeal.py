@@ -165,7 +165,7 @@ def test_structural_damping_becomes_that_of_each_mode():
     [
         ({"up_to": None}, "give up_to, a frequency, or n_modes"),
         ({"up_to": -1.0}, "up_to must be a finite number > 0, got -1.0"),
-        ({"up_to": 1e-9}, "no mode up to the frequency"),
+        ({"up_to": 1e-9}, "no mode up to the given frequency"),
         (
             {"enrich": [{"nu": 0.4}]},
             r"'nu' in enrich is neither a part of the model \(KR, DG\) nor a parameter in scales",

@@ -57,6 +57,27 @@ def test_an_edit_of_a_called_kernel_is_seen(run):
     assert run(doc="Other words.")[:2] == (7.0, 0), "a docstring is no code"
 
 
+HANDED = """
+from fricmb.integrate.compile.kernel import entry, kernel
+from inner import inner
+@kernel
+def twice(f, x: float) -> float:
+    return f(f(x))
+@entry
+def outer(x: float) -> float:
+    return twice(inner, x) + 1.0
+"""
+
+
+@pytest.mark.parametrize("plain", ["", "1"])
+def test_a_kernel_that_is_handed_to_another_is_read_and_kept_with_it(run, tmp_path, monkeypatch, plain):
+    monkeypatch.setenv("FRICMB_PLAIN", plain)
+    (tmp_path / "outer.py").write_text(HANDED)
+    assert run()[:2] == (19.0, 1)
+    assert run()[:2] == (19.0, 0)
+    assert run(shift=0.5)[:2] == (21.0, 1)
+
+
 DAMAGES = [lambda data: b"", lambda data: data[: len(data) // 2], lambda data: os.urandom(4000)]
 
 

@@ -26,6 +26,8 @@ BUILT_IN = [
     fm.TorsionSpring("torsion spring", ARM, stiffness=2.0, angle=0.3),
     fm.TorsionDamper("torsion damper", ARM, damping=1.0),
     fm.Torque("torque", ARM, value=sympy.cos(fm.coordinate("arm.angle"))),
+    fm.Stop("stop", PAD, axis="x", upper=0.5, stiffness=100.0, hunt_crossley=0.2),
+    fm.Backlash("backlash", PAD, BELT, axis="x", gap=0.2, stiffness=100.0),
 ]
 
 

@@ -6,6 +6,10 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 from numba import njit
+from numba.core import types
+from numba.core.imputils import lower_constant
+from numba.core.registry import CPUDispatcher
+from numba.extending import models, register_model
 
 from fricmb.integrate.compile.compilers import LinkedCompiler, MachineCompiler
 from fricmb.integrate.compile.kernel_cache import cached_on_disk
@@ -15,6 +19,34 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 _entries: dict[str, Any] = {}
 
 
+class KernelType(types.Dispatcher):  # type: ignore[misc]
+    """Type of a kernel, which says all that a call of it needs: handed to another kernel, its value is nothing.
+
+    Numba's own type hands on the address of the Python object.  What contains an address is of this process alone, and
+    is not kept on disk.
+    """
+
+    def __init__(self, dispatcher: Any) -> None:
+        super().__init__(dispatcher)
+        self.name = f"kernel {dispatcher.py_func.__module__}.{dispatcher.py_func.__qualname__}"
+
+
+class Kernel(CPUDispatcher):  # type: ignore[misc]
+    """Numba's dispatcher, with the type above."""
+
+    @property
+    def _numba_type_(self) -> KernelType:
+        return KernelType(self)
+
+
+register_model(KernelType)(models.OpaqueModel)
+
+
+@lower_constant(KernelType)  # type: ignore[untyped-decorator]
+def _nothing(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    return context.get_dummy_value()
+
+
 def kernel(function: _Function) -> _Function:
     """Compile ``function`` for calls from other kernels; division by zero gives inf, as in numpy.
 
@@ -22,7 +54,10 @@ def kernel(function: _Function) -> _Function:
     code and cached is the entry or block that calls it (:mod:`fricmb.integrate.compile.compilers`).
     """
     inner = njit(error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True, pipeline_class=LinkedCompiler)
-    return cast(_Function, inner(function))
+    compiled = inner(function)
+    if isinstance(compiled, CPUDispatcher):  # not where numba is told to compile nothing
+        compiled.__class__ = Kernel
+    return cast(_Function, compiled)
 
 
 def entry(function: _Function) -> _Function:
