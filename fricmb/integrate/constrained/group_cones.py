@@ -173,7 +173,8 @@ def without_idle(
             if taken == Z.shape[1] or abs(Z[a, best]) <= NOTHING * unit[a]:
                 continue
             share = Z[:, best] / Z[a, best]
-            Z[:, best] = Z[:, taken]
+            for i in range(Z.shape[0]):
+                Z[i, best] = Z[i, taken]
             taken += 1
             relief -= share * (F[a] + relief[a])
             for i in range(taken, Z.shape[1]):
