@@ -308,7 +308,7 @@ def test_accuracy_that_costs_nothing_is_told_from_waste():
     found = tolerance_statistic(exact)
     assert found["within"] == pytest.approx(0.0)
     assert found["fair"] == pytest.approx(2 / 3)
-    assert [row["rtol"] for row in found["exceptions"] if row["why"] == "more accurate than asked"] == [1e-9]
+    assert [row["rtol"] for row in found["exceptions"] if row["why"] == "more accurate than rtol"] == [1e-9]
 
 
 def test_a_case_can_be_declared_outside():
