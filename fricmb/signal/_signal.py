@@ -14,6 +14,7 @@ from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.signals.pieces import SLOPE, Table, table_of
+from fricmb.values import Arithmetic
 
 KINDS = ("linear", "hold", "cubic")
 OUTSIDE = ("refuse", "hold", "zero")
@@ -28,7 +29,7 @@ _BEYOND = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Signal:
+class Signal(Arithmetic):
     """A measured series as a function of time: it stands wherever an expression in ``fm.t`` may.
 
     It combines with numbers, parameters and expressions: ``2.0 * signal + sympy.sin(fm.t)``.  Runs step to every value
@@ -72,9 +73,6 @@ class Signal:
     outside: Literal["refuse", "hold", "zero"] = "refuse"
     _: KW_ONLY
     name: str = "signal"
-
-    # numpy leaves `array * signal` to the methods below
-    __array_ufunc__ = None
 
     def __post_init__(self) -> None:
         for field, words in (("kind", KINDS), ("outside", OUTSIDE)):
@@ -289,42 +287,6 @@ class Signal:
         from fricmb.signal._symbols import series_of
 
         return series_of(self._table, self.name)
-
-    def __neg__(self) -> Any:
-        return -self._sympy_()
-
-    def __pos__(self) -> Any:
-        return self._sympy_()
-
-    def __abs__(self) -> Any:
-        return abs(self._sympy_())
-
-    def __add__(self, other: Any) -> Any:
-        return self._sympy_() + other
-
-    def __radd__(self, other: Any) -> Any:
-        return other + self._sympy_()
-
-    def __sub__(self, other: Any) -> Any:
-        return self._sympy_() - other
-
-    def __rsub__(self, other: Any) -> Any:
-        return other - self._sympy_()
-
-    def __mul__(self, other: Any) -> Any:
-        return self._sympy_() * other
-
-    def __rmul__(self, other: Any) -> Any:
-        return other * self._sympy_()
-
-    def __truediv__(self, other: Any) -> Any:
-        return self._sympy_() / other
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return other / self._sympy_()
-
-    def __pow__(self, other: Any) -> Any:
-        return self._sympy_() ** other
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("t", "y", "kind", "outside", "name")}

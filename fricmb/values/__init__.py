@@ -1,5 +1,6 @@
 """Values of declarations: numbers, named parameters, expressions, and how they are checked, listed and replaced."""
 
+from fricmb.values._arithmetic import Arithmetic
 from fricmb.values._asked import ask, expressions, one_expression
 from fricmb.values._declaration import Declaration
 from fricmb.values._held import Held, held, is_foreign
@@ -28,6 +29,7 @@ __all__ = [
     "DIMENSIONLESS",
     "DIMENSIONS",
     "SI",
+    "Arithmetic",
     "Declaration",
     "Held",
     "Hz",

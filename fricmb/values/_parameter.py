@@ -10,10 +10,11 @@ import numpy as np
 
 from fricmb._calls import answers
 from fricmb.errors import SceneError, shown
+from fricmb.values._arithmetic import Arithmetic
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Arithmetic):
     """A named number; made by :func:`parameter`.
 
     It stands for a number in a declaration and combines with numbers and SymPy expressions; a combination is a SymPy
@@ -29,9 +30,6 @@ class Parameter:
     name: str
     value: float
 
-    # numpy leaves `array * parameter` to the methods below
-    __array_ufunc__ = None
-
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name or "." in self.name or self.name != self.name.strip():
             raise SceneError(f"parameter: name must be a non-empty string without dots, got {shown(self.name)}")
@@ -45,45 +43,6 @@ class Parameter:
         from fricmb.values._symbols import ParameterSymbol
 
         return ParameterSymbol(self.name, self.value)
-
-    def __neg__(self) -> Any:
-        return -self._sympy_()
-
-    def __pos__(self) -> Any:
-        return self._sympy_()
-
-    def __abs__(self) -> Any:
-        return abs(self._sympy_())
-
-    def __add__(self, other: Any) -> Any:
-        return self._sympy_() + other
-
-    def __radd__(self, other: Any) -> Any:
-        return other + self._sympy_()
-
-    def __sub__(self, other: Any) -> Any:
-        return self._sympy_() - other
-
-    def __rsub__(self, other: Any) -> Any:
-        return other - self._sympy_()
-
-    def __mul__(self, other: Any) -> Any:
-        return self._sympy_() * other
-
-    def __rmul__(self, other: Any) -> Any:
-        return other * self._sympy_()
-
-    def __truediv__(self, other: Any) -> Any:
-        return self._sympy_() / other
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return other / self._sympy_()
-
-    def __pow__(self, other: Any) -> Any:
-        return self._sympy_() ** other
-
-    def __rpow__(self, other: Any) -> Any:
-        return other ** self._sympy_()
 
 
 def _fits(value: Any) -> bool:
