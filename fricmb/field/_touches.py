@@ -88,8 +88,7 @@ class _Limit:
             x, rate = x[0], rate[0]
         depth, speed = own.depths(x, rate)[self.i]
         share = np.clip(depth / own.damping_depth, 0.0, 1.0) if own.damping_depth is not None else 0.0 * depth
-        grip = own.stiffness * depth * own.hunt_crossley + own.damping * share**2 * (3.0 - 2.0 * share)
-        return depth, grip / own.stiffness, speed
+        return depth, own.grip(depth, share) / own.stiffness, speed
 
     def depth(self, t: Floats) -> Floats:
         """How far the spring is pressed."""

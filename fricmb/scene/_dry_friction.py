@@ -7,20 +7,12 @@ from typing import Any
 
 from fricmb.errors import SceneError
 from fricmb.laws import Coulomb, FrictionLaw
-from fricmb.scene._axes import Direction, check_axis, is_direction_tuple
+from fricmb.scene._axes import Direction, check_axis
 from fricmb.scene._contact import Contact
-from fricmb.scene._joint import Joint
-from fricmb.scene._joints import Revolute
+from fricmb.scene._one_coordinate import ANGLE, one_coordinate
 from fricmb.scene._part import GROUND, End, Part
 from fricmb.scene._turning import relative_angle
 from fricmb.values import is_list, value_of
-
-#: The word for the relative angle of two bodies that turn in the plane.
-ANGLE = "angle"
-#: What an axis may be.
-_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute of the plane"
-#: What is said of other joints: the angle of a guide is a number of its own, which a copy of it would not follow.
-ONLY_PINS = "a Revolute of the plane; along a guide that does not turn give the direction, (cos, sin) of its angle"
 
 
 def law_of_limits(part: Part, static: Any, kinetic: Any, law: FrictionLaw | None) -> FrictionLaw:
@@ -40,19 +32,6 @@ def law_of_limits(part: Part, static: Any, kinetic: Any, law: FrictionLaw | None
     if value_of(slip) > value_of(limit):
         part._refuse("kinetic", kinetic, f"a finite number >= 0 and <= static = {value_of(limit):g}")
     return Coulomb(mu_s=limit, mu_k=slip)
-
-
-def joint_ends(part: Part, a: Any, b: Any, joint: Joint) -> tuple[End, End]:
-    """Ends of a joint, first the one that belongs to the body of a; b is left out or belongs to the other."""
-    ends = (joint.a, joint.b)
-    mine = [end for end in ends if isinstance(a, End) and end.owner is a.owner]
-    if not mine:
-        names = " or ".join(repr(end.owner.name) for end in ends)
-        part._refuse("a", getattr(a, "end_name", a), f"of a body that the joint {joint.name!r} ties: {names}")
-    other = ends[1] if mine[0] is ends[0] else ends[0]
-    if b is not GROUND and (not isinstance(b, End) or b.owner is not other.owner):
-        part._refuse("b", getattr(b, "end_name", b), f"left out, or the other end of the joint, {other.end_name!r}")
-    return mine[0], other
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -132,9 +111,7 @@ class DryFriction(Contact):
         axes: Any = None,
     ) -> None:
         self._set("name", name)
-        axis = self._given_axis(axis, axes)
-        if isinstance(axis, Joint):
-            b, axis = self._of_joint(a, b, axis)
+        b, axis = one_coordinate(self, a, b, self._given_axis(axis, axes))
         self._set("a", a)
         self._set("b", b)
         self._set("axes", (axis,))
@@ -160,21 +137,7 @@ class DryFriction(Contact):
             self._refuse("axes", axes, "left out beside axis")
         if axes is not None and (not is_list(axes) or len(axes) != 1):
             self._refuse("axes", axes, "one axis; of friction in a plane take a fm.Contact")
-        given = axis if axes is None else axes[0]
-        if given is None:
-            raise SceneError(f"{self._label()}: axis must be given: {_ACCEPTED}")
-        if isinstance(given, Joint) or given == ANGLE or is_direction_tuple(given):
-            return given
-        if isinstance(given, str) and given in ("x", "y", "z"):
-            return given
-        self._refuse("axis", given, _ACCEPTED)
-
-    def _of_joint(self, a: Any, b: Any, joint: Joint) -> tuple[Any, Any]:
-        """The second end, and the axis, that a joint stands for."""
-        _, other = joint_ends(self, a, b, joint)
-        if isinstance(joint, Revolute):
-            return other, ANGLE
-        self._refuse("axis", joint.name, ONLY_PINS)
+        return axis if axes is None else axes[0]
 
     # -- what a contact asks ------------------------------------------------------------------------------------
     def _checked_axes(self) -> tuple[Any, ...]:

@@ -7,18 +7,13 @@ from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
 from fricmb.scene._axes import check_axis, check_ends, direction
-from fricmb.scene._dry_friction import ANGLE, ONLY_PINS, joint_ends
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._joint import Joint
-from fricmb.scene._joints import Revolute
+from fricmb.scene._one_coordinate import ANGLE, one_coordinate
 from fricmb.scene._part import GROUND, End
 from fricmb.scene._rigid import angle_of
 from fricmb.scene._turning import relative_angle
-from fricmb.values import is_list, value_of
-
-#: What an axis may be.
-_ACCEPTED = "'x', 'y', 'z', 'angle', a direction tuple, or a Revolute of the plane"
+from fricmb.values import value_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +34,8 @@ class _Touching(Element):
     damping_depth: Any = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.axis, Joint):
-            self._take_joint(self.axis)
-        check_ends(self, self.a, self.b)
         self._check_axis()
+        check_ends(self, self.a, self.b)
         self._check_limits()
         super().__post_init__()
         for argument in ("damping", "hunt_crossley"):
@@ -54,23 +47,11 @@ class _Touching(Element):
             self._refuse("damping_depth", None, accepted)
         self.local_coordinates()
 
-    def _take_joint(self, joint: Joint) -> None:
-        """Ends and axis that a joint stands for."""
-        _, other = joint_ends(self, self.a, self.b, joint)
-        self._set("b", other)
-        if not isinstance(joint, Revolute):
-            self._refuse("axis", joint.name, ONLY_PINS)
-        self._set("axis", ANGLE)
-
     def _check_axis(self) -> None:
-        if self.axis is None:
-            raise SceneError(f"{self._label()}: axis must be given: {_ACCEPTED}")
-        if isinstance(self.axis, str) and self.axis not in ("x", "y", "z", ANGLE):
-            self._refuse("axis", self.axis, _ACCEPTED)
-        if not isinstance(self.axis, str) and not is_list(self.axis):
-            self._refuse("axis", self.axis, _ACCEPTED)
-        if self.axis != ANGLE:
-            self._set("axis", check_axis(self, "axis", self.axis))
+        """Refuse an axis that is not accepted, and take what a joint stands for."""
+        b, axis = one_coordinate(self, self.a, self.b, self.axis)
+        self._set("b", b)
+        self._set("axis", axis if axis == ANGLE else check_axis(self, "axis", axis))
 
     def _check_limits(self) -> None:
         """Refuse limits that are not accepted."""
@@ -91,6 +72,10 @@ class _Touching(Element):
         sides = [] if lower is None else [(lower - x, -rate)]
         return (*sides, *([] if upper is None else [(x - upper, rate)]))
 
+    def grip(self, depth: Any, share: Any) -> Any:
+        """Force over speed at a depth; ``share``: that of ``damping_depth``, at most 1."""
+        return self.stiffness * depth * self.hunt_crossley + self.damping * share**2 * (3 - 2 * share)
+
     def define_potential(self, x: tuple[Any, ...]) -> Any:
         """Of springs that cannot pull."""
         import sympy
@@ -108,10 +93,7 @@ class _Touching(Element):
         lost: Any = 0
         for depth, rate in self.depths(x[0], x_dot[0]):
             spring = self.stiffness * depth
-            grip = spring * self.hunt_crossley
-            if self.damping_depth is not None:
-                share = sympy.Min(1, depth / self.damping_depth)
-                grip += self.damping * share**2 * (3 - 2 * share)
+            grip = self.grip(depth, 0 if self.damping_depth is None else sympy.Min(1, depth / self.damping_depth))
             pressed = sympy.Piecewise((grip * rate**2 / 2, spring + grip * rate > 0), (-spring * rate, True))
             lost += sympy.Piecewise((pressed, depth > 0), (0, True))
         return lost

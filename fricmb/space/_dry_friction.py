@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
 from fricmb.laws import FrictionLaw
-from fricmb.scene._dry_friction import joint_ends, law_of_limits
+from fricmb.scene._dry_friction import law_of_limits
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._one_coordinate import joint_ends
 from fricmb.scene._part import GROUND, End
 from fricmb.space._guides import Cylindrical, Prismatic
 from fricmb.space._joint import AxisJoint
