@@ -225,24 +225,26 @@ def rounded(points: ArrayLike, radius: float) -> Floats:
     return every[ConvexHull(every).vertices]
 
 
-def coil(a: Floats, b: Floats, unit: float, side: float, coils: int, wide: float = 1.0) -> Floats:
-    """A spring from b to a, shifted across by ``side`` units."""
+def _line(a: Floats, b: Floats) -> tuple[float, Floats, Floats]:
+    """Length from b to a, the direction along and that across."""
     along = a - b
     length = max(float(np.hypot(*along)), 1e-12)
-    e = along / length
-    n = np.array([-e[1], e[0]])
+    e: Floats = along / length
+    return length, e, np.array([-e[1], e[0]])
+
+
+def coil(a: Floats, b: Floats, unit: float, side: float, coils: int, wide: float = 1.0) -> Floats:
+    """A spring from b to a, shifted across by ``side`` units."""
+    _, _, n = _line(a, b)
     s = np.concatenate([[0.0], np.linspace(0.14, 0.86, 2 * coils + 2), [1.0]])
     across = np.concatenate([[0.0, 0.0], 0.22 * wide * unit * (-1.0) ** np.arange(2 * coils), [0.0, 0.0]])
-    points: Floats = b + s[:, None] * along + (across + side * unit)[:, None] * n
+    points: Floats = b + s[:, None] * (a - b) + (across + side * unit)[:, None] * n
     return points
 
 
 def pot(a: Floats, b: Floats, unit: float, side: float, wide: float = 1.0) -> list[Floats]:
     """A damper from b to a: rod, pot, rod."""
-    along = a - b
-    length = max(float(np.hypot(*along)), 1e-12)
-    e = along / length
-    n = np.array([-e[1], e[0]])
+    length, e, n = _line(a, b)
     start, end, wide = b + side * unit * n, a + side * unit * n, 0.2 * wide * unit
     middle, half = 0.5 * (start + end), min(0.35 * unit, 0.3 * length) * e
     cup = [middle + half + wide * n, middle - half + wide * n, middle - half - wide * n, middle + half - wide * n]
@@ -252,10 +254,7 @@ def pot(a: Floats, b: Floats, unit: float, side: float, wide: float = 1.0) -> li
 
 def plates(a: Floats, b: Floats, unit: float, side: float) -> list[Floats]:
     """A stop, or play, between b and a: two plates that may touch."""
-    along = a - b
-    length = max(float(np.hypot(*along)), 1e-12)
-    e = along / length
-    n = np.array([-e[1], e[0]])
+    length, e, n = _line(a, b)
     start, end, wide = b + side * unit * n, a + side * unit * n, 0.3 * unit * n
     middle, half = 0.5 * (start + end), min(0.12 * unit, 0.2 * length) * e
     near, far = middle - half, middle + half

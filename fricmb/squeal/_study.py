@@ -18,7 +18,7 @@ from fricmb._simulate._arguments import check_options
 from fricmb._sweep._store import Store
 from fricmb._sweep._sweep import fill
 from fricmb._version import installed_version
-from fricmb.analysis import AnalysisError, StabilityMap, complex_eigenvalues
+from fricmb.analysis import AnalysisError, StabilityMap, SteadySliding, complex_eigenvalues
 from fricmb.analysis._eigenvalues import Eigenvalues
 from fricmb.analysis._errors import checked_integer, checked_scene, positive
 from fricmb.analysis._steady import checked_speeds
@@ -423,8 +423,7 @@ class Study:
         **options
             As :func:`fricmb.simulate`.
         """
-        here = self._ready(at, options)
-        return self._kept(growth(self.places.steady(here), here, self._mode(here, frequency)[0], options))
+        return self._kept(growth(*self._to_run(at, frequency, options), options))
 
     @answers
     def saturation(
@@ -439,14 +438,17 @@ class Study:
         **options
             As :func:`fricmb.simulate`.
         """
-        here = self._ready(at, options)
-        return self._kept(saturation(self.places.steady(here), here, self._mode(here, frequency)[0], True, options))
+        return self._kept(saturation(*self._to_run(at, frequency, options), True, options))
 
-    def _ready(self, at: Mapping[str, float] | None, options: dict[str, Any]) -> dict[str, float]:
+    def _to_run(
+        self, at: Mapping[str, float] | None, frequency: float | None, options: dict[str, Any]
+    ) -> tuple[SteadySliding, dict[str, float], complex]:
+        """Steady sliding, its place and the mode that a run sets out along."""
         check_options(_WHO, options, simulate, *_OWN)
         if self.scene.is_mechanism:
             raise AnalysisError(f"{_WHO}: runs along a mode take no scenes with joints")
-        return self._checked_at(at)
+        here = self._checked_at(at)
+        return self.places.steady(here), here, self._mode(here, frequency)[0]
 
     @answers
     def amplitudes(self, name: str, *, workers: Any = None, **options: Any) -> Floats:

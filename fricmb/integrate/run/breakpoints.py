@@ -12,12 +12,12 @@ EPS = 2.220446049250313e-16
 
 
 @kernel
-def stops_until(stops: Floats, t: float) -> int:
-    """How many breakpoints, which rise, are at or before t."""
-    low, high = 0, stops.shape[0]
+def count_until(times: Floats, t: float) -> int:
+    """How many times, which rise, are at or before t."""
+    low, high = 0, times.shape[0]
     while low < high:
         middle = (low + high) // 2
-        if stops[middle] <= t:
+        if times[middle] <= t:
             low = middle + 1
         else:
             high = middle
@@ -27,7 +27,7 @@ def stops_until(stops: Floats, t: float) -> int:
 @kernel
 def next_stop(times: Times, t: float) -> float:
     """The next time that has to be stepped to exactly."""
-    stop, i = times.span[1], stops_until(times.stops, t + 4.0 * EPS * abs(t))
+    stop, i = times.span[1], count_until(times.stops, t + 4.0 * EPS * abs(t))
     if i < times.stops.shape[0]:
         stop = min(stop, times.stops[i])
     return float(stop)
@@ -41,7 +41,7 @@ def set_window(times: Times, window: Floats, t: float) -> float:
     """
     stop = next_stop(times, t)
     low, high = times.span[0] + 2.0 * EPS * abs(times.span[0]) + 1e-300, np.inf
-    i = stops_until(times.stops, t + 4.0 * EPS * abs(t))
+    i = count_until(times.stops, t + 4.0 * EPS * abs(t))
     if i > 0:
         edge = times.stops[i - 1]
         low = max(low, edge + 2.0 * EPS * abs(edge) + 1e-300)
@@ -57,7 +57,7 @@ def set_window(times: Times, window: Floats, t: float) -> float:
 def set_window_around(stops: Floats, window: Floats, t: float) -> None:
     """Let functions of time be evaluated inside the interval between breakpoints that begins at or before t."""
     low, high = -np.inf, np.inf
-    i = stops_until(stops, t)
+    i = count_until(stops, t)
     if i > 0:
         low = stops[i - 1] + 2.0 * EPS * abs(stops[i - 1]) + 1e-300
     if i < stops.shape[0]:

@@ -17,7 +17,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.problem import Floats, Input, Problem
-from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.breakpoints import EPS, count_until
 from fricmb.integrate.signals.jets import bounds
 
 #: Stretches that are looked at first; most of all; halvings of one.
@@ -187,15 +187,15 @@ def _at(steps: LongestSteps, t: Floats) -> Floats:
 
 
 @kernel
+def stretch_at(edge: Floats, longest: Floats, t: float) -> int:
+    """Number of the stretch at t; the first and the last go on outside."""
+    return int(min(max(count_until(edge, t) - 1, 0), longest.shape[0] - 1))
+
+
+@kernel
 def longest_from(edge: Floats, longest: Floats, t: float) -> float:
     """The longest step from t: none reaches into a stretch farther than that allows; it may go over the next kink."""
-    low, high = 0, longest.shape[0] - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if edge[middle] <= t:
-            low = middle
-        else:
-            high = middle - 1
+    low = stretch_at(edge, longest, t)
     h = abs(longest[low])
     for j in range(low + 1, longest.shape[0]):
         if edge[j] >= t + h or longest[j] < 0.0:
@@ -207,17 +207,9 @@ def longest_from(edge: Floats, longest: Floats, t: float) -> float:
 @kernel
 def kink_from(edge: Floats, longest: Floats, t: float, within: float) -> float:
     """How far the next kink is from t; infinity where there is none as near as ``within``."""
-    low, high = 0, longest.shape[0] - 1
-    if high == 0:
+    if longest.shape[0] == 1:
         return np.inf
-    later = t + 4.0 * EPS * abs(t)
-    while low < high:
-        middle = (low + high + 1) // 2
-        if edge[middle] <= later:
-            low = middle
-        else:
-            high = middle - 1
-    for j in range(low + 1, longest.shape[0]):
+    for j in range(stretch_at(edge, longest, t + 4.0 * EPS * abs(t)) + 1, longest.shape[0]):
         if edge[j] > t + within:
             break
         if longest[j] < 0.0:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import sympy
+from numba import njit
 
 import fricmb as fm
 from fricmb.equations._inputs import time_inputs
@@ -11,9 +12,13 @@ from fricmb.integrate.signals import longest_steps as module
 from fricmb.integrate.signals.longest_steps import longest_steps
 from fricmb.integrate.step.tableau import radau
 
-#: As Python runs it: kernels are called by kernels alone.
-longest_from = module.longest_from.py_func
 T, A = sympy.Symbol("t", real=True), sympy.Symbol("a0", real=True)
+
+
+@njit
+def longest_from(edge, longest, t):
+    """Kernels are called by what is compiled alone."""
+    return module.longest_from(edge, longest, t)
 
 
 def input_of(expression, rates=0):
