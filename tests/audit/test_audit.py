@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 import fricmb as fm
-from fricmb.integrate.trajectory import SampledTrajectory
+from tests.audit.changed import Changed
 
 
 def oscillator(law, *, force=None, belt=None, normal_force=1.0, stiffness=4.0):
@@ -23,17 +23,6 @@ def oscillator(law, *, force=None, belt=None, normal_force=1.0, stiffness=4.0):
 
 def stick_slip():
     return oscillator(fm.laws.Coulomb(mu_s=1.5, mu_k=1.0), belt=0.1, stiffness=1.0)
-
-
-class Changed(SampledTrajectory):
-    """A run of which the values are changed before anybody sees them."""
-
-    def __init__(self, held, change):
-        self.held, self.change = held, change
-        super().__init__(held.problem, change(held.rows()), held.transitions, held.counters, held.end, held.failure)
-
-    def sample(self, t):
-        return self.change(self.held.sample(t))
 
 
 def changed(sol, change):

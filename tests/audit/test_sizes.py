@@ -6,24 +6,13 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.trajectory import SampledTrajectory
+from tests.audit.changed import Changed
 
 SCENES = {
     "belt": (fm.models.belt_oscillator(mu_s=1.5, mu_k=1.0), 60.0),
     "chain": (fm.models.stick_slip_chain(3), 60.0),
     "joint": (fm.models.dry_pendulum(), 4.0),
 }
-
-
-class Changed(SampledTrajectory):
-    """A run of which the values are changed before anybody sees them."""
-
-    def __init__(self, held, change):
-        self.held, self.change = held, change
-        super().__init__(held.problem, change(held.rows()), held.transitions, held.counters, held.end, held.failure)
-
-    def sample(self, t):
-        return self.change(self.held.sample(t))
 
 
 def off(name, part):

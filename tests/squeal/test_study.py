@@ -11,7 +11,7 @@ import sympy
 import fricmb as fm
 from fricmb.cli import main
 from fricmb.squeal._place import Places
-from tests.real import needs_real, real
+from tests.real import GROWING, industrial_brake, needs_real
 
 #: Hoffmann's model: K = [[a, b - mu k], [b, d + k]]; flutter from mu = ((a - d - k)^2/(4 b) + b)/k on, 0.75 here.
 A, B, D, K = 2.0, 1.0, 2.0 / 3.0, 4.0 / 3.0
@@ -354,20 +354,12 @@ def test_a_scene_with_joints_has_a_map():
 @pytest.mark.slow
 def test_industrial_brake():
     """4669 degrees of freedom; growth rates and the critical value are those of the whole."""
-    names = {"M": "BMLL", "K": "BKLL", "C": "BDLL", "H": "BHLL", "KR": "BKQLL", "DG": "BYLL"}
-    fe = fm.fe.read(real("brake_5koref1.npz"), names=names, units="t-mm-s")
-    kappa = fm.parameter("kappa", 1.0)
-    body = fm.ModalBody.from_fe(
-        "brake", fe, points={"p": [0, 1, 2]}, up_to=8000, scales={"KR": kappa, "DG": 1.0},
-        enrich=[{"kappa": 0.5}, {"kappa": 1.0}], structural_at=1600,
-    )  # fmt: skip
-    scene = fm.Scene("brake", [body, body.matrix("KR", K="KR", scale=kappa), body.matrix("DG", C="DG")])
+    scene = industrial_brake()
     found = study(scene, over={"kappa": np.linspace(0.0, 1.0, 13)})
     place = found._grid[-1][0]
     growing = np.sort_complex(place.eigenvalues[place.grows])
-    expected = [24.3627793706 + 36438.3081016515j, 60.4222361512 + 17475.7803361094j, 78.6599917371 + 26347.7200049144j]
-    np.testing.assert_allclose(growing.real, np.real(expected), rtol=1e-3)
-    np.testing.assert_allclose(growing.imag, np.imag(expected), rtol=1e-6)
+    np.testing.assert_allclose(growing.real, np.real(GROWING), rtol=1e-3)
+    np.testing.assert_allclose(growing.imag, np.imag(GROWING), rtol=1e-6)
     first = found.thresholds[0]
     assert first.value == pytest.approx(0.404563081, rel=1e-5)
     assert first.frequency / (2 * np.pi) == pytest.approx(2781.626564, rel=1e-6)
