@@ -6,7 +6,7 @@ import numpy as np
 
 from fricmb.analysis._errors import Floats
 from fricmb.integrate.model.table_values import arguments, evaluate
-from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_SMOOTH, NORMAL_CONSTANT
+from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_SMOOTH, NORMAL_CONSTANT, Elements
 from fricmb.system import System
 
 #: Steps of Newton's method for law states.
@@ -23,31 +23,42 @@ def forces(system: System, t: Floats, q: Floats, v: Floats) -> tuple[Floats, Flo
     t : (n_t,)
     q, v : (n, n_t)
     """
-    problem, n = system.problem, system.problem.n
-    linear, contacts, elements = problem.linear, problem.contacts, problem.elements
-    u = system.signals(t)
+    problem, contacts = system.problem, system.problem.contacts
+    X, force, g = without_contacts(system, system.signals(t), t, q, v)
+    F = np.zeros_like(g)
+    for k in range(problem.n_c):
+        rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
+        N = normal_force(system, k, X)
+        F[rows] = _friction(system, k, g[rows], N)
+        force = force + contacts.W[:, rows] @ F[rows] + contacts.Wn[:, k, None] * (N - contacts.N0[k])
+    return force, F, g
+
+
+def without_contacts(system: System, u: Floats, t: Floats, q: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
+    """Instants X (., n_t), forces (n, n_t) of all but contacts on the degrees of freedom, and slip g (m, n_t).
+
+    ``u`` (3, n_u, n_t): signals, and their rates.
+    """
+    n, linear, contacts = system.problem.n, system.problem.linear, system.problem.contacts
     X = np.concatenate([t[None], q, v, u[0], u[1]])
-    force: Floats = linear.fx[:n, None] - linear.Kx[:n] @ np.concatenate([q, u[0]])
-    force = force - linear.Cx[:n] @ np.concatenate([v, u[1]]) + linear.B @ u[0]
+    force: Floats = linear.fx[:n, None] - linear.Kx[:n] @ np.concatenate([q, u[0]]) + linear.B @ u[0]
+    force -= linear.Cx[:n] @ np.concatenate([v, u[1]])
+    _add_elements(system.problem.elements, X, force)
+    return X, force, contacts.W.T @ v - contacts.w[:, None] - contacts.Wu @ u[1]
+
+
+def _add_elements(elements: Elements, X: Floats, force: Floats) -> None:
+    """Add forces of elements at the instants X (., n_t) to ``force`` (n, n_t)."""
     for k in range(len(elements.table.address)):
         first, last = int(elements.f_start[k]), int(elements.f_start[k + 1])
         x = arguments(elements.table, k, X)
         out = evaluate(elements.table, k, x, (last - first) * (1 + x.shape[1]) + 3)
         for b in range(last - first):
             spread = slice(int(elements.spread_start[first + b]), int(elements.spread_start[first + b + 1]))
-            for i, c in zip(elements.spread_dof[spread], elements.spread_coefficient[spread], strict=True):
-                force[i] += c * out[b]
-    g = contacts.W.T @ v - contacts.w[:, None] - contacts.Wu @ u[1]
-    F = np.zeros_like(g)
-    for k in range(problem.n_c):
-        rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
-        N = _normal(system, k, X)
-        F[rows] = _friction(system, k, g[rows], N)
-        force = force + contacts.W[:, rows] @ F[rows] + contacts.Wn[:, k, None] * (N - contacts.N0[k])
-    return force, F, g
+            np.add.at(force, elements.spread_dof[spread], np.outer(elements.spread_coefficient[spread], out[b]))
 
 
-def _normal(system: System, k: int, X: Floats) -> Floats:
+def normal_force(system: System, k: int, X: Floats) -> Floats:
     """Normal force (n_t,), 0 where the contact is open."""
     contacts = system.problem.contacts
     if contacts.normal[k] == NORMAL_CONSTANT:
@@ -69,7 +80,13 @@ def _friction(system: System, k: int, g: Floats, N: Floats) -> Floats:
             step = np.linalg.pinv(np.moveaxis(J, -1, 0)) @ out[d:size].T[..., None]
             z = z - step[..., 0].T
         return evaluate(contacts.law_table, k, np.vstack([g, N[None], z]).T, size + size * (size + 1))[:d]
-    mu: Floats = np.full(r.size, float(contacts.mu_0[k]))
-    if contacts.law[k] == LAW_COEFFICIENT:
-        mu = evaluate(contacts.law_table, k, np.column_stack([r, N]), 3)[0]
+    mu = coefficient(system, k, r, N)
     return np.asarray(-mu * N * np.divide(g, r, out=np.zeros_like(g), where=r > 0.0))
+
+
+def coefficient(system: System, k: int, r: Floats, N: Floats) -> Floats:
+    """Coefficient of friction (n_t,) of a contact that slips at speeds r under loads N."""
+    contacts = system.problem.contacts
+    if contacts.law[k] == LAW_COEFFICIENT:
+        return np.asarray(evaluate(contacts.law_table, k, np.array([r, N]).T, 3)[0])
+    return np.full_like(r, contacts.mu_0[k])

@@ -11,9 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from fricmb.analysis._errors import Floats
+from fricmb.analysis._forces import coefficient, normal_force, without_contacts
 from fricmb.integrate import SLIP, STICK
-from fricmb.integrate.model.table_values import arguments, evaluate
-from fricmb.integrate.problem import LAW_COEFFICIENT, LAW_SMOOTH, NORMAL_CONSTANT, Codes, Ints
+from fricmb.integrate.model.table_values import evaluate
+from fricmb.integrate.problem import LAW_SMOOTH, Codes, Ints
 from fricmb.system import System
 
 #: Slip speed at which a law is asked for its limit at 0.
@@ -46,17 +47,13 @@ class Field:
     def rate_and_force(self, t: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Rates of the states (n_y, k) and forces on the rows of the contacts (m, k)."""
         problem, n = self.system.problem, self.system.problem.n
-        linear, contacts = problem.linear, problem.contacts
-        u = self.system.signals(t)
+        contacts = problem.contacts
         q, v, z = y[:n], y[n : 2 * n], y[2 * n :]
-        X = np.concatenate([t[None], q, v, u[0], u[1]])
-        force = linear.fx[:n, None] - linear.Kx[:n] @ np.concatenate([q, u[0]]) + linear.B @ u[0]
-        force -= linear.Cx[:n] @ np.concatenate([v, u[1]])
-        self._add_elements(X, force)
-        g = contacts.W.T @ v - contacts.w[:, None] - contacts.Wu @ u[1]
+        u = self.system.signals(t)
+        X, force, g = without_contacts(self.system, u, t, q, v)
         F, rate = np.zeros_like(g), np.zeros_like(z)
         for k in range(problem.n_c):
-            N = self.normal_force(k, X)
+            N = normal_force(self.system, k, X)
             rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
             states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
             F[rows], rate[states] = self._friction(k, g[rows], N, z[states])
@@ -85,18 +82,10 @@ class Field:
         """Largest friction force (k,) that contact k holds in stick."""
         contacts, n = self.system.problem.contacts, self.system.problem.n
         u = self.system.signals(t)
-        N = self.normal_force(k, np.concatenate([t[None], y[: 2 * n], u[0], u[1]]))
+        N = normal_force(self.system, k, np.concatenate([t[None], y[: 2 * n], u[0], u[1]]))
         if contacts.mu_s[k] >= 0.0:
             return np.asarray(contacts.mu_s[k] * N)
-        return self._coefficient(k, np.full_like(N, _BARELY), N) * N
-
-    def normal_force(self, k: int, X: Floats) -> Floats:
-        """Normal force (k,) of contact k, at least 0."""
-        contacts = self.system.problem.contacts
-        if contacts.normal[k] == NORMAL_CONSTANT:
-            return np.full(X.shape[1], contacts.N[k])
-        x = arguments(contacts.normal_table, k, X)
-        return np.asarray(np.maximum(evaluate(contacts.normal_table, k, x, x.shape[1] + 3)[0], 0.0))
+        return coefficient(self.system, k, np.full_like(N, _BARELY), N) * N
 
     def _friction(self, k: int, g: Floats, N: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Forces (d, k) of a contact that slips, its sign held in one dimension, and rates of its law's states."""
@@ -114,24 +103,7 @@ class Field:
         else:
             r = np.maximum(np.sqrt((g * g).sum(axis=0)), _BARELY)
             along = g / r
-        return -self._coefficient(k, r, N) * N * along, z[:0]
-
-    def _coefficient(self, k: int, r: Floats, N: Floats) -> Floats:
-        contacts = self.system.problem.contacts
-        if contacts.law[k] == LAW_COEFFICIENT:
-            return np.asarray(evaluate(contacts.law_table, k, np.array([r, N]).T, 3)[0])
-        return np.full_like(r, contacts.mu_0[k])
-
-    def _add_elements(self, X: Floats, force: Floats) -> None:
-        elements = self.system.problem.elements
-        for k in range(len(elements.table.address)):
-            first, last = int(elements.f_start[k]), int(elements.f_start[k + 1])
-            x = arguments(elements.table, k, X)
-            n_f = last - first
-            out = evaluate(elements.table, k, x, n_f * (1 + x.shape[1]) + 3)
-            for b in range(n_f):
-                spread = slice(int(elements.spread_start[first + b]), int(elements.spread_start[first + b + 1]))
-                np.add.at(force, elements.spread_dof[spread], np.outer(elements.spread_coefficient[spread], out[b]))
+        return -coefficient(self.system, k, r, N) * N * along, z[:0]
 
     @cached_property
     def _stuck(self) -> Ints:

@@ -117,7 +117,7 @@ def held_notes(problem: Problem, t: Floats, mode: Codes, opened: Codes) -> tuple
         return ()
     stuck = ", ".join(repr(problem.contact_names[c]) for c in np.flatnonzero(mode[more[0]] == STICK))
     return (
-        f"{stuck} stick together and hold more than there is to hold (first at t = {t[more[0]]:.6g}): what each of them"
-        " holds is not determined, nor does the motion depend on it: they let go where no shares hold, each within its"
-        " own cone; forces of least norm are given as long as these hold",
+        f"{stuck} stick together (first at t = {t[more[0]]:.6g}): what each of them holds is not determined, nor"
+        " does the motion depend on it; they let go where no shares within their cones hold, and the forces of least"
+        " norm are given while these lie within the cones",
     )
