@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NoReturn, TypeAlias
 
@@ -32,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        with few_collections(), as_interrupts():  # what a command loads stays until its end
+        with _notices(options), few_collections(), as_interrupts():  # what a command loads stays until its end
             status = command(options)
         _flush()
     except IntegrationError as error:
@@ -47,15 +47,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return _complain("standard output is closed: what was to be said there is lost", BAD_INPUT) if closed else status
 
 
+@contextlib.contextmanager
+def _notices(options: argparse.Namespace) -> Iterator[None]:
+    """Silence notices while a quiet command runs, in processes that it starts as well; not those of the caller."""
+    before = os.environ.get("FRICMB_QUIET")
+    if getattr(options, "quiet", False):
+        os.environ["FRICMB_QUIET"] = "1"
+    try:
+        yield
+    finally:
+        os.environ.pop("FRICMB_QUIET", None)
+        if before is not None:
+            os.environ["FRICMB_QUIET"] = before
+
+
 def _set_up(options: argparse.Namespace) -> None:
-    """Threads and notices, before numpy and numba are imported, which read their environment once."""
+    """Set threads and messages before numpy and numba are imported, which read their environment once."""
     threads = getattr(options, "threads", None)
     if threads is not None:
         for library in ("OMP", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMBA"):
             os.environ[f"{library}_NUM_THREADS" if "_" not in library else f"{library}_THREADS"] = str(threads)
         os.environ["FRICMB_COMPILE_PROCESSES"] = str(threads)
-    if getattr(options, "quiet", False):
-        os.environ["FRICMB_QUIET"] = "1"
     # else numba sets up colours for messages that nobody sees, and the terminal gets an escape sequence at the end
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
 

@@ -1,5 +1,6 @@
 """What comes after a run has a bar of its own, which tells what is under way, gets full, and ends with Ctrl-C."""
 
+import os
 import sys
 
 import pytest
@@ -47,10 +48,11 @@ def test_a_scene_without_contacts_has_fewer_pictures(capsys, monkeypatch, tmp_pa
 
 @pytest.mark.parametrize("option", ["--quiet", "--json"])
 def test_it_can_be_silenced(capsys, monkeypatch, tmp_path, option):
-    monkeypatch.setenv("FRICMB_QUIET", "")  # what --quiet sets goes with the test
+    monkeypatch.delenv("FRICMB_QUIET", raising=False)
     on_a_terminal(monkeypatch)
     assert main([*RUN, option, "--no-plots", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().err == ""
+    assert "FRICMB_QUIET" not in os.environ, "a program that calls the command goes on with its own notices"
 
 
 def test_it_is_for_terminals_alone(capsys, tmp_path):
