@@ -28,7 +28,6 @@ from fricmb.integrate.constrained.radau_step import (
     end_step,
     error_of,
     has_joints,
-    order_of,
     remember,
     try_step,
 )
@@ -73,6 +72,7 @@ def grow(mech: Mech, c: Control, out: Watch, k: Moving, y: State) -> None:
     """
     k.borne_before = max(k.borne, k.borne_before)
     for i in range(y.v.shape[0]):
+        c.q[i] = max(c.q[i], abs(y.q[i]))
         c.v[i] = max(c.v[i], abs(y.v[i]))
     for i in range(y.z.shape[0]):
         c.z[i] = max(c.z[i], abs(y.z[i]))
@@ -157,7 +157,7 @@ def radau_step(
     rec: Record, part: Codes, stop: float,
 ) -> int:  # fmt: skip
     """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
-    order = order_of(y, st)
+    order = st.tab.c.shape[0]
     t = y.t
     before_knot = t < c.knot < stop
     goal = c.knot if before_knot else stop
@@ -190,7 +190,7 @@ def radau_step(
         knot = knot_within(mech, k, y, st, c, h)
     if mech.bends.address.shape[0] > 0:
         knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
-    error = max(error_of(c, y, st), between / asked(c))
+    error = max(error_of(c, y, st, h), between / asked(c))
     error = max(error, too_long(growth_of_slip(mech, k, y, st, h), order))
     if not error < 1e300:
         return reject(c, 0.4 * h)
@@ -227,7 +227,7 @@ def radau_step(
     grow(mech, c, out, k, y)
     c.wanted = max(h, c.h)
     if worst < 0 and (h < left or factor < 1.0):
-        c.wanted = h * min(3.0 if has_joints(y) else 5.0, max(0.3, factor))
+        c.wanted = h * min(5.0, max(0.3, factor))
         c.h = next_step(c, h, c.wanted)
     if near_singular(c, out, h):
         return FAIL_SINGULAR

@@ -19,7 +19,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.stage_predictor import lagrange
-from fricmb.integrate.step.tableau import by_line
+from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 
 class Control(Layout):
@@ -39,6 +39,7 @@ class Control(Layout):
 
     rtol: float
     blur: float
+    q: Floats
     v: Floats
     z: Floats
     floor_v: Floats
@@ -67,7 +68,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
     """Arrays for step control."""
     s, size, n, stops = len(st.tab.c), len(st.x), problem.n, problem.signals.breakpoints.size
     return Control(
-        0.0, 0.0, np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
+        0.0, 0.0, np.zeros(n), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
         np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
@@ -196,27 +197,22 @@ def has_joints(y: State) -> bool:
 
 
 @kernel
-def order_of(y: State, st: Stages) -> int:
-    """The power of the step that its estimated error goes with."""
-    return int(st.tab.c.shape[0] + (1 if has_joints(y) else 0))
+def error_of(c: Control, y: State, st: Stages, h: float) -> float:
+    """Estimated error of velocities, positions and states within the step, over the tolerance.
 
-
-@kernel
-def error_of(c: Control, y: State, st: Stages) -> float:
-    """Estimated error of velocities and states within the step over the tolerance, from their Legendre series.
-
-    Its last term; where there are joints one term further.  See ``order_of``.
+    The last term of their Legendre series.  That of a velocity that swings passes through 0 twice a period, where that
+    of its position is largest.
     """
-    tab = st.tab
-    s = tab.c.shape[0]
-    last = before = 0.0
-    for velocity, start, part in ((True, y.v, st.V), (False, y.z, st.z)):
-        for a in range(start.shape[0]):
-            scale = st.scale[a] if velocity else max(c.z[a], abs(start[a]), abs(part[s - 1, a]), c.noise_z[a], 1e-290)
-            high, low = by_line(tab.top[0], start[a], part, a), by_line(tab.top[1], start[a], part, a)
-            last, before = max(last, abs(high) / scale), max(before, abs(low) / scale)
-    ratio = min(1.0, last / before) if has_joints(y) and before > 0.0 else 1.0
-    return float(last * ratio / asked(c))
+    last, tab = 0.0, st.tab
+    for i in range(y.v.shape[0]):
+        high = by_line(tab.top[0], y.v[i], st.V, i)
+        # a position that has only begun to move is measured by what its velocity brings within the step
+        size = max(c.q[i], largest_in_step(y.q[i], st.Q, i), h * st.scale[i])
+        last = max(last, abs(high) / st.scale[i], abs(by_line(tab.top[0], y.q[i], st.Q, i)) / size)
+    for a in range(y.z.shape[0]):
+        size = max(c.z[a], largest_in_step(y.z[a], st.z, a), c.noise_z[a], 1e-290)
+        last = max(last, abs(by_line(tab.top[0], y.z[a], st.z, a)) / size)
+    return float(last / asked(c))
 
 
 @kernel

@@ -51,7 +51,7 @@ class Bdf(Integrator):
     Parameters
     ----------
     stages : int, optional
-        Of the one-step method, 2 to 9; by default from the tolerance (bodies that turn and joints: odd, 5).
+        Of the one-step method, 2 to 9; by default from the tolerance (bodies that turn and joints: odd).
     """
 
     name: ClassVar[str] = "bdf"
@@ -81,7 +81,7 @@ class Bdf(Integrator):
         if in_a_band(problem, self.stages):
             from fricmb.integrate import constrained
 
-            count = self.stages or constrained.MULTISTEP_STAGES
+            count = self.stages or constrained.stages_for(problem, tolerance.rtol)
             options: dict[str, Any] = {"progress": progress, "memory": memory}
             run = constrained.run_mechanism(problem, start, t_end, tolerance, count, **options, multistep=True)
             if not stopped_in_a_band(problem, run):

@@ -1,9 +1,10 @@
 """How long the next step may be: the formula, and the ladder of step sizes.
 
-Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_step.advance`` (5: ``radau``, general
-``collocation``, ``bdf`` around transitions), ``backward_differences.GROWTH`` (3: ``bdf``), ``constrained/attempt_step``
-(3).  Behind a failure ``next_step`` holds growth back in the first and the last; steps of BDF grow only after k + 1
-equal ones anyhow.  ``contact/event_location`` asks for the factor where a step up to a transition is too inaccurate.
+Who takes or rejects a step sets the bounds of its growth: ``methods/attempt_step.advance`` and
+``constrained/attempt_step`` (5: ``radau``, general ``collocation``, ``bdf`` around transitions),
+``backward_differences.GROWTH`` (3: ``bdf``).  Behind a failure ``next_step`` holds growth back in the first two; steps
+of BDF grow only after k + 1 equal ones anyhow.  ``contact/event_location`` asks for the factor where a step up to a
+transition is too inaccurate.
 
 The other methods ask the same formula: ``collocation/one_contact/run.length_factor`` (growth up to 3),
 ``taylor/step_start`` (1.5).
