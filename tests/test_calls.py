@@ -101,4 +101,4 @@ def test_declarations_are_what_they_were(block):
     assert pickle.loads(pickle.dumps(spring)) == spring
     assert copy.copy(spring) == spring
     assert list(inspect.signature(fm.Spring).parameters)[:4] == ["name", "a", "b", "axis"]
-    assert list(inspect.signature(fm.laws.Coulomb).parameters) == ["mu_s", "mu_k"]
+    assert list(inspect.signature(fm.laws.Coulomb).parameters) == ["mu_s", "mu_k", "insist"]

@@ -19,7 +19,9 @@ from fricmb._simulate._members import (
     contact_names,
     has_same_names,
     idle_of,
+    is_shifted,
     members_of,
+    row_offset,
     row_scale,
 )
 from fricmb.errors import SceneError, shown, unknown_name
@@ -149,6 +151,16 @@ class SceneMechanics:
                 total += member.system.delivered(member.place.part(samples))
         return total
 
+    def rubbed(self, samples: MotionSamples) -> Floats | None:
+        """Loss (n_c, n_t) of contacts by the centres of their cones, but for a constant; None where these are at 0."""
+        if not self.names.offset:
+            return None
+        total = np.zeros((len(self.names.contacts), samples.t.size))
+        for member in self.members:
+            place = member.place
+            total[place.contacts] += member.system.rubbed(place.part(samples))
+        return total
+
     def leaps(self, t_start: float, t_end: float) -> Floats | None:
         """Times between two others at which driven positions jump, rising; None where none can."""
         if not any(is_expression(value) for body in self.placed.driven for value in body.position.values()):
@@ -216,6 +228,7 @@ class SceneMechanics:
             directions=tuple(directions for directions, _ in labels),
             states=tuple(states for _, states in labels),
             scale=tuple(row_scale(contact) for contact in contacts),
+            offset=tuple(row_offset(contact) for contact in contacts) if any(map(is_shifted, contacts)) else (),
             motions=_points(self.placed, self.plan.dofs),
             vectors=_vectors(self.placed, {name: i for i, name in enumerate(self.plan.dofs)}),
             signals={name: i for i, name in enumerate(self.driven.names)},

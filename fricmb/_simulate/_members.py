@@ -155,6 +155,18 @@ def row_scale(contact: Contact | Joint) -> tuple[float, ...]:
     return tuple(float(s) for s in contact.law.numeric().axis_scale())
 
 
+def row_offset(contact: Contact | Joint) -> tuple[float, ...]:
+    """Centre of a contact's cone along its rows, over the normal force (see ``Names.offset``)."""
+    law = contact.law
+    found = law.numeric().offsets() if law is not None and law.offsets() else ()
+    return tuple(float(c) for c in found) or (0.0,) * len(contact.labels())
+
+
+def is_shifted(contact: Contact | Joint) -> bool:
+    """Whether the cone of a contact has its centre off 0."""
+    return contact.law is not None and bool(contact.law.offsets())
+
+
 def has_same_names(one: Part, other: Part, but: frozenset[str]) -> bool:
     """Whether names that a part brings are those of another: numbers of contacts and of bodies bring none."""
     if is_same_part(one, other, but):
@@ -165,7 +177,8 @@ def has_same_names(one: Part, other: Part, but: frozenset[str]) -> bool:
     named = frozenset(("law", "normal_force") if isinstance(one, Contact) else ("friction",))
     return (
         differs <= named and _rubs(one) and _rubs(other)
-        and (contact_names(one), row_scale(one)) == (contact_names(other), row_scale(other))
+        and (contact_names(one), row_scale(one), row_offset(one))
+        == (contact_names(other), row_scale(other), row_offset(other))
     )  # fmt: skip
 
 

@@ -53,9 +53,9 @@ def audit(sol: Any, *, rtol: float | None = None, atol: Any = None, seed: int = 
         begin = np.flatnonzero(np.diff(rows.t) > 0.0)
         chosen = _chosen(begin, rows, statements, rng)
         steps, looked = steps + begin.size, looked + chosen.size
-        _look(statements, units, gathered, rows, chosen, piece.trajectory.sample, np.asarray(sol.events.t), rng)
-        Changes(statements, units, gathered, rows, piece.trajectory.sample).look(sol.events, rng)
-        _onset.look(statements, units, gathered, rows, piece.trajectory.sample, sol.events)
+        _look(statements, units, gathered, rows, chosen, piece.sample, np.asarray(sol.events.t), rng)
+        Changes(statements, units, gathered, rows, piece.sample).look(sol.events, rng)
+        _onset.look(statements, units, gathered, rows, piece.sample, sol.events)
     _energy(sol, tolerance, gathered)
     return Audit(
         checks=gathered.checks(), rtol=tolerance, n_steps=steps, n_looked=looked, notes=tuple(dict.fromkeys(notes))

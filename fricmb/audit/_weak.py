@@ -100,7 +100,7 @@ class Weak:
                     found.push(row, extra)
         shape = (1, moment.t.size)
         rates = [np.broadcast_to(found.rate[k], (len(s.states(moment, k)), shape[1])) for k in self.stateful]
-        power = [-(s.forces(moment, k) * found.g[k]).sum(axis=0, keepdims=True) for k in self.contacts]
+        power = [-(s.whole_forces(moment, found, k) * found.g[k]).sum(axis=0, keepdims=True) for k in self.contacts]
         return np.concatenate([found.force, moment.v, *rates, *power]), said
 
     def _integrals(self, a: Floats, b: Floats, rng: np.random.Generator | None) -> tuple[Floats, Floats, Floats]:

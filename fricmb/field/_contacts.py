@@ -57,10 +57,13 @@ class Presses:
 class Rubs:
     """What a contact's law says of velocity, normal force and states."""
 
-    def __init__(self, name: str, law: Any) -> None:
+    def __init__(self, name: str, law: Any, steady: bool = False) -> None:
+        """``steady``: under a normal force that is a number, where losses hold what the centre of the cone brings."""
         self.name, self.law = name, law
-        self.numeric = law.numeric()
+        self.numeric = law.numeric().centred
         self.smooth = law.kind == "smooth"
+        held = law.numeric().offsets() if steady and law.offsets() else ()
+        self.offsets = np.array(held, dtype=float)[:, None] if held else None
 
     def scale(self, d: int) -> Floats:
         """Friction along the directions relative to the first (d, 1); 1 for an isotropic law."""

@@ -58,7 +58,7 @@ class Statements:
         for part in with_inner(part for part in scene.parts if part.name in held):
             k = numbers.get(part.name)
             if k is not None and isinstance(part, Contact | Joint) and part.law is not None:
-                self.contacts[k] = Rubs(part.name, part.law)
+                self.contacts[k] = Rubs(part.name, part.law, isinstance(part, Contact) and part.normal_kind == "constant")
             found: Acting | None
             if isinstance(part, Contact):
                 rows = slice(int(self.names.row[k]), int(self.names.row[k + 1])) if k is not None else slice(0, 0)
@@ -97,6 +97,12 @@ class Statements:
         """Friction of a contact."""
         rows: Floats = moment.F[self.names.row[k] : self.names.row[k + 1]]
         return rows
+
+    def whole_forces(self, moment: Moment, found: Found, k: int) -> Floats:
+        """The same, with what the centre of its cone brings to the losses."""
+        offsets = self.contacts[k].offsets
+        rows = self.forces(moment, k)
+        return rows if offsets is None else rows - offsets * found.N[k]
 
     def said(self, moment: Moment, found: Found) -> Floats:
         """Friction (m, n_t) as the laws give it in slip, of force laws always; 0 where a contact sticks or is open."""

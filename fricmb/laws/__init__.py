@@ -16,7 +16,7 @@ names = (
     "Ambrosio", "ArctanRegularised", "BengisuAkay", "BlimanSorine", "BoucWen", "Bristle", "BrownMcPhee", "Contensou",
     "ContensouPade", "Coulomb", "CoulombViscous", "Cubic", "Dahl", "ElastoPlastic", "Elliptic", "FlashHeating",
     "GeneralisedMaxwellSlip", "Gonthier", "HyperbolicStribeck", "Iwan", "Jenkins", "Karnopp", "Leuven",
-    "LinearRegularised", "LoadDependent", "Logarithmic", "Lorentzian", "LuGre", "Makkar", "RateAndState",
+    "LinearRegularised", "LoadDependent", "Logarithmic", "Lorentzian", "LuGre", "Makkar", "Offset", "RateAndState",
     "Regularised", "SquareRootRegularised", "Stribeck", "Tabulated", "TanhRegularised", "Threlfall",
 )  # fmt: skip
 

@@ -41,5 +41,6 @@ from .set_valued._tabulated import Tabulated as Tabulated
 from .vector._contensou import Contensou as Contensou
 from .vector._contensou_pade import ContensouPade as ContensouPade
 from .vector._elliptic import Elliptic as Elliptic
+from .vector._offset import Offset as Offset
 
 names: tuple[str, ...]

@@ -172,10 +172,26 @@ class FrictionLaw(Regimes, Declaration):
         """
         return ()
 
+    def offsets(self) -> tuple[Any, ...]:
+        """Centre of the cone along the contact's directions: the force is that of :attr:`centred` less these times N.
+
+        () for a cone about 0.
+        """
+        return ()
+
+    def remark(self) -> str:
+        """What a run with it says in its notes; "" where there is nothing to say."""
+        return ""
+
+    @property
+    def centred(self) -> FrictionLaw:
+        """The law about 0: itself, but for one with offsets."""
+        return self
+
     @property
     def cone_in_space(self) -> bool:
         """Whether the law serves three directions that are alike: a cone, the same in all directions of slip."""
-        return self.kind != "smooth" and 2 in self.dimensions and not self.axis_scale()
+        return self.kind != "smooth" and 2 in self.dimensions and not self.axis_scale() and not self.offsets()
 
     @property
     def has_coefficient(self) -> bool:

@@ -56,8 +56,8 @@ class MadeOf(FrictionLaw):
     def check(self) -> None:
         """The law inside is set-valued, and SymPy can state it."""
         law = self.law
-        if not isinstance(law, FrictionLaw) or law.kind == "smooth":
-            self._refuse("law", law, "a set-valued law, such as fm.laws.Coulomb(mu_s=0.5)")
+        if not isinstance(law, FrictionLaw) or law.kind == "smooth" or law.offsets():
+            self._refuse("law", law, "a set-valued law without an offset, such as fm.laws.Coulomb(mu_s=0.5)")
         if law.compiled_coefficient() is not None:
             raise LawError(
                 f"{self._label()}: law must be stated in SymPy; {type(law).__name__} brings a compiled coefficient"

@@ -15,7 +15,7 @@ from fricmb.plan._graph import coupling, narrow_order
 from fricmb.plan._links import Flags, Links
 from fricmb.plan._plan import Island, Plan
 from fricmb.plan._redundant import redundant
-from fricmb.plan._report import counts, empty, outside, resting, unloaded, vanishing
+from fricmb.plan._report import counts, empty, outside, remarks, resting, unloaded, vanishing
 from fricmb.plan._rest import is_held
 from fricmb.plan._same import common
 from fricmb.plan._truncate import truncated
@@ -63,7 +63,7 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     key = ("plan", None if wanted is None else wanted.key)
     found = scene._cache.get(key)
     if found is None:
-        found = scene._cache[key] = _plan_of(scene, wanted, short.notes)
+        found = scene._cache[key] = _plan_of(scene, wanted, (*short.notes, *remarks(scene)))
     return found
 
 
@@ -72,7 +72,7 @@ MANY = 16
 
 
 def _plan_of(scene: Scene, wanted: Wanted | None, shortened: tuple[str, ...]) -> Plan:
-    """The plan, taken from another scene where that has the same; ``shortened``: what is said of modes left out."""
+    """The plan, taken from another scene where that has the same; ``shortened``: what is said of modes and laws."""
     plans: dict[Any, Plan] = common(scene).setdefault("plans", {})
     key = None if wanted is None else wanted.key, shortened
     found = plans.get(key)

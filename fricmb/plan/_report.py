@@ -109,6 +109,13 @@ def resting(scene: Scene, islands: Iterable[Island]) -> list[Omission]:
     return found
 
 
+def remarks(scene: Scene) -> list[str]:
+    """What laws say of themselves."""
+    laws = {id(part.law): part for part in scene.frictional}
+    said = [(part.name, part.law.remark()) for part in laws.values() if part.law is not None]
+    return [f"{name}: {text}" for name, text in said if text]
+
+
 def unloaded(idle: tuple[str, ...]) -> list[str]:
     """Contacts that act on nothing."""
     return [f"contacts without normal force, which act on nothing: {short_list(idle)}"] if idle else []

@@ -64,13 +64,25 @@ class Contact(Part):
         if type(self.law).__post_init__ is not FrictionLaw.__post_init__:
             self.law.check()  # an author's own __post_init__ need not have done so
         self._check_normal()
+        if self.law.offsets() and self.normal_kind == "law":
+            self._refuse("normal_force", self.normal_force, "a number or an expression beside a law with an offset")
         if self.axes is not None:
             self._set("axes", self._checked_axes())
         letters = self.letters_along()
         if letters is None or self.normal_kind != "constant" or len(letters) not in self.law.dimensions:
             self._check_directions(self.directions())
+        if self.slide is not None and self.law.offsets():
+            self._refuse("slide", self.slide, "left out beside a law with an offset; a fm.Driven moves the surface")
         if self.slide is not None:
             self._set("slide", self._checked_slide(len(self.labels())))
+
+    def parts_within(self) -> tuple[Any, ...]:
+        """What a law with an offset pushes with beside the friction about its centre."""
+        if not self.law.offsets():
+            return ()
+        from fricmb.scene._offset import centres_of
+
+        return centres_of(self)
 
     # -- normal force -------------------------------------------------------------------------------------------
     def _check_normal(self) -> None:

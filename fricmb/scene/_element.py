@@ -44,6 +44,8 @@ class Element(Part):
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "body", "axis", "axes")
     #: Whether the work of all its forces is brought in from outside, of those that have a potential as well.
     is_load: ClassVar[bool] = False
+    #: Whether what its linear part gives up is lost in the contact of its name, and nothing is stored.
+    rubs: ClassVar[bool] = False
     #: Whether its force bends with the motion, so that steps have to end there; elements of other packages are asked.
     bends: ClassVar[bool] = False
 

@@ -48,6 +48,11 @@ class Force(Element):
         self._set("value", check_expression(self, "value", self.value, motions=True))
         self.local_coordinates()
 
+    @property
+    def signal_name(self) -> str:
+        """What its function of time is known by."""
+        return self.name
+
     def _takes_expression(self, field: str) -> bool:
         return field == "value"
 

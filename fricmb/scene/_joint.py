@@ -92,6 +92,8 @@ class Joint(Part):
             if not isinstance(self.friction, FrictionLaw):
                 self._refuse("friction", self.friction, "a friction law, such as fm.laws.Coulomb(mu_s=0.5)")
             self._check_directions(self.friction)
+            if self.friction.offsets():
+                self._refuse("friction", self.friction, "a law without an offset")
             if self.slip_rows > 1 and self.friction.numeric().axis_scale():
                 self._refuse("friction", self.friction, "a law that is the same in all directions of slip")
             if type(self.friction).__post_init__ is not FrictionLaw.__post_init__:

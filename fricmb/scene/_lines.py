@@ -142,7 +142,7 @@ def _contact(part: Contact, spots: Spots) -> Sequence[tuple[int, int]]:
     if type(part.normal_force) is not float or part.slide is not None or law.states or law.kind == "smooth":
         return ()
     letters = part.letters_along()
-    if letters is None or law.axis_scale():
+    if letters is None or law.axis_scale() or law.offsets():
         return ()
     found = [(spots[c].get(id(part.a)), spots[c].get(id(part.b))) for c in letters]
     plain = [(a, b) for a, b in found if a is not None and b is not None]

@@ -12,6 +12,7 @@ from fricmb.errors import SceneError
 from fricmb.integrate.problem import STICK, Codes, Floats, Ints
 from fricmb.integrate.trajectory import Samples
 from fricmb.scene import Body, Contact, ModalBody
+from fricmb.scene._space_body import with_inner
 from fricmb.sensitivity._breakpoints import Breakpoints, timed_of
 from fricmb.sensitivity._contacts import Rubs
 from fricmb.sensitivity._dual import Dual
@@ -93,7 +94,7 @@ class Equations:
 
     def _parts(self, scene: Any) -> Sequence[Any]:
         """What acts."""
-        return tuple(scene.parts)
+        return with_inner(scene.parts)
 
     def joining(self) -> Sequence[Any]:
         """What joints state; there are none here."""
@@ -119,6 +120,9 @@ class Equations:
                     f"sensitivities: {part._label()} was left out of the run, because it acts on nothing or is nothing;"
                     f" there is no derivative with respect to {touched[0]!r}"
                 )
+            lost = [name for name in touched if name.startswith(f"{part.name}.law.offset")]
+            if lost and part.normal_kind != "constant":
+                refuse(part, f"{lost[0]!r} of a contact whose normal force is an expression")
             self.contacts[k] = self.touching[k] = Rubs(part, k, int(self.names.z_start[k]), self.seeds)
             return
         found = acting(self.scene, part, self.frame.index, self.seeds)

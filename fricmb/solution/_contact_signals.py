@@ -20,7 +20,11 @@ class ContactSignals(Ledger):
 
     def force(self, contact: str) -> Floats:
         """Friction force on the contact's first end (d, n_t)."""
-        return self._rows_of(self.record.samples.F, contact, 1)
+        force = self._rows_of(self.record.samples.F, contact, 1)
+        if self.names.row_offset is None:
+            return force
+        k, row = self.names.contact(contact), self.names.row
+        return force - self.names.row_offset[row[k] : row[k + 1]] * self.normal_force(contact)
 
     def relative_velocity(self, contact: str) -> Floats:
         """Velocity of the first end relative to the second, with the slide (d, n_t)."""

@@ -81,7 +81,8 @@ def load(path: str | PathLike[str], laws: Any = ()) -> Solution:
         names = _names(held, about)
         values = {f.name: held[f.name] for f in fields(Samples)}
         check_arrays(held, values, names, about)
-        values["F"], values["g"] = values["F"] / names.row_scale, values["g"] * names.row_scale
+        values["F"] = (values["F"] + names.centres(values["N"])) / names.row_scale
+        values["g"] = values["g"] * names.row_scale
         return restore(
             names=names,
             stats=_stats(about["stats"]),
@@ -143,7 +144,7 @@ def _run_of(sol: Solution) -> tuple[dict[str, Any], str]:
 def _arrays(sol: Solution) -> dict[str, Any]:
     names, record, energy = sol.names, sol.record, sol.energy
     arrays = {f.name: getattr(sol.accounts, f.name) for f in fields(Samples)}
-    arrays["F"], arrays["g"] = arrays["F"] * names.row_scale, arrays["g"] / names.row_scale
+    arrays["F"], arrays["g"] = arrays["F"] * names.row_scale - names.centres(arrays["N"]), arrays["g"] / names.row_scale
     if record.piece is not None:
         arrays["piece"] = record.piece
     return arrays | {
@@ -166,6 +167,7 @@ def _words(sol: Solution) -> dict[str, Any]:
         "directions": names.directions,
         "states": names.states,
         "scale": names.scale,
+        "offset": names.offset,
         "motions": {
             name: {**asdict(motion), "index": motion.index.tolist(), "coefficient": motion.coefficient.tolist()}
             for name, motion in names.motions.items()
@@ -286,6 +288,7 @@ def _names(data: Any, about: dict[str, Any]) -> Names:
         directions=tuple(tuple(labels) for labels in about["directions"]),
         states=tuple(tuple(labels) for labels in about["states"]),
         scale=tuple(tuple(factors) for factors in about.get("scale", ())),
+        offset=tuple(tuple(centre) for centre in about.get("offset", ())),
         motions={
             name: Motion(
                 index=np.array(motion["index"], dtype=np.int64),

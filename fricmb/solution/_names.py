@@ -105,6 +105,9 @@ class Names:
         Motions of driven bodies by the index of their signal.
     scale : tuple of tuple of float
         By contact: factor s of every row; a run holds s v and F/s.  Empty: all 1.
+    offset : tuple of tuple of float
+        By contact: centre of the cone along every row, over the normal force; a run holds the force about it.  Empty:
+        all 0.
     """
 
     dofs: tuple[str, ...]
@@ -115,6 +118,7 @@ class Names:
     vectors: Mapping[str, Vector] = field(default_factory=dict)
     signals: Mapping[str, int] = field(default_factory=dict)
     scale: tuple[tuple[float, ...], ...] = ()
+    offset: tuple[tuple[float, ...], ...] = ()
 
     @cached_property
     def dof_index(self) -> dict[str, int]:
@@ -136,6 +140,19 @@ class Names:
         """Factor of every row of forces and relative velocities (m, 1)."""
         held = [s for scale in self.scale for s in scale] or [1.0] * int(self.row[-1])
         return np.array(held, dtype=float)[:, None]
+
+    @cached_property
+    def row_offset(self) -> Floats | None:
+        """Centre of the cone in every row (m, 1), over the normal force; None: all 0."""
+        held = np.array([c for offset in self.offset for c in offset], dtype=float)
+        return held[:, None] if held.any() else None
+
+    def centres(self, N: Floats) -> Floats | float:
+        """What a run leaves out of the friction in every row (m, n_t) under the normal forces N (n_c, n_t)."""
+        if self.row_offset is None:
+            return 0.0
+        found: Floats = self.row_offset * np.repeat(N, np.diff(self.row), axis=0)
+        return found
 
     @cached_property
     def z_start(self) -> Ints:

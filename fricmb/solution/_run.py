@@ -45,6 +45,9 @@ class Mechanics(Protocol):
     def delivered(self, samples: MotionSamples) -> Floats | None:
         """Work (n_t,) of loads that have a potential, but for a constant; None where there are none."""
 
+    def rubbed(self, samples: MotionSamples) -> Floats | None:
+        """Loss (n_c, n_t) of contacts by the centres of their cones, but for a constant; None where these are at 0."""
+
     def leaps(self, t_start: float, t_end: float) -> Floats | None:
         """Times between two others at which driven positions jump, rising; None where none can."""
 
@@ -154,10 +157,22 @@ class Piece:
         given = self._delivered(found)
         if given is not None:
             found = replace(found, input=found.input + given - self._delivered_before)
+        rubbed = self._rubbed(found)
+        if rubbed is not None:
+            found = replace(found, friction_loss=found.friction_loss + rubbed - self._rubbed_before)
         return cast("_Samples", found)
 
     def _delivered(self, samples: MotionSamples) -> Floats | None:
         return self.mechanics.delivered(samples if self.leaps.span is None else self.leaps.seen(samples))
+
+    def _rubbed(self, samples: MotionSamples) -> Floats | None:
+        return self.mechanics.rubbed(samples if self.leaps.span is None else self.leaps.seen(samples))
+
+    @cached_property
+    def _rubbed_before(self) -> Floats:
+        found = self._rubbed(self.trajectory.motion(np.array([self.t_start])))
+        assert found is not None
+        return found
 
     @cached_property
     def _delivered_before(self) -> float:

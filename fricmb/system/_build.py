@@ -97,7 +97,7 @@ def _build(scene: Any, plan: Any) -> System:
     motions = _motions.Motions(scene, {name: i for i, name in enumerate(dofs)}, signals)
     parts = scene.parts if plan is None else [scene[name] for name in plan.parts]
     chosen = choose(scene, parts, dofs)
-    standing = [part for part in parts if not isinstance(part, Contact)]
+    standing = [part for part in parts if not isinstance(part, Contact) or part.law.offsets()]
     touching = [part for part in parts if not isinstance(part, Element | MatrixElement | Gravity)]
     structure = half_of(
         scene, ("structure", dofs), standing, signals, lambda: _structure(scene, motions, parts, chosen), STARTS
@@ -122,6 +122,9 @@ def _structure(scene: Any, motions: _motions.Motions, parts: Sequence[Any], chos
             add_share(shares, part, structure, structure.add_element)
         elif isinstance(part, Gravity):
             add_gravity(part, parts, structure)
+    for run, lined in chosen.runs:
+        for within in (w for contact in run for w in contact.parts_within()) if lined is None else ():
+            structure.add_element(within)
     return structure
 
 

@@ -51,6 +51,10 @@ class MechanismSystem(System):
         """Work (n_t,) of loads."""
         return super().delivered(self._extended(samples))
 
+    def rubbed(self, samples: MotionSamples) -> Floats:
+        """Loss of contacts by the centres of their cones."""
+        return super().rubbed(self._extended(samples))
+
     def potentials(self, samples: MotionSamples) -> dict[str, Floats]:
         """Stored energy by part."""
         return super().potentials(self._extended(samples))

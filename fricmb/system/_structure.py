@@ -47,7 +47,7 @@ class Store:
     """Potential of one element: ``x K x/2 - f x + constant`` on its local rows, and that of its nonlinear remainder.
 
     ``nonlinear``: index in the table of nonlinear elements, or None.  ``is_load``: what the linear part gives up is
-    work from outside, and nothing is stored.
+    work from outside, and nothing is stored; ``rubs``: it is lost in the contact of that name.
     """
 
     name: str
@@ -57,6 +57,12 @@ class Store:
     constant: float = 0.0
     nonlinear: int | None = None
     is_load: bool = False
+    rubs: bool = False
+
+    @property
+    def is_held(self) -> bool:
+        """Whether its linear part stores anything."""
+        return not (self.is_load or self.rubs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -191,6 +197,7 @@ class Structure:
                 constant=terms.constant,
                 nonlinear=nonlinear,
                 is_load=element.is_load,
+                rubs=element.rubs,
             )
         )
 
@@ -229,7 +236,7 @@ class Structure:
         nonlinear = None
         if terms.signal is not None:
             signal = terms.signal
-            j = self.motions.signals.add(force.name, lambda: signal_expression(signal, "force", 0.0, what))
+            j = self.motions.signals.add(force.signal_name, lambda: signal_expression(signal, "force", 0.0, what))
             self.B.extend((i, j, c) for i, c in row.q)
         if terms.rest is not None:
             nonlinear = self._moving_force(row, terms.rest, what)

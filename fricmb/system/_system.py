@@ -135,6 +135,16 @@ class System:
         given: Floats = -self._given.energy(samples.q, self.signals(samples.t)[0])
         return given
 
+    def rubbed(self, samples: MotionSamples) -> Floats:
+        """Loss (n_c, n_t) of contacts by the centres of their cones, but for a constant."""
+        found = np.zeros((len(self.contact_names), samples.t.size))
+        u = self.signals(samples.t)[0]
+        for store in (store for store in self.stores if store.rubs):
+            x = np.array([_along(row, samples.q, u) for row in store.rows])
+            for i, _, f in store.f:
+                found[self.contact_names.index(store.name)] -= f * x[i]
+        return found
+
     @cached_property
     def _masses(self) -> Floats | None:
         """The mass matrix where it is diagonal."""
@@ -147,7 +157,7 @@ class System:
 
     @cached_property
     def _linear(self) -> Stored:
-        held = tuple(store for store in self.stores if not store.is_load)
+        held = tuple(store for store in self.stores if store.is_held)
         return stored_of(held, self.lined, self._n_coordinates, self.problem.n_u)
 
     @cached_property
@@ -174,7 +184,7 @@ class System:
         for lined in self.lined if linear else ():
             yield from lined.each(samples.q)
         for store in self.stores:
-            held = linear and not store.is_load
+            held = linear and store.is_held
             if store.nonlinear is not None or (held and (store.K or store.f or store.constant)):
                 yield store.name, self._stored(store, samples.q, u[0], X, held)
         for k in pressed:

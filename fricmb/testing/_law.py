@@ -14,6 +14,7 @@ from fricmb.testing._base import ConformanceError, Floats, Rule, findings, pickl
 from fricmb.testing._law_states import STATE_RULES
 from fricmb.testing._refusal import refuses
 from fricmb.testing._trial import AT_REST, SPEEDS, random_state, velocities
+from fricmb.values import value_of
 
 __all__ = ["ConformanceError", "check_law"]
 
@@ -35,7 +36,7 @@ def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
 
     Notes
     -----
-    Of every law: it pickles; wrong parameters are refused by name; its force is finite from v = 0 to 1e300, odd, turns
+    Of every law: it pickles; wrong parameters are refused by name; its force is finite from v = 0 to 1e300, odd (about its offset), turns
     with the velocity if the law is isotropic; the compiled Jacobian of a force is that of its values.  Of a
     coefficient: finite, not negative up to a slip speed of 7, its derivative the slope of its values, its limit at
     r = 0 the declared one.  Of a law without states: the force opposes the slip and is 0 at rest.  Of states:
@@ -117,7 +118,8 @@ def _odd(law: FrictionLaw, normal_force: float) -> Iterator[str]:
         sign = law_signs(law, d)
         for v in velocities(d, 1e-4, 1e4):
             force, other = law.force(v, normal_force, state), law.force(-v, normal_force, sign * state)
-            if not _close(np.asarray(force), -np.asarray(other)):
+            shift = 2.0 * normal_force * np.array([value_of(c) for c in law.offsets()] or np.zeros(d), dtype=float)
+            if not _close(np.asarray(force), -np.asarray(other) - shift):
                 yield f"force at v = {v.tolist()} is {force}, at -v it is {other}"
 
 

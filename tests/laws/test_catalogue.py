@@ -56,7 +56,12 @@ def test_force_opposes_slip_and_vanishes_at_rest(law_type):
     law = law_type.example()
     v = np.array([[0.3, 0.0, -0.4], [0.4, 0.0, 0.0]])
     N = np.array([2.0, 2.0, 3.0])
-    force = law.force(v, N)
+    if law.dimensions == (1,):
+        v[1] = 0.0
+        force = np.array([law.force(v[:1], N)[0], np.zeros(3)])
+    else:
+        force = law.force(v, N)
+    force[: len(law.offsets())] += np.array(law.offsets())[:, None] * N * (np.hypot(*v) > 0) if law.offsets() else 0.0
     scale = np.array(law.axis_scale() or (1.0, 1.0))[:, None]
     scaled = scale * v
     r = np.hypot(*scaled)

@@ -18,6 +18,8 @@ def parts_of(law: Any, d: int) -> dict[str, Any]:
     if isinstance(law, fm.laws.Elliptic):
         inner = parts_of(law.law, d)
         return {**inner, "stretch": np.array([1.0, float(law.ratio)])[:d]}
+    if isinstance(law, fm.laws.Offset):
+        return parts_of(law.law, d)
     if isinstance(law, fm.laws.Contensou):
         return {"force": disc(float(law.mu), float(law.v_reg))}
     if law.kind == "smooth":

@@ -55,7 +55,7 @@ LAWS: dict[str, Any] = {
     **{
         name: getattr(laws, name).example()
         for name in ("Coulomb", "CoulombViscous", "Cubic", "Elliptic", "FlashHeating", "HyperbolicStribeck",
-                     "LoadDependent", "Logarithmic", "Lorentzian", "Stribeck", "Tabulated")
+                     "LoadDependent", "Logarithmic", "Lorentzian", "Offset", "Stribeck", "Tabulated")
     },
 }  # fmt: skip
 
@@ -148,11 +148,16 @@ def numbers(law: Any, s: Situation, N0: float, share: Any, q: Any, v: Any, masse
     said = parts_of(law, d)
     W = np.eye(d) * said.pop("stretch", np.ones(d))
     belt = W.T @ (s.belt * np.eye(d)[0])
+    centre = np.array(law.offsets() or (0.0,) * d, dtype=float)
+
+    def N(t: float) -> float:
+        return N0 * (1.0 + s.varies * math.sin(2.0 * t))
+
     contact = Contact(
-        name="sole", W=W, N=lambda t, q, v: N0 * (1.0 + s.varies * math.sin(2.0 * t)), slide=lambda t: belt,
+        name="sole", W=W, N=lambda t, q, v: N(t), slide=lambda t: belt,
         constant=s.varies == 0.0, **said,
     )  # fmt: skip
     return Problem(
         M=np.diag(masses), K=np.diag(k), C=s.c * np.eye(d), q=np.array(q, dtype=float), v=np.array(v, dtype=float),
-        load=lambda t: share * s.load(t, math), contacts=(contact,), t_end=s.t_end,
+        load=lambda t: share * s.load(t, math) - centre * N(t), contacts=(contact,), t_end=s.t_end,
     )  # fmt: skip

@@ -19,6 +19,9 @@ class Coulomb(FrictionLaw):
         Coefficient of static friction, >= 0.
     mu_k : float, optional
         Coefficient of kinetic friction, 0 <= mu_k <= mu_s; None: follows ``mu_s``.
+    insist : bool
+        Take ``mu_k > mu_s`` too.  Between both no force is at rest and none at slip, and what is solved is the limit of
+        ever faster changes between them: a contact that is held up to ``mu_k``, as for ``mu_s = mu_k``.
 
     Raises
     ------
@@ -33,6 +36,7 @@ class Coulomb(FrictionLaw):
 
     mu_s: Any
     mu_k: Any = None
+    insist: bool = False
 
     def define_coefficient(self, r: Any) -> Any:
         """Constant in slip."""
@@ -43,8 +47,10 @@ class Coulomb(FrictionLaw):
         self._number("mu_s", self.mu_s, minimum=0.0)
         if self.mu_k is not None:
             self._number("mu_k", self.mu_k, minimum=0.0)
-            if self.mu_k > self.mu_s:
-                self._refuse("mu_k", self.mu_k, f"<= mu_s = {self.mu_s:g}")
+            if self.mu_k > self.mu_s and not self.insist:
+                self._refuse("mu_k", self.mu_k, f"<= mu_s = {self.mu_s:g} (insist=True takes more, and holds up to it)")
+        if self.insist and (self.mu_k is None or self.mu_k <= self.mu_s):
+            self._refuse("insist", self.insist, "left out where mu_k is not above mu_s")
 
     @property
     def kind(self) -> LawKind:
@@ -56,8 +62,22 @@ class Coulomb(FrictionLaw):
         return float(value_of(self.mu_s if self.mu_k is None else self.mu_k))
 
     def break_away(self, normal_force: float = 1.0) -> float:
-        """mu_s."""
-        return float(value_of(self.mu_s))
+        """mu_s; where slip is insisted to need more, that."""
+        return self.slip_limit() if self.insist else float(value_of(self.mu_s))
+
+    @property
+    def static_path(self) -> str | None:
+        """None where break-away is that of slip."""
+        return None if self.insist else super().static_path
+
+    def remark(self) -> str:
+        """What is solved in place of a break-away below slip."""
+        if not self.insist:
+            return ""
+        return (
+            f"mu_k = {self.slip_limit():g} is above mu_s = {float(value_of(self.mu_s)):g}: it sticks up to mu_k, which is"
+            " what changes between both come to"
+        )
 
     def coefficient(self, r: Any, normal_force: Any = 1.0) -> Any:
         """mu_k at every slip speed."""

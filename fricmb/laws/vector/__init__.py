@@ -3,5 +3,6 @@
 from fricmb.laws.vector._contensou import Contensou
 from fricmb.laws.vector._contensou_pade import ContensouPade
 from fricmb.laws.vector._elliptic import Elliptic
+from fricmb.laws.vector._offset import Offset
 
-__all__ = ["Contensou", "ContensouPade", "Elliptic"]
+__all__ = ["Contensou", "ContensouPade", "Elliptic", "Offset"]

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from fricmb.laws._base import FrictionLaw, LawKind
+from fricmb.laws._base import FrictionLaw
+from fricmb.laws.vector._shaped import Shaped
 
 
 @dataclass(frozen=True, kw_only=True)
-class Elliptic(FrictionLaw):
+class Elliptic(Shaped):
     """Friction of ``law`` along the contact's first direction, ``ratio`` times as much along the second.
 
     Of all forces in the ellipse ``|S^-1 F| <= mu N``, S = diag(1, ratio), slip meets the one of greatest dissipation:
@@ -43,63 +40,16 @@ class Elliptic(FrictionLaw):
     isotropic: ClassVar[bool] = False
     positive: ClassVar[tuple[str, ...]] = ("ratio",)
 
-    law: Any
     ratio: Any
-
-    def define_coefficient(self, r: Any) -> Any:
-        """That of the law, at the scaled speed."""
-        return self.law.define_coefficient(r)
 
     def axis_scale(self) -> tuple[Any, ...]:
         """(1, ratio)."""
         return (1.0, self.ratio)
 
-    @property
-    def kind(self) -> LawKind:
-        """As the law inside."""
-        kind: LawKind = self.law.kind
-        return kind
-
-    @property
-    def has_coefficient(self) -> bool:
-        """As the law inside."""
-        return bool(self.law.has_coefficient)
-
-    @property
-    def static_path(self) -> str | None:
-        """That of the law inside."""
-        path = self.law.static_path
-        return None if path is None else f"law.{path}"
-
-    def slip_limit(self, normal_force: float = 1.0) -> float:
-        """That of the law inside."""
-        return float(self.law.slip_limit(normal_force))
-
-    def knots(self) -> tuple[float, ...]:
-        """Those of the law inside, of the scaled speed."""
-        return tuple(self.law.knots())
-
-    def compiled_coefficient(self) -> Callable[..., None] | None:
-        """That of the law inside."""
-        function: Callable[..., None] | None = self.law.compiled_coefficient()
-        return function
-
-    def parameter_block(self) -> NDArray[np.float64]:
-        """That of the law inside: the ratio is in the rows of the contact."""
-        return np.asarray(self.law.parameter_block(), dtype=float)
-
-    def coefficient(self, r: Any, normal_force: Any = 1.0) -> Any:
-        """Coefficient along the first direction at the scaled speed r."""
-        return self.law.coefficient(r, normal_force)
-
-    def derivative(self, r: Any, normal_force: Any = 1.0) -> Any:
-        """Slope of :meth:`coefficient`."""
-        return self.law.derivative(r, normal_force)
-
     def check(self) -> None:
         """The law inside is set-valued and isotropic."""
         law = self.law
-        if not isinstance(law, FrictionLaw) or law.kind == "smooth" or law.axis_scale() or law.load_dependent:
+        if not isinstance(law, FrictionLaw) or law.kind == "smooth" or law.axis_scale() or law.load_dependent or law.offsets():
             self._refuse("law", law, "an isotropic set-valued law of the slip speed, such as fm.laws.Coulomb(mu_s=0.5)")
         super().check()
 
