@@ -58,7 +58,8 @@ class Statements:
         for part in with_inner(part for part in scene.parts if part.name in held):
             k = numbers.get(part.name)
             if k is not None and isinstance(part, Contact | Joint) and part.law is not None:
-                self.contacts[k] = Rubs(part.name, part.law, isinstance(part, Contact) and part.normal_kind == "constant")
+                steady = isinstance(part, Contact) and part.normal_kind == "constant"
+                self.contacts[k] = Rubs(part.name, part.law, steady)
             found: Acting | None
             if isinstance(part, Contact):
                 rows = slice(int(self.names.row[k]), int(self.names.row[k + 1])) if k is not None else slice(0, 0)

@@ -79,8 +79,8 @@ def test_mean_drift_of_a_robot_that_shakes_itself_along():
     assert np.diff(sol["b.x"])[0] == pytest.approx(way, rel=1e-7)
 
 
-@pytest.mark.parametrize("method", ("auto", "radau", "bdf"))
-@pytest.mark.parametrize("ratio", (1.0, 1.5))
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
+@pytest.mark.parametrize("ratio", [1.0, 1.5])
 def test_a_cone_about_another_centre_in_two_directions(method, ratio):
     """A puck that slides to rest, and is pulled loose: against an integration of the slip by scipy and a quadratic."""
     mu, c, N = 0.4, np.array([0.1, -0.2]), 2.0
@@ -137,13 +137,16 @@ def test_a_varying_load_between_two_bodies_and_a_file(tmp_path):
     a, b = fm.Body("a", mass=2.0), fm.Body("b", mass=3.0)
     N = 10 * (1 + 0.5 * sympy.sin(3 * fm.t))
     scene = fm.Scene("two", [
-        a, b, fm.Contact("c", a, b, law=BY_SENSE, normal_force=N), fm.Force("f", a, axis="x", value=8 * sympy.sin(fm.t)),
+        a, b, fm.Contact("c", a, b, law=BY_SENSE, normal_force=N),
+        fm.Force("f", a, axis="x", value=8 * sympy.sin(fm.t)),
     ])  # fmt: skip
     sol = fm.simulate(scene, t_end=12.0, rtol=1e-10)
     share, slip = sol.force("c")[0] / sol.normal_force("c"), sol.relative_velocity("c")[0]
     np.testing.assert_allclose(share[slip > 1e-6], -0.1, rtol=1e-9)
     np.testing.assert_allclose(share[slip < -1e-6], 0.5, rtol=1e-9)
-    assert (share >= -0.2 - 1e-9).all() and (share <= 0.6 + 1e-9).all() and len(sol.events) == 4
+    assert share.min() >= -0.2 - 1e-9
+    assert share.max() <= 0.6 + 1e-9
+    assert len(sol.events) == 4
     momentum = 2 * sol.velocity("a.x") + 3 * sol.velocity("b.x")
     np.testing.assert_allclose(momentum, 8 * (1 - np.cos(sol.t)), atol=1e-8)
     assert sol.audit().ok
@@ -187,7 +190,7 @@ def test_what_is_no_cone_about_a_centre_is_refused():
             make()
 
 
-@pytest.mark.parametrize("method", ("auto", "radau"))
+@pytest.mark.parametrize("method", ["auto", "radau"])
 def test_kinetic_above_static_is_held_up_to_kinetic(method):
     """What a user insists on: the note says what is solved."""
     law = fm.laws.Coulomb(mu_s=0.2, mu_k=0.3, insist=True)

@@ -49,7 +49,8 @@ class Elliptic(Shaped):
     def check(self) -> None:
         """The law inside is set-valued and isotropic."""
         law = self.law
-        if not isinstance(law, FrictionLaw) or law.kind == "smooth" or law.axis_scale() or law.load_dependent or law.offsets():
+        plain = isinstance(law, FrictionLaw) and not (law.axis_scale() or law.offsets())
+        if not plain or law.kind == "smooth" or law.load_dependent:
             self._refuse("law", law, "an isotropic set-valued law of the slip speed, such as fm.laws.Coulomb(mu_s=0.5)")
         super().check()
 

@@ -39,8 +39,8 @@ class Offset(Shaped):
     Notes
     -----
     The normal force of the contact is a number or an expression.  In ``sol.energy`` what the offset takes is part of
-    the friction loss under a number, and input under an expression.  A break-away that exceeds slip by another amount each way is no cone about one centre, and
-    refused; :class:`Stribeck` or another curve inside has the same fall both ways.
+    the friction loss under a number, and input under an expression.  A break-away that exceeds slip by another amount
+    each way is no cone about one centre, and refused; a curve inside falls by the same amount both ways.
 
     References
     ----------
