@@ -36,8 +36,8 @@ def check_law(law: FrictionLaw, *, normal_force: float = 3.0) -> None:
 
     Notes
     -----
-    Of every law: it pickles; wrong parameters are refused by name; its force is finite from v = 0 to 1e300, odd about its
-    offset, turns with the velocity if the law is isotropic; the compiled Jacobian of a force is that of its values.
+    Of every law: it pickles; wrong parameters are refused by name; its force is finite from v = 0 to 1e300, odd about
+    its offset, turns with the velocity if the law is isotropic; the compiled Jacobian of a force is that of its values.
     Of a coefficient: finite, not negative up to a slip speed of 7, its derivative the slope of its values, its limit at
     r = 0 the declared one.  Of a law without states: the force opposes the slip and is 0 at rest.  Of states:
     finite rates, 0 at rest unless the law ages (``rests``), and no work gained over a closed cycle.
