@@ -83,7 +83,7 @@ class Offset(Shaped):
         """Of the law inside, less the offset; 0 at v = 0."""
         found = np.asarray(self.law.force(v_rel, normal_force, state))
         if (len(found) if found.ndim else 1) not in self.dimensions:
-            raise LawError(f"{self._label()}: v_rel must have {self.dimensions[0]} rows, got shape {found.shape}")
+            self._refuse("v_rel", v_rel, f"of {self.dimensions[0]} direction(s)")
         shift = np.array([value_of(c) for c in self.offsets()], dtype=float)
         slips = np.abs(found).max(axis=0) > 0.0 if found.ndim else found != 0.0
         shift = shift.reshape(-1, *(1,) * (found.ndim - 1)) if found.ndim else shift[0]
