@@ -15,8 +15,8 @@ ROOT = Path(__file__).parents[1]
 #: low floor and a higher one does is named in `fricmb/_facade.py`.
 FLOORS = (
     {
-        "calls", "dae", "errors", "facade", "fe", "integrate", "measure", "reduction", "signal", "solution", "values",
-        "version",
+        "calls", "dae", "errors", "facade", "fe", "files", "integrate", "measure", "reduction", "signal", "solution",
+        "values", "version",
     },
     {"laws", "normal"},
     {"scene", "space"},

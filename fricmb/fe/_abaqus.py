@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
+from fricmb._files import text_of
 from fricmb.errors import FileError
 from fricmb.fe import _named
 
@@ -42,11 +42,7 @@ def read(path: Path, names: Mapping[str, str] | None) -> dict[str, Any]:
 
 
 def _lines(path: Path) -> list[str]:
-    try:
-        data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
-        return data.decode("ascii").splitlines()
-    except (OSError, EOFError, UnicodeDecodeError) as error:
-        raise FileError(f"{path}: expected a text file of Abaqus ({error})") from error
+    return text_of(path, "a text file of Abaqus").splitlines()
 
 
 # ---- substructures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
+from fricmb._files import text_of
 from fricmb.errors import FileError
 
 ENDINGS = {"K": ".sti", "M": ".mas", "labels": ".dof"}
@@ -45,18 +45,10 @@ def _beside(path: Path, ending: str) -> Path:
     raise FileError(f"{path}: expected {plain.name} beside it")
 
 
-def _text(path: Path) -> str:
-    try:
-        data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
-        return data.decode("ascii")
-    except (OSError, EOFError, UnicodeDecodeError) as error:
-        raise FileError(f"{path}: expected a text file of CalculiX ({error})") from error
-
-
 def _labels(path: Path) -> NDArray[np.int64]:
     """Lines ``node.direction``."""
     found = []
-    for number, line in enumerate(_text(path).split("\n"), 1):
+    for number, line in enumerate(text_of(path, "a text file of CalculiX").split("\n"), 1):
         if not line.strip():
             continue
         node, _, dof = line.strip().partition(".")
@@ -87,7 +79,7 @@ def _told_apart(labels: NDArray[np.int64]) -> tuple[NDArray[np.int64], bool]:
 
 def _triangle(path: Path, n: int) -> Any:
     """Lines ``row column value``, from 1, of one triangle."""
-    text = _text(path)
+    text = text_of(path, "a text file of CalculiX")
     if not text.endswith("\n"):
         raise FileError(f"{path}: its last line is cut off")
     try:

@@ -79,6 +79,7 @@ def _pair(a: FEModel, b: FEModel, name: str) -> FEModel:
         M=sum_of(a.M, b.M), K=sum_of(a.K, b.K), C=sum_of(a.C, b.C), H=sum_of(a.H, b.H),
         parts=parts,
         triangles=dict.fromkeys(parts, "full"),
+        scales={**b.scales, **a.scales},
         labels=np.array(labels),
         coordinates={**b.coordinates, **a.coordinates},
         frames={**b.frames, **a.frames},

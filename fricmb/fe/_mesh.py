@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._files import text_of
 from fricmb.errors import FileError
 from fricmb.fe import _ansys, _nastran
 
@@ -31,10 +32,7 @@ def read(path: Path) -> dict[str, Any]:
 
 def _inp(path: Path) -> dict[str, Any]:
     """``*NODE`` and ``*NSET`` of an input file."""
-    try:
-        lines = path.read_text(encoding="utf-8", errors="strict").splitlines()
-    except UnicodeDecodeError:
-        raise FileError(f"{path}: expected a text file of Abaqus or CalculiX") from None
+    lines = text_of(path, "a text file of Abaqus or CalculiX", "utf-8").splitlines()
     coordinates: dict[int, Any] = {}
     sets: dict[str, list[int]] = {}
     words: list[str] = []

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.errors import SceneError, shown, unknown_name
-from fricmb.fe._places import checked_frames, checked_labels, checked_sets, point_rows
+from fricmb.fe._places import checked_frames, checked_labels, checked_scales, checked_sets, point_rows
 from fricmb.fe._units import factors
 from fricmb.fe._whole import Floats, Sparse, checked, precision, symmetric_part
 
@@ -50,6 +50,9 @@ class FEModel:
         Degrees of freedom that are held: taken out.  So are those that no matrix knows.
     triangles : dict of str to {"symmetric", "skew", "full"}, optional
         What a triangle stands for, by name of the matrix; by default skew where its diagonal is empty, else symmetric.
+    scales : dict of str to float, parameter or expression, optional
+        Of parts: the number that multiplies each, such as ``{"KR": mu / 0.4}``; :meth:`ModalBody.from_fe` and
+        ``body.matrix`` take them from here.
     boundary : int, optional
         How many of the first degrees of freedom are those by which a superelement hangs on others.
     units : str, optional
@@ -80,6 +83,7 @@ class FEModel:
     sets: Mapping[str, Any] = field(default_factory=dict)
     fixed: InitVar[Any] = None
     triangles: InitVar[Mapping[str, str] | None] = None
+    scales: Mapping[str, Any] = field(default_factory=dict)
     boundary: int | None = None
     units: str | None = None
     name: str = "model"
@@ -110,6 +114,7 @@ class FEModel:
         for key in OWN:
             set_(self, key, matrices.get(key))
         set_(self, "parts", {k: v for k, v in matrices.items() if k not in OWN})
+        set_(self, "scales", checked_scales(self._label(), self.scales, self.parts))
         set_(self, "labels", None if labels is None else labels[kept])
         if self.boundary is not None:
             set_(self, "boundary", int(np.count_nonzero(kept < self.boundary)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,107 +11,113 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from fricmb.errors import FileError, MissingExtraError, unknown_name
+from fricmb._files import hdf5_arrays, mat_arrays, npz_arrays, one_sentence
+from fricmb.errors import FileError, unknown_name
 from fricmb.values import is_sparse
 
 #: Endings of the three arrays of a matrix by places and values.
 TRIPLES = (("r", "c", "v"), ("row", "col", "data"), ("row", "col", "val"), ("i", "j", "v"))
 #: Endings of the arrays of a compressed matrix.
 COMPRESSED = ("data", "indices", "indptr")
+#: What mass, stiffness, viscous and structural damping are called, the usual word first.
+WORDS = {
+    "M": ("m", "mass"),
+    "K": ("k", "stiff", "stiffness", "stif"),
+    "C": ("c", "damp", "damping", "d"),
+    "H": ("h", "structural"),
+}
+#: Endings of files that may hold one matrix each.
+SINGLE = (".mtx", ".npy", ".mat", ".npz")
 #: More rows than any model has: such a number is none of places.
 MOST = 50_000_000
 
 
 def read_npz(path: Path, names: Mapping[str, str] | None) -> dict[str, Any]:
     """Arrays of numpy: dense matrices, ``X_r, X_c, X_v``, or ``X_data, X_indices, X_indptr``."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {key: file[key] for key in file.files}
-    except (ValueError, OSError, EOFError) as error:
-        raise FileError(f"{path}: expected an npz file of numbers ({error})") from error
-    return _model(path, arrays, names)
+    return _model(path, npz_arrays(path), names)
 
 
 def read_mat(path: Path, names: Mapping[str, str] | None) -> dict[str, Any]:
-    """Matrices of MATLAB, up to version 7; those of 7.3 are HDF5."""
-    with path.open("rb") as file:
-        head = file.read(128)
-    if head[:8] == b"\x89HDF\r\n\x1a\n" or b"MATLAB 7.3" in head:
-        return read_hdf5(path, names)
-    try:
-        arrays = scipy.io.loadmat(path)
-    except Exception as error:
-        raise FileError(f"{path}: expected a MAT-file of MATLAB ({error})") from error
-    return _model(path, {key: value for key, value in arrays.items() if not key.startswith("__")}, names)
+    """Matrices of MATLAB."""
+    return _model(path, mat_arrays(path), names)
 
 
 def read_hdf5(path: Path, names: Mapping[str, str] | None) -> dict[str, Any]:
     """Datasets of HDF5: dense matrices, or groups of data, row indices and column starts as MATLAB writes them."""
-    try:
-        import h5py
-    except ImportError:
-        raise MissingExtraError(f"fe.read of {path.name}", "h5py", "hdf5") from None
-    arrays: dict[str, Any] = {}
-    try:
-        with h5py.File(path, "r") as file:
-            file.visititems(
-                lambda key, item: arrays.update({key: item[()]}) if isinstance(item, h5py.Dataset) else None
-            )
-            sizes = {
-                key: int(item.attrs["MATLAB_sparse"]) for key, item in file.items() if "MATLAB_sparse" in item.attrs
-            }
-    except OSError as error:
-        raise FileError(f"{path}: expected an HDF5 file ({error})") from error
-    for key, rows in sizes.items():
-        parts = (arrays.pop(f"{key}/data", np.zeros(0)), arrays.pop(f"{key}/ir", np.zeros(0)), arrays.pop(f"{key}/jc"))
-        arrays[key] = scipy.sparse.csc_array(parts, shape=(rows, len(parts[2]) - 1))
-    return _model(path, arrays, names)
+    return _model(path, hdf5_arrays(path), names)
 
 
-def read_each(paths: Mapping[str, Any]) -> dict[str, Any]:
+def read_each(paths: Mapping[str, Any], names: Mapping[str, str] | None = None) -> dict[str, Any]:
     """One file for each matrix."""
-    found = {str(key): read_one(Path(path)) for key, path in paths.items()}
-    return _fields(Path(str(next(iter(paths.values()), "no file"))), found)
+    first = Path(str(next(iter(paths.values()), "no file")))
+    return _model(first, {str(key): one_sentence(Path(path), _read_one) for key, path in paths.items()}, names)
 
 
-def read_one(path: Path) -> Any:
-    """The one matrix of a file: Matrix Market, npy, or npz of scipy."""
-    if not path.exists():
-        raise FileError(f"{path}: there is no such file")
+def _read_one(path: Path) -> Any:
+    """The one matrix of a file."""
     try:
         if path.suffix == ".npy":
             return np.load(path, allow_pickle=False)
         if path.suffix == ".npz":
             return scipy.sparse.load_npz(path)
+        if path.suffix == ".mat":
+            (matrix,) = _matrices(path, mat_arrays(path)).values()
+            return matrix
         return scipy.io.mmread(path)
+    except MemoryError:
+        raise
     except Exception as error:
-        raise FileError(f"{path}: expected one matrix, in Matrix Market, npy or npz of scipy ({error})") from error
+        raise FileError(f"{path}: expected one matrix, in Matrix Market, npy, mat or npz of scipy ({error})") from error
 
 
 def _model(path: Path, arrays: dict[str, Any], names: Mapping[str, str] | None) -> dict[str, Any]:
+    """Fields of a model; its matrices by the names given, or by what names usually say."""
     matrices = _matrices(path, arrays)
-    if names is None:
-        found = {key.upper() if key.upper() in ("M", "K", "C", "H") else key: value for key, value in matrices.items()}
-    else:
-        for wanted in names.values():
-            if wanted not in matrices:
-                raise FileError(f"{path}: {unknown_name('matrix', wanted, matrices)}")
-        found = {key: matrices[wanted] for key, wanted in names.items()}
-    fields = _fields(path, found)
+    for wanted in (names or {}).values():
+        if wanted not in matrices:
+            raise FileError(f"{path}: {unknown_name('matrix', wanted, matrices)}")
+    which = recognised(matrices) if names is None else names
+    fields = _fields(path, {key: matrices[there] for key, there in which.items()}, matrices)
+    if names is None and any(key != there for key, there in which.items()):
+        fields["notes"] = (", ".join(f"{key} is {there}" for key, there in which.items()) + ", by their names",)
     for key in ("labels", "fixed"):
         if key in arrays and key not in matrices:
             fields[key] = arrays[key]
     return fields
 
 
-def _fields(path: Path, found: dict[str, Any]) -> dict[str, Any]:
+def recognised(names: Iterable[str]) -> dict[str, str]:
+    """Which name is M, K, C, H: by usual words, or by what is left when names lose what all begin and end with.
+
+    Others stand for themselves, without what all begin and end with where that was lost.  Empty without M and K.
+    """
+    there = list(names)
+    before = _alike(there)
+    after = _alike([name[before:][::-1] for name in there])
+    for short in ({name: name for name in there}, {name: name[before : len(name) - after] for name in there}):
+        found = {}
+        for key, words in WORDS.items():
+            fit = [name for word in words for name in there if short[name].lower() == word]
+            if fit:
+                found[key] = fit[0]
+        if "M" in found and "K" in found:
+            return found | {short[name] or name: name for name in there if name not in found.values()}
+    return {}
+
+
+def _alike(words: list[str]) -> int:
+    """How many letters all words begin with."""
+    letters = list(zip(*words, strict=False))
+    return next((i for i, column in enumerate(letters) if len(set(column)) > 1), len(letters))
+
+
+def _fields(path: Path, found: dict[str, Any], there: Iterable[str]) -> dict[str, Any]:
     for key in ("M", "K"):
         if key not in found:
-            there = ", ".join(sorted(found)) or "no matrix"
-            raise FileError(f"{path}: expected M and K, found {there}; say which is which by names={{'{key}': ...}}")
+            held = ", ".join(sorted(there)) or "no matrix"
+            raise FileError(f"{path}: expected M and K, found {held}; say which is which by names={{'{key}': ...}}")
     own: dict[str, Any] = {key: found.pop(key) for key in ("M", "K", "C", "H") if key in found}
-    fields: dict[str, Any] = {**own, "parts": found}
-    return fields
+    return {**own, "parts": found}
 
 
 def _matrices(path: Path, arrays: dict[str, Any]) -> dict[str, Any]:

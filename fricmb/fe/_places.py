@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import SceneError, shown
+from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.fe._whole import Floats
+from fricmb.values import as_float, value_of
 
 if TYPE_CHECKING:
     from fricmb.fe._model import FEModel
@@ -60,6 +61,18 @@ def checked_sets(label: str, sets: Any) -> dict[str, Ints]:
             raise SceneError(f"{label}: sets[{name!r}] must be numbers of nodes, got {shown(nodes)}")
         found[str(name)] = numbers.astype(np.int64)
     return found
+
+
+def checked_scales(label: str, scales: Any, parts: Mapping[str, Any]) -> dict[str, Any]:
+    """Numbers, parameters or expressions by name of part."""
+    if not isinstance(scales, Mapping):
+        raise SceneError(f"{label}: scales must be a dict of part to number, parameter or expression")
+    for part, value in scales.items():
+        if part not in parts:
+            raise unknown_name(f"part in scales of {label}", part, parts)
+        if not np.isfinite(as_float(value_of(value))):
+            raise SceneError(f"{label}: scales[{part!r}] must be a finite number or an expression, got {shown(value)}")
+    return dict(scales)
 
 
 def point_rows(fe: FEModel, node: int, axes: str, turn: Floats | None) -> Floats:

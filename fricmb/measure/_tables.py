@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import scipy.io
 
+from fricmb._files import hdf5_arrays, mat_arrays, npz_arrays, text_of
 from fricmb.errors import FileError, MissingExtraError, unknown_name
 from fricmb.measure._types import Frf, Measured, TimeSeries
 
@@ -24,10 +25,7 @@ _UNIT = re.compile(r"^(.*?)\s*[\[(]\s*([^\])]*)\s*[\])]\s*$")
 
 def read_csv(path: Path, over: Over) -> Measured:
     """Text in columns, with or without a line of names; complex numbers as ``(1+2j)``."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise FileError(f"{path}: expected a text file of numbers in columns") from None
+    text = text_of(path, "a text file of numbers in columns", "utf-8-sig")
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith(("#", "%"))]
     if not lines:
         raise FileError(f"{path}: expected numbers in columns, found nothing")
@@ -103,39 +101,17 @@ def read_wav(path: Path, over: Over) -> Measured:
 
 def read_npz(path: Path, over: Over) -> Measured:
     """Vectors of numpy."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            return _measured(path, {key: file[key] for key in file.files}, over)
-    except (ValueError, OSError, EOFError) as error:
-        raise FileError(f"{path}: expected an npz file of numbers ({error})") from error
+    return _measured(path, npz_arrays(path), over)
 
 
 def read_mat(path: Path, over: Over) -> Measured:
     """Vectors of MATLAB."""
-    with path.open("rb") as file:
-        head = file.read(128)
-    if head[:8] == b"\x89HDF\r\n\x1a\n" or b"MATLAB 7.3" in head:
-        return read_hdf5(path, over)
-    try:
-        found = scipy.io.loadmat(path, squeeze_me=True)
-    except Exception as error:
-        raise FileError(f"{path}: expected a MAT-file of MATLAB ({error})") from error
-    return _measured(path, {key: value for key, value in found.items() if not key.startswith("__")}, over)
+    return _measured(path, mat_arrays(path), over)
 
 
 def read_hdf5(path: Path, over: Over) -> Measured:
     """Datasets of one dimension."""
-    try:
-        import h5py
-    except ImportError:
-        raise MissingExtraError(f"measure.read of {path.name}", "h5py", "hdf5") from None
-    found: dict[str, Any] = {}
-    try:
-        with h5py.File(path, "r") as file:
-            file.visititems(lambda key, item: found.update({key: item[()]}) if isinstance(item, h5py.Dataset) else None)
-    except OSError as error:
-        raise FileError(f"{path}: expected an HDF5 file ({error})") from error
-    return _measured(path, {key: np.squeeze(value) for key, value in found.items()}, over)
+    return _measured(path, hdf5_arrays(path), over)
 
 
 def read_tdms(path: Path, over: Over) -> Measured:
@@ -166,8 +142,8 @@ def read_tdms(path: Path, over: Over) -> Measured:
 
 def _measured(path: Path, columns: Mapping[str, Any], over: Over) -> Measured:
     """Signals, and frequency responses of complex columns, over a column of times or frequencies."""
-    vectors = {key: np.asarray(v) for key, v in columns.items() if np.ndim(v) == 1 and np.size(v) > 1}
-    vectors = {key: v for key, v in vectors.items() if v.dtype.kind in "iufc"}
+    numbers = {key: np.squeeze(v) for key, v in columns.items() if isinstance(v, np.ndarray) and v.dtype.kind in "iufc"}
+    vectors = {key: v for key, v in numbers.items() if v.ndim == 1 and v.size > 1}
     if not vectors:
         raise FileError(f"{path}: expected columns of numbers, found none")
     times = over if isinstance(over, str) else None

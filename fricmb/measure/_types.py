@@ -21,7 +21,18 @@ KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TimeSeries:
-    """A signal: ``t`` (n,), ``y`` (n,), ``name``, ``unit``, and where it was measured (``node``, ``axis``; 0, "")."""
+    """A signal.
+
+    Attributes
+    ----------
+    t, y : (n,)
+        Times, rising, and values.
+    name, unit : str
+    node, axis : int, str
+        Where it was measured: "x", "-y", ...; 0 and "" where the file does not say.
+    quantity : {"displacement", "velocity", "acceleration", "force", ""}
+        What it is; "" where the file does not say.
+    """
 
     t: Floats
     y: Floats
@@ -29,6 +40,7 @@ class TimeSeries:
     unit: str = ""
     node: int = 0
     axis: str = ""
+    quantity: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,6 +105,8 @@ class Modes:
         Displacements along x, y, z, and rotations where d is 6; complex where the file has them so.  nan: not said.
     masses : (k,)
         Modal masses; nan where the file has none, or 0.
+    round_off : float
+        Relative round-off of the shapes in a file: 5e-6 for six digits; 0 where it is that of double precision.
     """
 
     frequencies: Floats
@@ -100,6 +114,7 @@ class Modes:
     nodes: NDArray[np.int64]
     shapes: NDArray[np.inexact]
     masses: Floats
+    round_off: float = 0.0
 
     def __post_init__(self) -> None:
         k, p = np.size(self.frequencies), np.size(self.nodes)
@@ -178,6 +193,25 @@ class Measured:
     lines: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     units: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    def in_units(self, units: str = "SI") -> Measured:
+        """The same in other units, by the factors that a universal file states (dataset 164).
+
+        Signals and responses are converted where the file says what they are; a note counts others.
+
+        Parameters
+        ----------
+        units : str
+            "SI", or mass-length-time such as "t-mm-s"; times stay seconds.
+
+        Raises
+        ------
+        SceneError
+            If the file does not state its units.
+        """
+        from fricmb.measure._units import in_units
+
+        return in_units(self, units)
 
     def __str__(self) -> str:
         rows = [f"{len(self.signals)} signals, {len(self.frfs)} frequency responses, {len(self.points)} points"]

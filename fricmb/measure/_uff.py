@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import gzip
 import re
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,6 +16,8 @@ from fricmb.measure._types import DIRECTIONS, Frf, Measured, Modes, TimeSeries
 READ = (15, 2411, 18, 2420, 55, 2414, 58, 82, 164)
 #: Kinds by what the ordinate is: displacement, velocity, acceleration over force.
 ORDINATES = {8: "receptance", 11: "mobility", 12: "accelerance"}
+#: What a signal is, by the same number.
+QUANTITIES = {8: "displacement", 9: "force", 11: "velocity", 12: "acceleration", 13: "force"}
 #: The line before and behind each dataset.
 _MARK = re.compile(rb"^ {4}-1 *\r?$", re.MULTILINE)
 #: Types of functions of dataset 58.
@@ -32,22 +32,16 @@ def read(path: Path, over: tuple[float, float] | str | None) -> Measured:
         raise MissingExtraError(f"measure.read of {path.name}", "pyuff", "uff") from None
     with path.open("rb") as file:
         head = file.read(200)
-    if head[:2] != b"\x1f\x8b" and not head.lstrip().startswith(b"-1"):
+    if not head.lstrip().startswith(b"-1"):
         raise FileError(f"{path}: expected a universal file, whose first line is -1")
-    with tempfile.TemporaryDirectory() as folder:
-        plain = path
-        if head[:2] == b"\x1f\x8b":
-            plain = Path(folder) / "plain.uff"
-            plain.write_bytes(gzip.decompress(path.read_bytes()))
-        data = plain.read_bytes()
-        # behind binary values the last mark begins no line
-        if len(_MARK.findall(data)) % 2 and not data.rstrip().endswith(b"    -1"):
-            raise FileError(f"{path}: the last dataset is cut off: expected a line -1 at its end")
-        uff = pyuff.UFF(str(plain))
-        sets = [
-            _one(path, uff, number, int(kind)) for number, kind in enumerate(uff.get_set_types()) if int(kind) in READ
-        ]
-        others = sorted({int(kind) for kind in uff.get_set_types()} - {*READ})
+    data = path.read_bytes()
+    # behind binary values the last mark begins no line
+    if len(_MARK.findall(data)) % 2 and not data.rstrip().endswith(b"    -1"):
+        raise FileError(f"{path}: the last dataset is cut off: expected a line -1 at its end")
+    uff = pyuff.UFF(str(path))
+    kinds = [int(kind) for kind in uff.get_set_types()]
+    sets = [_one(path, uff, number, kind) for number, kind in enumerate(kinds) if kind in READ]
+    others = sorted({*kinds} - {*READ})
     return _measured(path, sets, others)
 
 
@@ -105,15 +99,17 @@ def _function(path: Path, number: int, held: Mapping[str, Any]) -> TimeSeries | 
     where: dict[str, Any] = {"node": int(held["rsp_node"]), "axis": _axis(held["rsp_dir"])}
     unit, name = str(held.get("ordinate_axis_units_lab", "")).strip(), str(held.get("id1", "")).strip()
     plain: dict[str, Any] = {"name": "" if name == "NONE" else name, "unit": "" if unit == "NONE" else unit}
+    ordinate = int(held.get("ordinate_spec_data_type", 0))
     if int(held["func_type"]) != FREQUENCY_RESPONSE and not np.iscomplexobj(values):
-        label = str(held.get("rsp_ent_name", "")).strip()
-        return TimeSeries(t=x, y=values.astype(float), **where, **(plain | ({} if plain["name"] else {"name": label})))
+        plain["name"] = plain["name"] or str(held.get("rsp_ent_name", "")).strip()
+        quantity = QUANTITIES.get(ordinate, "")
+        return TimeSeries(t=x, y=values.astype(float), quantity=quantity, **where, **plain)
     return Frf(
         f=x,
         values=values.astype(complex),
         reference=int(held["ref_node"]),
         reference_axis=_axis(held["ref_dir"]),
-        kind=ORDINATES.get(int(held.get("ordinate_spec_data_type", 0)), ""),
+        kind=ORDINATES.get(ordinate, ""),
         **where,
         **plain,
     )

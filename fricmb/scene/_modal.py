@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.errors import unknown_name
+from fricmb.errors import SceneError, unknown_name
 from fricmb.scene._arrays import check_array, check_vector
 from fricmb.scene._bodies import check_keys, check_letters
 from fricmb.scene._forms import LinearForm
@@ -52,6 +52,8 @@ class ModalBody(Part):
     parts : dict of str to (n, n)
         Matrices in the coordinates of the body, such as friction and gyroscopic terms, which :meth:`matrix` puts into a
         scene: from :meth:`from_fe`.
+    scales : dict of str to number, parameter or expression
+        What multiplies each of these parts, where :meth:`matrix` gives no other: from :meth:`from_fe`.
     errors : sequence of float
         Relative error of eigenvalues, estimated, at the samples of :meth:`from_fe`.
 
@@ -65,7 +67,9 @@ class ModalBody(Part):
     from_fe, from_matrices, from_mesh
     """
 
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "axes", "truncation", "residual", "neglected", "parts", "errors")
+    _fixed: ClassVar[tuple[str, ...]] = (
+        "name", "axes", "truncation", "residual", "neglected", "parts", "scales", "errors",
+    )  # fmt: skip
 
     _: KW_ONLY
     frequencies: Any
@@ -80,6 +84,7 @@ class ModalBody(Part):
     residual: int = 0
     neglected: float = 0.0
     parts: Mapping[str, Any] = field(default_factory=dict)
+    scales: Mapping[str, Any] = field(default_factory=dict)
     errors: Sequence[float] = ()
 
     def __post_init__(self) -> None:
@@ -142,6 +147,9 @@ class ModalBody(Part):
             if value.shape != (n, n):
                 self._refuse(f"parts[{key!r}]", value.shape, f"a matrix of shape ({n}, {n})")
         self._set("parts", MappingProxyType(parts))
+        if not isinstance(self.scales, Mapping) or not set(self.scales) <= set(parts):
+            self._refuse("scales", self.scales, "a dict of name of a part to number, parameter or expression")
+        self._set("scales", MappingProxyType(dict(self.scales)))
 
     @classmethod
     def from_matrices(
@@ -293,8 +301,8 @@ class ModalBody(Part):
             growth rates need them.  Eigenvalues up to ``up_to`` are right to some ``tolerance`` there; ``errors`` says
             how far.
         scales : dict of str to expression, optional
-            Of parts: the number in front as an expression of the parameters in ``enrich``.  Names of parts begin with K
-            (stiffness), C, D or G (damping), or M.
+            Of parts: the number in front as an expression of the parameters in ``enrich``; default: those of the model.
+            Names of parts begin with K (stiffness), C, D or G (damping), or M.
         structural_at : float, optional
             Frequency, in cycles, at which structural damping becomes viscous; by default that of each mode.
         tolerance : float
@@ -404,7 +412,7 @@ class ModalBody(Part):
 
         return compare(self, test, points)
 
-    def matrix(self, name: str, *, M: Any = None, C: Any = None, K: Any = None, scale: Any = 1.0) -> MatrixElement:
+    def matrix(self, name: str, *, M: Any = None, C: Any = None, K: Any = None, scale: Any = None) -> MatrixElement:
         """One of the body's ``parts`` as an element of a scene.
 
         Parameters
@@ -413,7 +421,8 @@ class ModalBody(Part):
             Of the element.
         M, C, K : str or (n, n) array, optional
             Name of a part, or a matrix in the coordinates of the body.
-        scale : float, parameter or expression of parameters
+        scale : float, parameter or expression of parameters, optional
+            Default: that of the part in ``scales``, else 1.
 
         Returns
         -------
@@ -432,6 +441,11 @@ class ModalBody(Part):
                 raise unknown_name(f"part of {self._label()}", value, self.parts)
             return self.parts[value]
 
+        if scale is None:
+            own = {self.scales.get(part, 1.0) for part in (M, C, K) if isinstance(part, str)}
+            if len(own) > 1:
+                raise SceneError(f"{self._label()}: matrix {name!r} has parts with different scales; give scale=")
+            scale = own.pop() if own else 1.0
         return MatrixElement(name, self.dof_names, M=held(M), C=held(C), K=held(K), scale=scale)
 
     @property

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fricmb.errors import SceneError, shown, unknown_name
+from fricmb.errors import SceneError, shown
 from fricmb.values import Parameter, as_float, is_expression, value_of
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ def from_fe(
 ) -> ModalBody:  # fmt: skip
     """See :meth:`ModalBody.from_fe`."""
     from fricmb.fe import FEModel
+    from fricmb.fe._places import checked_scales
     from fricmb.fe._whole import ROUND_OFF, asymmetry, symmetric_part
     from fricmb.integrate.run.one_thread import one_thread
     from fricmb.reduction import reduce_model
@@ -43,6 +44,7 @@ def from_fe(
     if cycles is None and count is None:
         raise SceneError(f"{label}: give up_to, a frequency, or n_modes")
     at = _positive(label, "structural_at", structural_at)
+    factors = {**fe.scales, **checked_scales(label, scales or {}, fe.parts)}
     rows = point_rows(label, fe, points, axes, normals)
     with one_thread("openblas"):  # most is sparse, or in small blocks
         found = reduce_model(
@@ -53,7 +55,7 @@ def from_fe(
             count=count,
             top=None if cycles is None else 2.0 * np.pi * cycles,
             residual=bool(residual),
-            samples=_samples(label, fe, enrich, scales),
+            samples=_samples(label, fe, enrich, factors),
             structural_at=None if at is None else 2.0 * np.pi * at,
             tolerance=_positive(label, "tolerance", tolerance) or 1e-6,
         )
@@ -70,6 +72,7 @@ def from_fe(
         residual=found.residual,
         neglected=found.neglected,
         parts=found.parts,
+        scales=factors,
         errors=found.errors,
         **fields,
     )
@@ -135,31 +138,25 @@ def _frame(label: str, name: str, normal: Any) -> Any:
     return np.array([first, np.cross(n, first), n])
 
 
-def _samples(label: str, fe: FEModel, enrich: Any, scales: Any) -> list[dict[str, tuple[str, float]]]:
+def _samples(label: str, fe: FEModel, enrich: Any, scales: Mapping[str, Any]) -> list[dict[str, tuple[str, float]]]:
     """Of each sample the parts, what they are added to, and their factors."""
     from fricmb.fe._convert import part_target
 
     if not isinstance(enrich, Sequence) or isinstance(enrich, str) or not all(isinstance(e, Mapping) for e in enrich):
         raise SceneError(f"{label}: enrich must be a list of dicts such as [{{'mu': 0.4}}], got {shown(enrich)}")
-    if not isinstance(scales or {}, Mapping):
-        raise SceneError(f"{label}: scales must be a dict of part to number, parameter or expression")
-    given = dict(scales or {})
-    for part in given:
-        if part not in fe.parts:
-            raise unknown_name(f"part in scales of {label}", part, fe.parts)
     found = []
     for sample in enrich:
         values = {key: as_float(value) for key, value in sample.items()}
-        named = {p.name for expression in given.values() for p in _parameters(expression)}
+        named = {p.name for expression in scales.values() for p in _parameters(expression)}
         for key, value in values.items():
             if key not in fe.parts and key not in named:
                 raise SceneError(
                     f"{label}: {key!r} in enrich is neither a part of the model ({', '.join(fe.parts) or 'none'}) nor a"
-                    f" parameter in scales; give scales={{part: expression of {key}}}"
+                    f" parameter in scales; give scales={{part: expression of {key}}}, here or to the model"
                 )
             if not np.isfinite(value):
                 raise SceneError(f"{label}: {key!r} in enrich must be a finite number, got {shown(sample[key])}")
-        factors = {part: _value(expression, values) for part, expression in given.items()}
+        factors = {part: _value(expression, values) for part, expression in scales.items()}
         factors |= {key: value for key, value in values.items() if key in fe.parts}
         found.append({part: (part_target(part), value) for part, value in factors.items() if value != 0.0})
     return found

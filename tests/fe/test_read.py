@@ -60,10 +60,41 @@ def test_containers(kind, tmp_path):
     fe = fm.fe.read(path, names={"M": "mass", "K": "stiff", "DG": "G"})
     np.testing.assert_allclose(fe.frequencies(9), frequencies(), rtol=1e-9)
     np.testing.assert_array_equal(fe.matrix("DG").toarray(), G.toarray() - G.toarray().T)  # a triangle without diagonal
+    by_words = fm.fe.read(path)
+    np.testing.assert_allclose(by_words.frequencies(9), frequencies(), rtol=1e-9)
+    assert "M is mass, K is stiff, G is G, by their names" in by_words.notes
     with pytest.raises(FileError, match=r"expected M and K, found .*stiff.*names="):
-        fm.fe.read(path)
+        fm.fe.read(path, names={"M": "mass"})
     with pytest.raises(FileError, match=r"unknown matrix 'stif'.*'stiff'"):
         fm.fe.read(path, names={"M": "mass", "K": "stif"})
+
+
+@pytest.mark.parametrize(
+    ("names", "found"),
+    [
+        (("BMLL", "BKLL", "BDLL", "BKQLL"), {"M": "BMLL", "K": "BKLL", "C": "BDLL", "KQ": "BKQLL"}),
+        (("m_red", "k_red"), {"M": "m_red", "K": "k_red"}),
+        (("K", "M", "KR"), {"M": "M", "K": "K", "KR": "KR"}),
+        (("Stiffness", "mass"), {"M": "mass", "K": "Stiffness"}),
+        (("A", "B"), {}),
+    ],
+)
+def test_matrices_by_what_tells_their_names_apart(names, found):
+    from fricmb.fe._named import recognised
+
+    assert recognised(names) == found
+
+
+def test_a_folder_of_one_matrix_a_file(tmp_path):
+    M, K = chain()
+    scipy.io.mmwrite(tmp_path / "BMLL00.mtx", scipy.sparse.csr_array(M))
+    scipy.io.savemat(tmp_path / "BKLL00.mat", {"anything": scipy.sparse.csc_matrix(np.tril(K))})
+    np.save(tmp_path / "BKQLL00.npy", np.eye(9))
+    (tmp_path / "mesh.inp").write_bytes((DATA / "chain.inp").read_bytes())
+    fe = fm.fe.read(tmp_path)
+    np.testing.assert_allclose(fe.frequencies(9), frequencies(), rtol=1e-9)
+    assert list(fe.parts) == ["KQ"]
+    assert fe.nodes("TIP").tolist() == [13]
 
 
 def test_nodes_from_an_input_file():

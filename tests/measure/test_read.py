@@ -216,3 +216,38 @@ def test_a_name_over_two_columns_is_an_error(tmp_path):
         fm.measure.read(path)
     path.write_text("time,F,,\n0,1,3,5\n1,2,4,6\n")
     assert [s.name for s in fm.measure.read(path).signals] == ["F", "column 3", "column 4"]
+
+
+def test_universal_files_state_their_units(tmp_path):
+    pyuff = pytest.importorskip("pyuff")
+    values = universal(tmp_path / "a.uff")
+    found = fm.measure.read(tmp_path / "a.uff")
+    with pytest.raises(fm.SceneError, match="does not state its units"):
+        found.in_units("SI")
+    pyuff.UFF(str(tmp_path / "a.uff")).write_sets(
+        pyuff.prepare_164(units_code=5, units_description="mm", temp_mode=1, length=1000.0, force=1000.0,
+                          temp=1.0, temp_offset=273.15), "add",
+    )  # fmt: skip
+    si = fm.measure.read(tmp_path / "a.uff").in_units("SI")  # from mm, mN
+    np.testing.assert_allclose(si.points[8], [1e-3, 2e-3, 3e-3])
+    np.testing.assert_allclose(si.frfs[0].values, values, rtol=1e-4)  # mm/s2/mN is m/s2/N
+    np.testing.assert_allclose(si.signals[0].y, 1e-3 * found.signals[0].y)
+    assert si.signals[0].quantity == "acceleration"
+    np.testing.assert_allclose(si.modes.masses, found.modes.masses)  # mN s2/mm is kg
+    tonnes = si.in_units("t-mm-s")
+    np.testing.assert_allclose(tonnes.modes.masses, 1e-3 * si.modes.masses)
+    np.testing.assert_allclose(tonnes.frfs[0].values, 1e3 * si.frfs[0].values)  # mm/s2/N
+    np.testing.assert_allclose(tonnes.in_units("SI").points[8], si.points[8])
+    with pytest.raises(fm.SceneError, match="must have seconds"):
+        si.in_units("kg-m-ms")
+
+
+def test_packed_files(tmp_path):
+    import gzip
+
+    universal(tmp_path / "a.uff")
+    (tmp_path / "a.uff.gz").write_bytes(gzip.compress((tmp_path / "a.uff").read_bytes()))
+    assert fm.measure.read(tmp_path / "a.uff.gz").modes.hertz[0] == pytest.approx(12.5)
+    (tmp_path / "a.uff.gz").write_bytes((tmp_path / "a.uff.gz").read_bytes()[:200])
+    with pytest.raises(FileError, match=r"a\.uff\.gz: expected a whole packed file"):
+        fm.measure.read(tmp_path / "a.uff.gz")

@@ -1,0 +1,7 @@
+"""Files that others wrote: which reader one goes to, text and containers, and errors of one sentence."""
+
+from fricmb._files._containers import hdf5_arrays, mat_arrays, npz_arrays
+from fricmb._files._formats import Formats, one_sentence
+from fricmb._files._text import text_of
+
+__all__ = ["Formats", "hdf5_arrays", "mat_arrays", "npz_arrays", "one_sentence", "text_of"]
