@@ -39,7 +39,7 @@ from fricmb.integrate.constrained.singular_position import (
     may_have_passed,
     near_singular,
 )
-from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.stages import Stages, bring_up_to_date
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
@@ -128,7 +128,7 @@ def reject(c: Control, h: float) -> int:
 
 
 #: Rate of convergence up to which the Jacobian of a step serves the next one.
-KEPT = 0.1
+KEPT = 0.001
 
 
 @kernel
@@ -181,6 +181,7 @@ def radau_step(
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         return reject(c, 0.4 * h)
+    bring_up_to_date(mech, k, y, st, h)
     find_kinks(mech, k, y, st, out)
     weigh_ports(mech, k, y, st, c, h)
     between = max(laws_between(mech, k, y, st, c, h), load_defect(mech, k, w, y, st, c, out, h))

@@ -9,12 +9,12 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.forces import directions, forces, move
+from fricmb.integrate.constrained.forces import directions, move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, asked
 from fricmb.integrate.constrained.slip_rows import lightness
-from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.stages import Stages, bring_up_to_date
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.problem import LAW_CONSTANT
 from fricmb.integrate.step.knots import bends_between, beside_knots, knot_ahead
@@ -41,17 +41,6 @@ def put_rates(y: State, st: Stages, h: float) -> None:
             for j in range(st.z.shape[0]):
                 value += st.Ainv[i, j] * (st.z[j, a] - y.z[a])
             st.zd[i, a] = value / h
-
-
-@kernel
-def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
-    """Slip velocities and loads at the stages after the last of Newton's changes."""
-    if st.fresh == 1:
-        return
-    st.fresh = 1
-    for i in range(st.tab.c.shape[0]):
-        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
-        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
 
 
 @kernel

@@ -14,7 +14,7 @@ from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
-from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, factor_stages, iterate_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
@@ -256,10 +256,9 @@ def end_step(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages
     if not settle(mech, k, w, end):
         return False
     # energies: the stages' powers, integrated by the formula itself
-    known = st.fresh == 1 and k.s.ddu.shape[0] == 0
+    bring_up_to_date(mech, k, y, st, h)
     for i in range(s):
-        stage_powers(mech, k, y, st, c, h, i, known)
-    st.fresh = 1
+        stage_powers(mech, k, y, st, c, h, i)
     for a in range(n_c + 2):
         end.work[a] = y.work[a]
         for i in range(s):
@@ -268,10 +267,10 @@ def end_step(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages
 
 
 @kernel
-def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int, known: bool) -> None:
-    """Powers at stage i into ``c.power[i]``; ``known``: slip and loads are up to date, and forces on signals none."""
+def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, i: int) -> None:
+    """Powers at stage i, whose slip and loads are up to date, into ``c.power[i]``."""
     move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
-    if not known:
+    if k.s.ddu.shape[0] > 0:  # forces on signals
         forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i])
 

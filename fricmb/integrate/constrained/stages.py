@@ -24,7 +24,18 @@ from fricmb.integrate.constrained.problem_structs import Mech, mech_of
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
-from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2, Pivots, Problem
+from fricmb.integrate.problem import (
+    LAW_CONSTANT,
+    LAW_SMOOTH,
+    NORMAL_CONSTANT,
+    SLIP,
+    Complexes,
+    Complexes2,
+    Floats,
+    Floats2,
+    Pivots,
+    Problem,
+)
 from fricmb.integrate.step.felt import Felt, felt_of
 from fricmb.integrate.step.tableau import Tableau
 
@@ -34,7 +45,7 @@ class Stages(Layout):
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved;
-    ``fresh`` 1 where N and g are those of the values there, after the last of Newton's changes.
+    ``fresh`` 1 where N and g are those of the values there, but for a change that is nothing.
     """
 
     tab: Tableau
@@ -218,6 +229,40 @@ def is_noise(mech: Mech, st: Stages) -> bool:
     return True
 
 
+#: Round-off of a solution with factors, where forces of the structure over a step are no more than inertia.
+ROUND_OFF = 1e-14
+
+
+@kernel
+def is_linear(mech: Mech, y: State) -> bool:
+    """Whether the equations of a step are linear: of the structure, stick, and slip that cannot turn and has one force."""
+    port, linear = mech.port, mech.elements.address.shape[0] == 0 and mech.joint.n_x.shape[0] == 0
+    for c in range(y.mode.shape[0]):
+        slips = y.mode[c] == SLIP and (port.law[c] != LAW_CONSTANT or port.row[c + 1] - port.row[c] > 1)
+        linear = linear and not slips and port.normal[c] == NORMAL_CONSTANT and port.law[c] != LAW_SMOOTH
+        linear = linear and port.soft[c] == 0.0
+    return bool(linear and mech.place.address.shape[0] == 0)
+
+
+@kernel
+def left_by_factors(mech: Mech, y: State, h: float) -> float:
+    """Part of a change that its solution by the factors of a step h may be off by; 1 where equations are not linear.
+
+    Stiff springs and dampers, whose forces over a step are far above those of inertia, take digits from soft motion.
+    """
+    if not is_linear(mech, y):
+        return 1.0
+    linear, stiff = mech.linear, 1.0
+    n = mech.mass.shape[0]
+    for e in range(linear.K.shape[0]):
+        i = linear.Ki[e]
+        stiff = max(stiff, h * h * abs(linear.K[e]) / mech.mass[i] if i < n else 0.0)
+    for e in range(linear.C.shape[0]):
+        i = linear.Ci[e]
+        stiff = max(stiff, h * abs(linear.C[e]) / mech.mass[i] if i < n else 0.0)
+    return ROUND_OFF * stiff
+
+
 @block
 def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> int:
     """Newton from the values in ``st`` until changes of velocities and states are below ``accuracy`` of their sizes.
@@ -227,6 +272,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
     tab = st.tab
     s = tab.c.shape[0]
     last = np.inf
+    exact = left_by_factors(mech, y, h)
     st.found, st.fresh = 1.0, 0
     for iteration in range(ITERATIONS):
         for i in range(s):
@@ -252,10 +298,11 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accura
                 at += part.shape[1]
         if not (change < 1e30 and sound == 0.0):
             return 0
-        rate = change / last if iteration > 0 else 1.0
-        if iteration > 0:
+        rate = change / last if iteration > 0 else exact
+        if iteration > 0 or exact < 1.0:
             st.found = rate
-        if change <= 1e-15 or (iteration > 0 and rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
+        if change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
+            st.fresh = 1 if change <= accuracy else 0
             for i in range(s):
                 stage_positions(y, st, h, i)
             return iteration + 1
@@ -277,3 +324,14 @@ def stage_positions(y: State, st: Stages, h: float, i: int) -> None:
         for j in range(st.tab.c.shape[0]):
             value += st.tab.A[i, j] * st.V[j, a]
         st.Q[i, a] = y.q[a] + h * value
+
+
+@kernel
+def bring_up_to_date(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
+    """Slip velocities and loads at the stages after the last of Newton's changes."""
+    if st.fresh == 1:
+        return
+    st.fresh = 1
+    for i in range(st.tab.c.shape[0]):
+        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
+        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])

@@ -52,7 +52,7 @@ class StepTrajectory(Trajectory):
         if len(span):
             self._row_step, self._row_side = np.append(0, self._row_step), np.append(0, self._row_side)
 
-    @property
+    @cached_property
     def t(self) -> Floats:
         """Times of the accepted steps."""
         if not len(self._span):
@@ -112,7 +112,7 @@ class StepTrajectory(Trajectory):
         return found
 
     def __getstate__(self) -> dict[str, Any]:
-        made = {"_said", "_scale", "_spent", "_stored_at_start"}
+        made = {"t", "_said", "_scale", "_spent", "_stored_at_start"}
         return {name: value for name, value in super().__getstate__().items() if name not in made}
 
     # -- energies -----------------------------------------------------------------------------------------------
@@ -261,11 +261,18 @@ def complete_at(
 
 def lagrange_weights(nodes: Floats, x: Floats) -> Floats:
     """Weights (n_t, k) of values at the nodes for their polynomial at x."""
-    weight = np.ones((len(x), len(nodes)))
-    for j in range(len(nodes)):
-        for other in np.delete(nodes, j):
-            weight[:, j] *= (x - other) / (nodes[j] - other)
-    return weight
+    last = len(nodes) - 1
+    apart = nodes[:, None] - nodes
+    np.fill_diagonal(apart, 1.0)
+    weight = np.empty((len(nodes), len(x)))
+    weight[0] = 1.0
+    for j in range(last):  # products over the nodes before each one, and then over those behind it
+        np.multiply(weight[j], x - nodes[j], out=weight[j + 1])
+    behind = np.ones(len(x))
+    for j in range(last, -1, -1):
+        weight[j] *= behind / apart[j].prod()
+        behind *= x - nodes[j]
+    return weight.T
 
 
 def nodes_of(stages: int) -> Floats:
