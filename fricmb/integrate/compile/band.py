@@ -1,8 +1,15 @@
-"""Banded matrices, real and complex: factors with row pivoting, and solving with them.
+"""Banded matrices, real and complex: factors with row pivoting, and solving with them; they may have a border.
 
 Entry (i, j) of a matrix with ``half`` diagonals on either side stands at ``2 half + i - j`` in column j, which is
 3 half + 1 long: space for the rows that pivoting brings.  Wide bands are LAPACK's; in narrow ones a call of it costs
 more than the arithmetic, and the same elimination is done here.
+
+The last unknowns may be a *border* that meets all others, such as the forces of a few contacts on many modes:
+
+    [ B  R ]     B banded, R its columns, L its rows, D the corner, a full matrix kept as a band, too;
+    [ L  D ]     what is solved in the end is D - L B^-1 R.
+
+The array holds B, then R by columns, L by rows, and D.  Rows of the border are no pivots of B.
 """
 
 from __future__ import annotations
@@ -14,9 +21,24 @@ from fricmb.integrate.compile.lapack import dgbtrf, dgbtrs, zgbtrf, zgbtrs
 from fricmb.integrate.problem import Complexes, Floats, Pivots
 
 
-def band_sizes(n: int, half: int) -> Pivots:
-    """What the routines read: n, diagonals below and above, length of a column, right-hand sides, fault, 'N'."""
-    return np.array([n, half, half, 3 * half + 1, 1, 0, ord("N")], np.int32)
+def band_sizes(n: int, half: int, border: int = 0) -> Pivots:
+    """What the routines read: n, diagonals below and above, length of a column, right-hand sides, fault, 'N'.
+
+    The same again of the corner of a border.
+    """
+    own = [n, half, half, 3 * half + 1, 1, 0, ord("N")]
+    far = max(border - 1, 0)
+    return np.array([*own, border, far, far, 3 * far + 1, 1, 0, ord("N")], np.int32)
+
+
+def length_of(sizes: Pivots) -> int:
+    """Numbers that a matrix is kept as."""
+    n, border = int(sizes[0]), int(sizes[CORNER])
+    return n * int(sizes[3]) + 2 * n * border + border * int(sizes[CORNER + 3])
+
+
+#: Where the sizes of a border's corner begin.
+CORNER = 7
 
 
 #: Diagonals on either side up to which loops here are faster than calls of LAPACK (mechanisms of 6 to 40 unknowns).
@@ -24,8 +46,66 @@ NARROW = 20
 
 
 @kernel
+def place_of(sizes: Pivots, i: int, j: int) -> int:
+    """Where entry (i, j) stands."""
+    n, border = int(sizes[0]), int(sizes[CORNER])
+    if i < n and j < n:
+        return int(j * sizes[3] + sizes[1] + sizes[2] + i - j)
+    right = n * int(sizes[3])
+    if i < n:
+        return right + (j - n) * n + i
+    if j < n:
+        return right + border * n + (i - n) * n + j
+    return int(right + 2 * border * n + (j - n) * sizes[CORNER + 3] + 2 * sizes[CORNER + 1] + i - j)
+
+
+@kernel
 def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
     """Factor in place; False where the matrix is singular."""
+    if not factor_plain(ab, pivots, sizes):
+        return False
+    border = int(sizes[CORNER])
+    if border == 0:
+        return True
+    n = int(sizes[0])
+    right = n * int(sizes[3])
+    below, corner = right + border * n, right + 2 * border * n
+    for c in range(border):
+        line = ab[right + c * n : right + (c + 1) * n]
+        solve_plain(ab, pivots, sizes, line)
+        for r in range(border):
+            row = ab[below + r * n : below + (r + 1) * n]
+            at = corner + c * int(sizes[CORNER + 3]) + 2 * int(sizes[CORNER + 1]) + r - c
+            for i in range(n):
+                ab[at] -= row[i] * line[i]
+    return factor_plain(ab[corner:], pivots[n:], sizes[CORNER:])
+
+
+@kernel
+def solve_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
+    """Overwrite b (n,) by the solution for the matrix whose factors are in ``ab``."""
+    border, n = int(sizes[CORNER]), int(sizes[0])
+    if border == 0:
+        solve_plain(ab, pivots, sizes, b)
+        return
+    right = n * int(sizes[3])
+    below, corner = right + border * n, right + 2 * border * n
+    first, last = b[:n], b[n:]
+    solve_plain(ab, pivots, sizes, first)
+    for r in range(border):
+        row = ab[below + r * n : below + (r + 1) * n]
+        for i in range(n):
+            last[r] -= row[i] * first[i]
+    solve_plain(ab[corner:], pivots[n:], sizes[CORNER:], last)
+    for c in range(border):
+        line, x = ab[right + c * n : right + (c + 1) * n], last[c]
+        for i in range(n):
+            first[i] -= line[i] * x
+
+
+@kernel
+def factor_plain(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
+    """Factor a matrix without a border in place."""
     if sizes[1] <= NARROW:
         return eliminate(ab, pivots, sizes)
     n, kl, ku, ld, info = sizes[0:1], sizes[1:2], sizes[2:3], sizes[3:4], sizes[5:6]
@@ -37,8 +117,8 @@ def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
 
 
 @kernel
-def solve_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
-    """Overwrite b (n,) by the solution for the matrix whose factors are in ``ab``."""
+def solve_plain(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
+    """Solve with the factors of a matrix without a border."""
     if sizes[1] <= NARROW:
         substitute(ab, pivots, sizes, b)
         return

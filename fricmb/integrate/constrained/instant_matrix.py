@@ -9,12 +9,32 @@ from fricmb.integrate.constrained.friction_rows import add_friction
 from fricmb.integrate.constrained.jacobian_layers import add, add_contacts, add_joints, add_mass
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import add_stick
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, add_stick
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.problem import STICK
 
 #: What of friction the matrix of an instant holds.
 NONE, STUCK, ALL = 0, 1, 2
+
+
+@kernel
+def serves_again(w: Instant, y: State) -> bool:
+    """Whether the factors that are there are those of y: where nothing turns they depend on modes alone."""
+    again = w.kept == 1
+    for c in range(y.mode.shape[0]):
+        again = again and w.mode[c] == y.mode[c]
+    return bool(again)
+
+
+@kernel
+def keep(mech: Mech, w: Instant, y: State) -> None:
+    """Remember of which modes the factors with all of friction are, where they can serve again."""
+    turns = mech.place.address.shape[0] > 0 or mech.joint.n_x.shape[0] > 0
+    w.kept = 0 if turns else 1
+    for c in range(y.mode.shape[0]):
+        w.mode[c] = y.mode[c]
+        if y.mode[c] == SETTING_OUT:  # in a direction that follows from the force
+            w.kept = 0
 
 
 @block
@@ -24,6 +44,9 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -
     ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
     """
     order = mech.order
+    if friction == ALL and serves_again(w, y):
+        return True
+    w.kept = 0
     rows, nz = y.F.shape[0], y.z.shape[0]
     w.L.A0[:] = 0.0
     w.L.A1[:] = 0.0
@@ -45,7 +68,11 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -
         add(order, w.L.A1, size - nz + i, size - nz + i, 1.0)
     for i in range(w.ab.shape[0]):
         w.ab[i] = w.L.A0[i] + w.L.A1[i]
-    return factor_band(w.ab, w.pivots, order.sizes)
+    if not factor_band(w.ab, w.pivots, order.sizes):
+        return False
+    if friction == ALL:
+        keep(mech, w, y)
+    return True
 
 
 @kernel

@@ -5,6 +5,7 @@ With unknowns [v, lam, F, z] and a shift gamma = 1/(h lambda) the matrix of a st
 
 from __future__ import annotations
 
+from fricmb.integrate.compile.band import place_of
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
@@ -17,7 +18,7 @@ from fricmb.integrate.problem import NORMAL_LAW, Floats
 
 
 class Layers(Layout):
-    """Banded matrices (size * ldab,) by columns."""
+    """Banded matrices as ``compile.band`` keeps them."""
 
     A0: Floats
     A1: Floats
@@ -27,8 +28,7 @@ class Layers(Layout):
 @kernel
 def add(order: Order, A: Floats, i: int, j: int, value: float) -> None:
     """Add to entry (i, j)."""
-    column = order.place[j]
-    A[column * order.sizes[3] + 2 * order.sizes[1] + order.place[i] - column] += value
+    A[place_of(order.sizes, order.place[i], order.place[j])] += value
 
 
 @kernel

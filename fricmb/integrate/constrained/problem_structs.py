@@ -98,7 +98,7 @@ class Port(Layout):
 
 
 class Order(Layout):
-    """Place of every unknown [v, lam, F, z] in the banded matrices, and their sizes for LAPACK."""
+    """Place of every unknown [v, lam, F, z] in the banded matrices, and their sizes (``compile.band``)."""
 
     place: Ints
     sizes: Pivots
@@ -166,13 +166,13 @@ def _pack(problem: Problem) -> Mech:
     p = m.places
     rest = of_pattern(problem, "places", lambda: _place_rows(m))
     places = Place(p.address, p.p_start, np.append(p.p, 0.0), p.dof_start, p.dof, p.first, *rest)
-    order, half, group = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
-    size = m.n + int(rows.sum()) + problem.m + problem.n_z
+    found = of_pattern(problem, "order", lambda: ordering(problem, m, places.y_start, places.y_dof))
+    sizes = band_sizes(len(found.place) - found.border, found.half, found.border)
     return room(Mech(
         linear, places, joint, port, table_of(problem.signals.table), table_of(problem.elements.table),
-        spread_of(problem), Order(order, band_sizes(size, half)),
+        spread_of(problem), Order(found.place, sizes),
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), table_of(problem.bends.table),
-        solid(problem.bends.start, np.int64), group,
+        solid(problem.bends.start, np.int64), found.group,
     ))  # fmt: skip
 
 

@@ -44,6 +44,8 @@ def starts_dependent(mech: Mech, w: Instant) -> bool:
     """
     order, scale = mech.order, w.x
     n, size, half, length = first_multiplier(mech), order.place.shape[0], order.sizes[1], order.sizes[3]
+    if mech.joint.row[-1] == 0:
+        return False
     scale[:] = 0.0
     for i in range(n):
         scale[order.place[i]] = 1.0 / np.sqrt(mech.mass[i])

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.band import factor_band, solve_band
+from fricmb.integrate.compile.band import factor_band, length_of, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
@@ -41,7 +41,7 @@ from fricmb.integrate.step.tableau import Tableau
 
 
 class Stages(Layout):
-    """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, size * ldab) and pivots.
+    """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, .) and pivots.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved;
@@ -77,8 +77,7 @@ class Stages(Layout):
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
     """Arrays for the stages of a tableau with an odd number of them."""
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
-    size, ldab = len(order.place), int(order.sizes[3])
-    band = size * ldab
+    size, band = len(order.place), length_of(order.sizes)
     nc, rows, nz, count = problem.n_c, problem.m, problem.n_z, len(tab.lam)
     return Stages(
         tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
@@ -235,7 +234,7 @@ ROUND_OFF = 1e-14
 
 @kernel
 def is_linear(mech: Mech, y: State) -> bool:
-    """Whether the equations of a step are linear: of the structure, stick, and slip that cannot turn and has one force."""
+    """Whether the equations of a step are linear: in stick, and in slip along a line under one force."""
     port, linear = mech.port, mech.elements.address.shape[0] == 0 and mech.joint.n_x.shape[0] == 0
     for c in range(y.mode.shape[0]):
         slips = y.mode[c] == SLIP and (port.law[c] != LAW_CONSTANT or port.row[c + 1] - port.row[c] > 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.compile.band import length_of
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.jacobian_layers import Layers
 from fricmb.integrate.constrained.problem_structs import mech_of
@@ -48,7 +49,8 @@ def state_of(problem: Problem) -> State:
 class Instant(Layout):
     """What is needed to solve at one instant: the matrix and its factors, right-hand side (size,), rates of X.
 
-    ``other`` (n,): accelerations to compare with, sizes of groups.
+    ``other`` (n,): accelerations to compare with, sizes of groups.  ``mode`` (n_c,) of the factors, where they are
+    ``kept`` (see ``instant_matrix``).
     """
 
     L: Layers
@@ -58,15 +60,17 @@ class Instant(Layout):
     x: Floats
     ddy: Floats
     other: Floats
+    mode: Codes
+    kept: int
 
 
 def instant_of(problem: Problem) -> Instant:
     """Arrays for the problem."""
     order = mech_of(problem).order
-    size, ldab = len(order.place), int(order.sizes[3])
-    layers = Layers(np.zeros(size * ldab), np.zeros(size * ldab), np.zeros(size * ldab))
+    size, length = len(order.place), length_of(order.sizes)
+    layers = Layers(np.zeros(length), np.zeros(length), np.zeros(length))
     m = mechanism_of(problem)
     return Instant(
-        layers, np.zeros(size * ldab), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(m.n_y),
-        np.zeros(m.n),
+        layers, np.zeros(length), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(m.n_y),
+        np.zeros(m.n), np.zeros(problem.n_c, np.int8), 0,
     )  # fmt: skip

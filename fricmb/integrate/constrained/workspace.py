@@ -69,4 +69,4 @@ def _find_sizes(problem: Problem) -> tuple[int, ...]:
     m, order = mechanism_of(problem), mech_of(problem).order
     own = problem.n, problem.n_u, problem.n_z, problem.m, problem.n_c, problem.signals.breakpoints.size
     joints = m.n_y, m.n_rows, len(m.joints.port), turning_rows(problem)
-    return (*lengths(problem), *longest_call(problem), *own, *joints, len(order.place), int(order.sizes[3]))
+    return (*lengths(problem), *longest_call(problem), *own, *joints, *order.sizes.tolist())
