@@ -9,13 +9,21 @@ import numpy as np
 import pytest
 from scipy.linalg import solve
 
-from fricmb.integrate.compile.band import NARROW, band_sizes, factor_band, solve_band, spread_of_pivots
+from fricmb.integrate.compile.band import (
+    NARROW,
+    band_sizes,
+    factor_band,
+    length_of,
+    place_of,
+    solve_band,
+    spread_of_pivots,
+)
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lapack import load_lapack
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.methods.backward_differences import best_order
 from fricmb.integrate.model.law_values import along, magnitude, point_along
-from fricmb.integrate.problem import Complexes, Floats, Floats2, Ints, Pivots
+from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window, set_window_around
 from fricmb.integrate.run.chunks import Chunks
 from fricmb.integrate.run.outcomes import DONE, FULL
@@ -44,6 +52,15 @@ def solve_real(ab: Floats, pivots: Pivots, sizes: Pivots, b: Floats) -> float:
         return -1.0
     solve_band(ab, pivots, sizes, b)
     return spread_of_pivots(ab, sizes)
+
+
+@entry
+def put_down(matrix: Complexes2, sizes: Pivots, ab: Complexes) -> None:
+    """Entries that are not 0, where they belong."""
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[0]):
+            if matrix[i, j] != 0.0:
+                ab[place_of(sizes, i, j)] = matrix[i, j]
 
 
 @entry
@@ -227,3 +244,24 @@ def test_rows_that_are_not_finite_are_left_out():
     chunks = Chunks(kept, "values", "kind")
     assert chunks.fill(step, state, 16.0, None) == FULL  # memory for one row: one chunk and no more
     assert len(seen) == 1
+
+
+@pytest.mark.parametrize(("n", "half", "border"), [(30, 0, 4), (12, 2, 1), (40, NARROW + 3, 9), (25, 1, NARROW + 4)])
+def test_a_band_with_a_border_is_solved_as_a_full_matrix(n, half, border):
+    """Last unknowns that meet all others, with zeros on their diagonal, as those of forces are."""
+    rng, size = np.random.default_rng(4), n + border
+    matrix = rng.normal(size=(size, size)) + 1j * rng.normal(size=(size, size))
+    inner = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    matrix[:n, :n][inner > half] = 0.0
+    matrix[np.arange(n, size), np.arange(n, size)] = 0.0
+    sizes, pivots = band_sizes(n, half, border), np.zeros(size, np.int32)
+    b, ab = rng.normal(size=size) + 0j, np.zeros(length_of(sizes), complex)
+    x = b.copy()
+    load_lapack()
+    put_down(matrix, sizes, ab)
+    assert solve_complex(ab, pivots, sizes, x)
+    np.testing.assert_allclose(x, solve(matrix, b), rtol=1e-9, atol=1e-9)
+    matrix[:, -1] = 0.0
+    ab[:] = 0.0
+    put_down(matrix, sizes, ab)
+    assert not solve_complex(ab, pivots, sizes, x)
