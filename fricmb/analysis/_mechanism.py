@@ -9,7 +9,7 @@ import numpy as np
 
 from fricmb.analysis._errors import Floats
 from fricmb.analysis._linearise import friction_at, slopes_of
-from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.mechanism import Mechanism, loads_of
 from fricmb.integrate.model.table_values import arguments, evaluate
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, NORMAL_REACTION, Templates
 from fricmb.system import MechanismSystem
@@ -115,13 +115,16 @@ class _Extended:
         joints, contacts = self.system.mechanism.joints, self.system.problem.contacts
         table, own = joints.table, slice(int(joints.row[j]), int(joints.row[j + 1]))
         m, c, first = own.stop - own.start, int(joints.port[j]), int(table.x_start[j])
+        of = int(loads_of(joints)[j])
+        pressing = slice(int(joints.row[of]), int(joints.row[of + 1]))
+        size = pressing.stop - pressing.start
         n_x = (int(table.x_start[j + 1]) - first) // 2
         rows = slice(int(contacts.row[c]), int(contacts.row[c + 1])) if c >= 0 else slice(0, 0)
         d = rows.stop - rows.start
         slopes = slopes_of(table, j, self.X.size)
-        x = np.concatenate([arguments(table, j, self.X[:, None])[0], self.lam[own]])
+        x = np.concatenate([arguments(table, j, self.X[:, None])[0], self.lam[pressing]])
         at = m + 2 * m * n_x + n_x * n_x
-        n_out = at + (d * n_x * (1 + n_x) + 1 + m + 2 * n_x if c >= 0 else 0)
+        n_out = at + (d * n_x * (1 + n_x) + 1 + size + 2 * n_x if c >= 0 else 0)
         out = evaluate(table, j, x[None], n_out)[:, 0]
         kept = joints.dropped[own] == 0
         G, bend = out[m : m + m * n_x].reshape(m, n_x), out[m + m * n_x : m + m * n_x + n_x * n_x].reshape(n_x, n_x)
@@ -143,8 +146,8 @@ class _Extended:
         self.force += spread @ (s.T @ self.F[rows])
         self.force_X += spread @ np.einsum("dab,d->ab", turn, self.F[rows]) @ place
         self.force_F[:, rows] += spread @ s.T
-        self.N[c], self.N_lam[c, own] = out[load], out[load + 1 : load + 1 + m]
-        self.N_X[c] = out[load + 1 + m : load + 1 + m + 2 * n_x] @ slopes
+        self.N[c], self.N_lam[c, pressing] = out[load], out[load + 1 : load + 1 + size]
+        self.N_X[c] = out[load + 1 + size : load + 1 + size + 2 * n_x] @ slopes
 
     def _contact(self, c: int) -> None:
         """Friction and normal force of a contact that is no joint."""

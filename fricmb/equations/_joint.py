@@ -41,7 +41,7 @@ def joint_math(joint: Any, n: int) -> JointMath:
     x, v = (tuple(sympy.Symbol(f"{letter}_{i}", real=True) for i in range(n)) for letter in "xv")
     label = f"{type(joint).__name__} {joint.name!r}"
     phi = _vector(stand.standin.define_constraint(x), label, "define_constraint") if joint.constrains else ()
-    lam = tuple(sympy.Symbol(f"l_{i}", real=True) for i in range(len(phi)))
+    lam = tuple(sympy.Symbol(f"l_{i}", real=True) for i in range(len(phi) or joint.load_rows))
     slip = load = None
     if joint.friction is not None:
         slip = _slip(stand.standin.define_slip(x), joint.slip_rows, n, label)

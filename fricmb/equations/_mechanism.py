@@ -66,8 +66,9 @@ def add_joint(collector: Collector, joint: Joint, rhs: Any) -> tuple[Constraint,
     forms, drives = joint.local_coordinates(), joint.drives()
     math = joint_math(joint, len(forms) + len(drives))
     replacement = collector.parameters(joint, joint.bare())
+    count = len(math.lam)
     multipliers = tuple(
-        subscript("lambda", joint.name, *([str(i + 1)] if len(math.phi) > 1 else [])) for i in range(len(math.phi))
+        subscript("lambda", joint.loaded_by or joint.name, *([str(i + 1)] if count > 1 else [])) for i in range(count)
     )
     replacement |= dict(zip(math.lam, multipliers, strict=True))
     for form, x, v in zip(forms, math.x, math.v, strict=False):
@@ -79,7 +80,7 @@ def add_joint(collector: Collector, joint: Joint, rhs: Any) -> tuple[Constraint,
     for i, expression in enumerate(expressions):
         for place, dof in enumerate(collector.scene.dof_names):
             rhs[place] += multipliers[i] * sympy.diff(expression, coordinate_symbols(dof)[0])
-    constraint = Constraint(name=joint.name, expressions=expressions, multipliers=multipliers)
+    constraint = Constraint(name=joint.name, expressions=expressions, multipliers=multipliers[: len(math.phi)])
     if joint.friction is None or math.slip is None:
         return constraint, None
     return constraint, _friction(collector, joint, math, replacement, rhs)

@@ -128,6 +128,7 @@ class Joins:
         self.function = function(stated.joint(joint, self.count))
         self.n_slip = 0 if joint.friction is None else joint.slip_rows
         self.numbers = numbers(joint.bare())
+        self.pressed = joint.loaded_by or joint.name
         self.one_sided, self.constrains = joint.one_sided, joint.constrains
 
     def add(self, moment: Moment, found: Found) -> None:
@@ -135,7 +136,8 @@ class Joins:
         motions: list[tuple[Any, Any, Row]] = [moment.form(form) for form in self.forms]
         motions += [(*drive.at(moment.t, moment.frame.breaks), []) for drive in self.drives]
         lam = moment.lam[self.name]
-        values = self.function(*[m[0] for m in motions], *[m[1] for m in motions], *lam, *self.numbers)
+        pressed = moment.lam[self.pressed]
+        values = self.function(*[m[0] for m in motions], *[m[1] for m in motions], *pressed, *self.numbers)
         shape, n, n_phi = moment.t.shape, self.count, len(lam)
         whole = [np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values]
         rates = np.array([np.broadcast_to(m[1], shape) for m in motions])
@@ -149,7 +151,7 @@ class Joins:
         if self.n_slip and self.contact is not None:
             *factors, load = whole[n_phi * (1 + n) :]
             slips = np.array(factors).reshape(self.n_slip, n, -1)
-            load = load if self.constrains else np.maximum(load, 0.0)
+            load = load if self.constrains or self.pressed != self.name else np.maximum(load, 0.0)
             found.g[self.contact], found.N[self.contact] = (slips * rates).sum(axis=1), load
             found.rows[self.contact] = [_combined(motions, slip) for slip in slips]
             for i, row in enumerate(found.rows[self.contact]):

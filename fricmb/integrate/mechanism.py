@@ -75,6 +75,9 @@ class Joints:
         N(x, x', lam).  A joint without rows (m = 0) holds nothing; its friction is open where N < 0.
     row : (k+1,) int64
         Joint i owns the multipliers ``row[i]:row[i+1]``.
+    load_of : (k,) int64
+        The joint whose multipliers are the ``lam`` of joint i: itself; of a joint without rows that rubs as another
+        one is pressed, that one.  Empty: each its own.
     port : (k,) int64
         Its friction among the contacts of the problem, or -1.
     one_sided : (k,) int8
@@ -91,12 +94,18 @@ class Joints:
 
     table: Templates = field(default_factory=Templates)
     row: Ints = field(default_factory=lambda: _i(1))
+    load_of: Ints = field(default_factory=lambda: _i(0))
     port: Ints = field(default_factory=lambda: _i(0))
     one_sided: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     hands_over: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     inner: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     names: tuple[str, ...] = ()
     dropped: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+
+
+def loads_of(joints: Joints) -> Ints:
+    """``load_of`` of every joint."""
+    return joints.load_of if joints.load_of.size else np.arange(len(joints.port), dtype=np.int64)
 
 
 @dataclass(frozen=True, kw_only=True)

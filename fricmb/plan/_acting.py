@@ -207,5 +207,8 @@ def _motions(scene: Scene, part: Part) -> tuple[set[str], set[str]]:
         if isinstance(part, Force):
             forms = forms[:1]  # it acts on the first; the others are what its value looks at
     own = {name for form in forms for name in scene.expand(form).motions}
+    if isinstance(part, Joint) and part.loaded_by:  # what presses it is run with it
+        pressing: Any = scene[part.loaded_by]
+        return own, {name for form in pressing.local_coordinates() for name in scene.expand(form).motions}
     read = {m for uses in part.uses().values() for name in uses.motions for m in scene.motion(name).motions}
     return own, read

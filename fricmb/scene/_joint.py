@@ -143,6 +143,16 @@ class Joint(Part):
         """Whether a one-sided joint whose contact is lost lets go and the run goes on without it."""
         return False
 
+    @property
+    def loaded_by(self) -> str:
+        """The joint whose multipliers are the ``lam`` of :meth:`define_load`, of one that holds nothing; "": none."""
+        return ""
+
+    @property
+    def load_rows(self) -> int:
+        """How many multipliers that joint has."""
+        return 0
+
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """The coordinates x that the joint depends on; their velocities follow."""
         raise NotImplementedError(f"{type(self).__name__} must define local_coordinates(self)")

@@ -52,6 +52,10 @@ class Part(Declaration):
         """What is built with this part, and bears its name."""
         return ()
 
+    def companions(self) -> tuple[Any, ...]:
+        """Further parts that a scene has beside this one."""
+        return ()
+
     def expressions(self) -> dict[str, Any]:
         """Slots that hold SymPy expressions of time or motions: path -> expression."""
         if self.only_numbers():

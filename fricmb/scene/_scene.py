@@ -15,6 +15,7 @@ from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene import _parameters
 from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._check import check_scene
+from fricmb.scene._companions import keeps_companions, with_companions
 from fricmb.scene._contact import Contact
 from fricmb.scene._element import Element
 from fricmb.scene._family_of import family_of
@@ -102,7 +103,7 @@ class Scene:
         put = object.__setattr__
         put(self, "name", name)
         put(self, "units", units)
-        put(self, "parts", tuple(parts))
+        put(self, "parts", with_companions(tuple(parts)))
         put(self, "_by_name", {part.name: part for part in self.parts if isinstance(part, Part)})
         bodies = [part for part in self.parts if isinstance(part, BODIES)]
         put(self, "dof_names", tuple([name for body in bodies for name in body.dof_names]))
@@ -368,7 +369,8 @@ class Scene:
             return self
         parts = with_changed(self, changed)
         scene = object.__new__(type(self))
-        if numbers_alone(self, changed, parts):
+        stay = all(keeps_companions(self._by_name[name], part) for name, part in changed.items())
+        if stay and numbers_alone(self, changed, parts):
             scene._take(self, parts)
         else:
             scene._fill(self.name, parts, self.units, self._shared)

@@ -6,6 +6,7 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._resistance import RollingResistance, resistance_law
 from fricmb.scene._rigid import angle_of
 from fricmb.scene._rollers import RollerOnLine
 
@@ -34,6 +35,9 @@ class Wheel(RollerOnLine):
         Velocity of the surface along the line (a belt, a roller table).
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction.
+    rolling_resistance : float or FrictionLaw, optional
+        Arm of the torque against rolling, a length: it is the arm times the load, and at rest up to that.  A law of
+        one direction has arms for coefficients, over the rate of the angle.
 
     Raises
     ------
@@ -46,9 +50,10 @@ class Wheel(RollerOnLine):
     is ``v . t + radius w``, less the surface's own motion.  On a line that falls by alpha a disc with the radius of
     gyration k rolls while ``tan alpha <= mu_s (1 + radius^2/k^2)``.
 
-    A torque against rolling that the load sets is not part of it; where the load is known it is a
-    :class:`DryFriction` on the angle: ``static=f*N`` with the arm f of rolling resistance, which holds a wheel on a
-    slope of ``tan alpha <= f/radius``.
+    With the arm f of rolling resistance a wheel stays on a slope of ``tan alpha <= f/radius``, and rolls down a steeper
+    one with ``(g sin alpha - f/radius g cos alpha)/(1 + k^2/radius^2)``.  The resistance is a part of its own beside
+    the wheel, ``name_rolling``: ``sol.force("floor_rolling")`` is the torque, ``sol.mode("floor_rolling")`` 0 where the
+    wheel does not turn, ``"floor_rolling.friction.mu_s"`` the parameter.
 
     Examples
     --------
@@ -64,8 +69,10 @@ class Wheel(RollerOnLine):
     """
 
     positive: ClassVar[tuple[str, ...]] = ("radius",)
+    _fixed: ClassVar[tuple[str, ...]] = (*RollerOnLine._fixed, "rolling_resistance")
     _: KW_ONLY
     radius: Any
+    rolling_resistance: Any = None
 
     @property
     def slip_rows(self) -> int:  # type: ignore[override]
@@ -76,6 +83,16 @@ class Wheel(RollerOnLine):
         super().__post_init__()
         if isinstance(self.slide, tuple):
             self._refuse("slide", self.slide, "one value, along the line")
+        self.companions()
+
+    def companions(self) -> tuple[RollingResistance, ...]:
+        """The resistance against rolling."""
+        given = self.rolling_resistance
+        if given is None:
+            return ()
+        law = resistance_law(self, "rolling_resistance", given)
+        name = f"{self.name}_rolling"
+        return (RollingResistance(name, self.a, self.b, of=self.name, declared=(given,), friction=law),)
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Distance of the points, angles of b and of a."""

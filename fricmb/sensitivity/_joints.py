@@ -26,6 +26,8 @@ class Joins:
         self.name, self.number = joint.name, number
         if joint.hands_over:
             refuse(joint, "a joint that lets go")
+        if joint.loaded_by:
+            refuse(joint, "friction by the reaction of another joint")
         self.forms = joint.local_coordinates()
         self.drives = [_driven(joint, drive, seeds) for drive in joint.drives()]
         self.count = len(self.forms) + len(self.drives)

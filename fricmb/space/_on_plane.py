@@ -15,10 +15,12 @@ from fricmb.scene._expressions import check_expression
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._one_sided import OneSided
 from fricmb.scene._part import GROUND
+from fricmb.scene._resistance import resistance_law
 from fricmb.scene._space_body import SpacePoint, check_triple
 from fricmb.space._ball import Ball
 from fricmb.space._directors import RigidBody
 from fricmb.space._joint import SpaceJoint
+from fricmb.space._resistance import TurningResistance
 from fricmb.space._rotor import Rotor
 from fricmb.space._turn import cross, dot, triad
 from fricmb.space._turning import KINDS, kind_of, turning_forms, turning_rows
@@ -70,6 +72,10 @@ class OnPlane(OneSided, SpaceJoint):
         above the plane, or leaving it, starts open.
     friction : FrictionLaw, optional
         In two directions, with a patch in three; normal force: magnitude of the reaction.
+    rolling_resistance, spinning_resistance : float or FrictionLaw, optional
+        Arms of torques against the angular velocity along the plane (in two directions), and about its normal, lengths:
+        each is its arm times the load, and at rest up to that.  A law has arms for coefficients.  They are parts of
+        their own beside this one, ``name_rolling`` and ``name_spinning``, as that of a :class:`fricmb.Wheel`.
 
     Raises
     ------
@@ -94,7 +100,9 @@ class OnPlane(OneSided, SpaceJoint):
 
     only_relative: ClassVar[bool] = False
     directions: ClassVar[tuple[str, ...]] = ("normal",)
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "normal", "through")
+    _fixed: ClassVar[tuple[str, ...]] = (
+        "name", "a", "b", "normal", "through", "rolling_resistance", "spinning_resistance",
+    )  # fmt: skip
     _: KW_ONLY
     normal: Any
     through: Any = (0.0, 0.0, 0.0)
@@ -102,6 +110,8 @@ class OnPlane(OneSided, SpaceJoint):
     patch: Any = None
     turning: Any = 0.0
     shape: str | None = None
+    rolling_resistance: Any = None
+    spinning_resistance: Any = None
 
     @property
     def slip_rows(self) -> int:  # type: ignore[override]
@@ -130,6 +140,21 @@ class OnPlane(OneSided, SpaceJoint):
             if self.friction is None:
                 self._refuse("patch", self.patch, "left out where there is no friction")
         self._set("turning", check_expression(self, "turning", self.turning, motions=False))
+        self.companions()
+
+    def companions(self) -> tuple[TurningResistance, ...]:
+        """Resistances."""
+        return tuple(
+            TurningResistance(
+                f"{self.name}_{kind}", self.a, of=self.name, declared=(given, self.turning),
+                normal=self.normal, spins=spins, turning=self.turning if spins else 0.0,
+                friction=resistance_law(self, f"{kind}_resistance", given),
+            )
+            for kind, given, spins in (
+                ("rolling", self.rolling_resistance, False), ("spinning", self.spinning_resistance, True),
+            )
+            if given is not None
+        )  # fmt: skip
 
     def _takes_expression(self, field: str) -> bool:
         return field == "turning"

@@ -47,12 +47,14 @@ class JointArrays:
     hands_over: list[int] = field(default_factory=list)
     inner: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
+    loaded_by: list[str] = field(default_factory=list)
     forms: list[tuple[Row, ...]] = field(default_factory=list)
 
     def lists(self) -> tuple[list[Any], ...]:
         """See :class:`Growing`."""
         return (
-            self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.names, self.forms,
+            self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.names, self.loaded_by,
+            self.forms,
         )  # fmt: skip
 
     def marks(self) -> tuple[int, ...]:
@@ -77,6 +79,7 @@ class JointArrays:
         self.hands_over.append(int(joint.hands_over))
         self.inner.append(int(inner))
         self.names.append(joint.name)
+        self.loaded_by.append(joint.loaded_by or joint.name)
         self.forms.append(tuple(rows))
 
     def _drive(self, joint: Joint, i: int, drive: tuple[str, Any, float]) -> Row:
@@ -96,6 +99,7 @@ class JointArrays:
         return Joints(
             table=self.table.build(n_y, n_u),
             row=np.array([0, *accumulate(self.rows)], dtype=np.int64),
+            load_of=np.array([self.names.index(name) for name in self.loaded_by], dtype=np.int64),
             port=np.array(self.port, dtype=np.int64),
             one_sided=np.array(self.one_sided, dtype=np.int8),
             hands_over=np.array(self.hands_over, dtype=np.int8),

@@ -150,8 +150,9 @@ def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     if not found.rows.size or mechanism is None:
         return problem
     held = [name for name in found.joints if isinstance(scene[name], Joint)]
+    pressing = {joint.loaded_by for joint in scene.joints}
     for name in held:
-        if scene[name].friction is not None:
+        if scene[name].friction is not None or name in pressing:
             others = ", ".join(repr(other) for other in held if other != name)
             raise SceneError(
                 f"{type(scene[name]).__name__} {name!r}: its reaction, the normal force of its friction, is not"

@@ -373,6 +373,32 @@ def wheel() -> Case:
     return made("Wheel", parts, ("m.x", "m.angle"), problem)
 
 
+def rolling_resistance() -> Case:
+    """A disc that is pushed to and fro rolls against a torque of an arm times its load, which a force presses too."""
+    m, inertia, R, arm, g = 1.5, 0.02, 0.2, 0.06, 2.0
+    body = fm.RigidBody("m", mass=m, inertia=inertia, position=(0.0, R), velocity=(0.3, 0.0))
+    law = fm.laws.Coulomb(mu_s=1.2 * arm, mu_k=arm)
+    parts = [
+        body, fm.Wheel("c", body, radius=R, friction=LAW, rolling_resistance=law),
+        fm.Gravity("g", acceleration={"y": -g}), fm.Force("p", body, axis="y", value=-1.0 * sympy.sin(T)),
+        fm.Force("f", body, axis="x", value=3.0 * sympy.sin(1.3 * T)),
+    ]  # fmt: skip
+
+    def N(t: float, q: Any, v: Any) -> float:
+        return m * g + math.sin(t)
+
+    contacts = (
+        Contact(name="c", W=np.array([[1.0], [R]]), N=N, mu=constant(0.4), mu_s=constant(0.5), constant=False),
+        Contact(
+            name="c_rolling", W=np.array([[0.0], [1.0]]), N=N, mu=constant(arm), mu_s=constant(1.2 * arm),
+            constant=False,
+        ),
+    )  # fmt: skip
+    act = lambda t, q, v: [3.0 * math.sin(1.3 * t), 0.0]  # noqa: E731
+    problem = numbers([0.0, 0.0], [0.3, 0.0], 9.0, contacts, act, [[m, 0.0], [0.0, inertia]])
+    return made("RollingResistance", parts, ("m.x", "m.angle"), problem)
+
+
 def rope() -> Case:
     """Two blocks on a rope over a fixed drum; the coordinate is that of the second."""
     a, b = fm.Body("a", mass=1.2, velocity={"x": -0.2}), fm.Body("b", mass=0.7, velocity={"x": 0.2})
@@ -504,5 +530,6 @@ CASES: dict[str, Callable[[], Case]] = {
     "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
     "normal.Prescribed": prescribed, "Fixed": welded, "Prismatic": prismatic, "RollerOnLine": on_line,
     "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "Rope": rope, "Wheel": wheel,
+    "RollingResistance": rolling_resistance,
     "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,
 }  # fmt: skip

@@ -17,7 +17,7 @@ def test_every_part_has_its_case():
     bases = (fm.Element, fm.Joint)
     public = {name: getattr(fm, name) for name in dir(fm)}
     parts = {name for name, kind in public.items() if inspect.isclass(kind) and issubclass(kind, bases)}
-    parts = parts - {"Element", "Joint", "Revolute"} | {"MatrixElement", "Gravity", "DryFriction"}
+    parts = parts - {"Element", "Joint", "Revolute"} | {"MatrixElement", "Gravity", "DryFriction", "RollingResistance"}
     normals = {f"normal.{name}" for name in (*fm.normal.names, "Constant", "Prescribed")}
     assert set(CASES) == parts | normals
 

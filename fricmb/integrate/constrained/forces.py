@@ -89,6 +89,13 @@ def bend(k: Moving, table: Table, a: int) -> float:
     return value
 
 
+@kernel
+def loading(mech: Mech, j: int) -> tuple[int, int]:
+    """The multipliers that the load of joint j is a function of: its own, or those of the joint that presses it."""
+    of = mech.joint.load_of[j]
+    return int(mech.joint.row[of]), int(mech.joint.row[of + 1])
+
+
 @block
 def call_joint(mech: Mech, k: Moving, j: int, lam: Floats) -> int:
     """Evaluate joint j into ``k.out``; returns its number of local coordinates."""
@@ -96,8 +103,9 @@ def call_joint(mech: Mech, k: Moving, j: int, lam: Floats) -> int:
     table = joint.table
     n_x = joint.n_x[j]
     gather(table, j, k.s.X, k.x)
-    for r in range(joint.row[j + 1] - joint.row[j]):
-        k.x[2 * n_x + r] = lam[joint.row[j] + r]
+    first, last = loading(mech, j)
+    for r in range(first, last):
+        k.x[2 * n_x + r - first] = lam[r]
     call(table.address[j], k.x, 0, table.p, table.p_start[j], k.out, 0)
     return int(n_x)
 
@@ -125,6 +133,12 @@ def is_open(mech: Mech, j: int) -> bool:
     """Whether joint j may open, and is open; False beyond the joints."""
     joint = mech.joint
     return bool(0 <= j < joint.port.shape[0] and joint.hands_over[j] != 0 and joint.dropped[joint.row[j]] == 2)
+
+
+@kernel
+def is_unloaded(mech: Mech, j: int) -> bool:
+    """Whether the joint that presses on the friction of joint j is open."""
+    return bool(j >= 0 and is_open(mech, mech.joint.load_of[j]))
 
 
 @kernel

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, is_open, load_place
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, is_open, load_place, loading
 from fricmb.integrate.constrained.loop_mobility import DEPENDENT, holds
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -30,10 +30,11 @@ def load_slopes(mech: Mech, k: Moving, c: int, lam: Floats, answers: Floats2, sl
     n_x = call_joint(mech, k, j, lam)
     rows = mech.joint.row[j + 1] - mech.joint.row[j]
     at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
+    first, last = loading(mech, j)
     for a in range(slope.shape[0]):
         slope[a] = 0.0
-        for i in range(rows):
-            slope[a] += k.out[at + 1 + i] * answers[a, mech.joint.row[j] + i]
+        for i in range(first, last):
+            slope[a] += k.out[at + 1 + i - first] * answers[a, i]
 
 
 @kernel

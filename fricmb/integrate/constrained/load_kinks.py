@@ -8,7 +8,7 @@ order have their order on either side alone, so a step ends there.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, loading
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.stages import Stages
@@ -59,7 +59,7 @@ def mark_bends(mech: Mech, k: Moving, out: Watch) -> None:
     joint = mech.joint
     for j in range(joint.port.shape[0]):
         out.bends[j] = 1 if joint.port[j] >= 0 else 0
-        first, last = joint.row[j], joint.row[j + 1]
+        first, last = loading(mech, j)
         for d in range(DIRECTIONS if out.bends[j] != 0 else 0):
             for near in range(2):
                 for r in range(first, last):
@@ -80,7 +80,6 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
     ended at a kink, that at the start is what round-off makes of it, and the first stage serves instead.  The same of
     what tells the formulas of a smooth law apart: BEFORE is above 0 at the start, BEHIND below.
     """
-    joint = mech.joint
     for c in range(y.mode.shape[0]):
         out.kinked[c] = 0
         if mech.port.law[c] == LAW_SMOOTH:
@@ -99,7 +98,8 @@ def find_kinks(mech: Mech, k: Moving, y: State, st: Stages, out: Watch) -> None:
         for i in range(st.tab.c.shape[0]):
             if compare_slopes(mech, k, j, st.lam[i], out):
                 here = 0.0
-                for r in range(joint.row[j], joint.row[j + 1]):
+                first, last = loading(mech, j)
+                for r in range(first, last):
                     here += out.kink[r] * y.lam[r]
                 if i > 0 or here > LEFT * out.top_force:
                     out.kinked[c] = 1
@@ -112,8 +112,9 @@ def read_slopes(mech: Mech, k: Moving, j: int, lam: Floats, out: Floats) -> None
     """Slopes dN/dlam of joint j into its rows of ``out``."""
     call_joint(mech, k, j, lam)
     at = slopes(mech, j)
-    for r in range(mech.joint.row[j], mech.joint.row[j + 1]):
-        out[r] = k.out[at + r - mech.joint.row[j]]
+    first, last = loading(mech, j)
+    for r in range(first, last):
+        out[r] = k.out[at + r - first]
 
 
 @kernel
@@ -121,7 +122,8 @@ def compare_slopes(mech: Mech, k: Moving, j: int, lam: Floats, out: Watch) -> bo
     """Whether the slopes at lam are others than in ``side``; the difference is put into ``kink``."""
     read_slopes(mech, k, j, lam, out.kink)
     differ = False
-    for r in range(mech.joint.row[j], mech.joint.row[j + 1]):
+    first, last = loading(mech, j)
+    for r in range(first, last):
         slope = out.kink[r]
         out.kink[r] = out.side[r] - slope
         differ = differ or abs(out.kink[r]) > SAME * max(abs(slope), abs(out.side[r]))

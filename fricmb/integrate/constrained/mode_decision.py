@@ -5,7 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.accelerations import react
-from fricmb.integrate.constrained.forces import is_open
+from fricmb.integrate.constrained.forces import is_unloaded
 from fricmb.integrate.constrained.group_release import start_group
 from fricmb.integrate.constrained.load_share import mark_loops
 from fricmb.integrate.constrained.mode_enumeration import FOUND, NO_SOLUTION, enumerate_modes
@@ -132,7 +132,7 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
         part[c] = SLIPS_ON
         row = port.row[c]
         j = port.joint[c]
-        if is_open(mech, j):
+        if is_unloaded(mech, j):
             y.mode[c] = OPEN
             for a in range(row, port.row[c + 1]):
                 y.F[a] = 0.0

@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.loop_softness import softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.unknown_order import ordering
-from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.mechanism import Mechanism, loads_of
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.model.problem_structs import Spread, Table, knot_starts, spread_of, table_of
 from fricmb.integrate.once_per import once_per
@@ -63,6 +63,7 @@ class Joint(Layout):
 
     table: Table
     row: Ints
+    load_of: Ints
     n_x: Ints
     port: Ints
     one_sided: Codes
@@ -146,14 +147,18 @@ def _pack(problem: Problem) -> Mech:
     table = table_of(m.joints.table)
     rows = np.diff(m.joints.row)
     n_x = np.diff(table.x_start) // 2
-    joint = Joint(table, m.joints.row, n_x, m.joints.port, m.joints.one_sided, m.joints.hands_over, m.joints.dropped)
+    load_of = loads_of(m.joints)
+    joint = Joint(
+        table, m.joints.row, load_of, n_x, m.joints.port, m.joints.one_sided, m.joints.hands_over, m.joints.dropped
+    )
     port_joint = np.full(problem.n_c, -1, np.int64)
     for j in np.flatnonzero(m.joints.port >= 0):
         port_joint[m.joints.port[j]] = j
     solid = np.ascontiguousarray
     normal = solid(contacts.normal, np.int8)
-    if (rows == 0).any():  # what presses and rubs without holding opens as a contact with a normal-force law does
-        normal = np.where((port_joint >= 0) & (rows[port_joint] == 0), NORMAL_LAW, normal).astype(np.int8)
+    free = rows[load_of] == 0
+    if free.any():  # what presses and rubs without holding opens as a contact with a normal-force law does
+        normal = np.where((port_joint >= 0) & free[port_joint], NORMAL_LAW, normal).astype(np.int8)
     port = Port(
         port_joint, solid(contacts.row, np.int64),
         _softness(problem, m, port_joint), table_of(m.slip),

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, slope_at
+from fricmb.integrate.constrained.forces import (
+    call_joint,
+    directions,
+    friction_at,
+    load_place,
+    loading,
+    slope_at,
+)
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_form, add_row, place_slope
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, first_multiplier
@@ -195,9 +202,11 @@ def add_load(mech: Mech, k: Moving, c: int, lam: Floats, L: Layers, row: int, va
     n_x = call_joint(mech, k, j, lam)
     m = joint.row[j + 1] - joint.row[j]
     at = load_place(n_x, friction_at(n_x, m), directions(mech, c)) + 1
-    first = first_multiplier(mech)
-    for i in range(m):
-        add(mech.order, L.A1, row, first + joint.row[j] + i, value * k.out[at + i])
+    origin = first_multiplier(mech)
+    first, last = loading(mech, j)
+    for i in range(last - first):
+        add(mech.order, L.A1, row, origin + first + i, value * k.out[at + i])
     if full:
+        at += last - first
         for a in range(2 * n_x):  # by positions, then by velocities
-            add_form(mech, k, L, row, joint.table, joint.table.x_start[j] + a, value * k.out[at + m + a])
+            add_form(mech, k, L, row, joint.table, joint.table.x_start[j] + a, value * k.out[at + a])

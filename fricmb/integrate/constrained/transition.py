@@ -49,11 +49,11 @@ def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> i
     joint.dropped[row] = 2
     y.lam[row] = 0.0
     out.opened += 1
-    c = joint.port[i]
-    if c >= 0:
-        y.mode[c] = OPEN
-        for a in range(mech.port.row[c], mech.port.row[c + 1]):
-            y.F[a] = 0.0
+    for c in range(y.mode.shape[0]):
+        if mech.port.joint[c] >= 0 and joint.load_of[mech.port.joint[c]] == i:
+            y.mode[c] = OPEN
+            for a in range(mech.port.row[c], mech.port.row[c + 1]):
+                y.F[a] = 0.0
     move(mech, k, y.t, y.q, y.v)
     if not instant_matrix(mech, k, w, y, NONE):
         return FAIL_SINGULAR

@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.lu import lu_factor
-from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place
+from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, loading
 from fricmb.integrate.constrained.instant_matrix import ALL, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -55,18 +55,19 @@ def margins(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, whole: bool
         at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
         mu, _, by_load = coefficient(port, port.laws, c, k.s, along(port.row, c, y.n, y.g), max(y.N[c], 0.0))
         factor = mu + by_load * max(y.N[c], 0.0)
-        for i in range(rows):
-            out.lam[joint.row[j] + i] = y.lam[joint.row[j] + i]
-        around = 1 if joint.one_sided[j] or rows > 2 else AROUND
+        first, last = loading(mech, j)
+        for i in range(first, last):
+            out.lam[i] = y.lam[i]
+        around = 1 if joint.one_sided[joint.load_of[j]] or last - first > 2 else AROUND
         for d in range(around):
             if around > 1:
-                for i in range(rows):
+                for i in range(first, last):
                     angle = 2.0 * np.pi * (d + 0.13) / AROUND
-                    out.lam[joint.row[j] + i] = np.cos(angle) if i == 0 else np.sin(angle)
+                    out.lam[i] = np.cos(angle) if i == first else np.sin(angle)
             call_joint(mech, k, j, out.lam)
             answer = 0.0
-            for i in range(rows):
-                answer += k.out[at + 1 + i] * w.r[n + joint.row[j] + i]
+            for i in range(first, last):
+                answer += k.out[at + 1 + i - first] * w.r[n + i]
             out.margin[c] = min(out.margin[c], 1.0 + factor * answer)
         least = min(least, out.margin[c])
     if whole:
@@ -119,8 +120,9 @@ def least_minor(mech: Mech, k: Moving, w: Instant, y: State, out: Watch) -> floa
             at = load_place(n_x, friction_at(n_x, rows), directions(mech, c))
             mu, _, by_load = coefficient(port, port.laws, c, k.s, along(port.row, c, y.n, y.g), max(y.N[c], 0.0))
             answer = 0.0
-            for r in range(rows):
-                answer += k.out[at + 1 + r] * w.r[n + joint.row[owner] + r]
+            first, last = loading(mech, owner)
+            for r in range(first, last):
+                answer += k.out[at + 1 + r - first] * w.r[n + r]
             one = 1.0 if i == j else 0.0
             out.A[i * MANY + j] = one + (mu + by_load * max(y.N[c], 0.0)) * answer
     for i in range(count):

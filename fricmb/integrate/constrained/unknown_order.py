@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.mechanism import Mechanism, loads_of
 from fricmb.integrate.model.band_ordering import narrow_order
 from fricmb.integrate.problem import Ints, Problem, Templates
 
@@ -114,12 +114,14 @@ def _of_ports(problem: Problem, m: Mechanism, dofs: _Dofs) -> Iterator[set[int]]
         return {*forces, *range(state0 + int(z[k]), state0 + int(z[k + 1]))}
 
     joint_ports = set()
+    load_of = loads_of(m.joints)
     for j in range(len(m.joints.row) - 1):
         reactions = range(m.n + int(m.joints.row[j]), m.n + int(m.joints.row[j + 1]))
         mine = dofs.of_template(m.joints.table, j) | set(reactions)
         if m.joints.port[j] >= 0:
             joint_ports.add(int(m.joints.port[j]))
             mine |= port(int(m.joints.port[j]))
+            mine |= set(range(m.n + int(m.joints.row[load_of[j]]), m.n + int(m.joints.row[load_of[j] + 1])))
         yield mine
     for k in set(range(problem.n_c)) - joint_ports:
         yield dofs.of_template(m.slip, k) | dofs.of_template(contacts.normal_table, k) | port(k)

@@ -1,0 +1,52 @@
+"""Parts that stand beside others in a scene without being listed: what a joint's argument stands for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from fricmb.scene._joint import Joint
+
+
+def with_companions(parts: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Parts, with behind each joint what stands beside it.
+
+    What is there already under its name, from the same declaration, stays: it may have other values by now.
+    """
+    asked = {id(part): part.companions() for part in parts if isinstance(part, Joint)}
+    named = {one.name: one for companions in asked.values() for one in companions}
+    if not named and not any(_belongs(part) for part in parts):
+        return parts
+    here = {part.name: part for part in parts if _belongs(part)}
+    found: list[Any] = []
+    for part in parts:
+        if _belongs(part):
+            continue
+        found.append(part)
+        for one in asked.get(id(part), ()):
+            found.append(_kept(here.get(one.name), one))
+    return tuple(found)
+
+
+def keeps_companions(old: Any, new: Any) -> bool:
+    """Whether a part that was changed asks for the same beside it."""
+    if not isinstance(old, Joint) or not isinstance(new, Joint):
+        return True
+    before, after = old.companions(), new.companions()
+    return len(before) == len(after) and all(_alike(*pair) for pair in zip(before, after, strict=True))
+
+
+def _kept(old: Any, new: Any) -> Any:
+    """What is there, with its own values by now, or what is declared."""
+    if old is None or type(old) is not type(new) or old.declared[0] is not new.declared[0]:
+        return new
+    return old if _alike(old, new) else replace(new, friction=old.friction)
+
+
+def _alike(one: Any, other: Any) -> bool:
+    return one.name == other.name and all(a is b for a, b in zip(one.declared, other.declared, strict=True))
+
+
+def _belongs(part: Any) -> bool:
+    """Whether a part stands beside another one."""
+    return bool(getattr(part, "of", "")) and isinstance(part, Joint)
