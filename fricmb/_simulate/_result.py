@@ -22,7 +22,7 @@ from fricmb.integrate import MotionSamples, Trajectory
 from fricmb.integrate.problem import LAW_COEFFICIENT, Floats
 from fricmb.integrate.run.chunked_run import KeptTrajectory
 from fricmb.integrate.run.touches import own_run, without_touches
-from fricmb.solution import Piece, Run, Solution, Stats
+from fricmb.solution import LooksFor, Piece, Run, Solution, Stats
 
 #: What counts as round-off at a slip speed of round-off, where the direction of slip is round-off, too: power of
 #: friction relative to the largest of its contact, and speed relative to the largest.
@@ -32,10 +32,12 @@ POWER, SPEED = 1e-9, 1e-12
 def make_solution(
     mechanics: SceneMechanics, trajectory: Trajectory, span: Span, method: str, why: str, begin: float,
     compile_s: float, rtol: float | None, atol: tuple[float, ...] | None = None, ended: bool = False,
+    asked: LooksFor | None = None,
 ) -> Solution:  # fmt: skip
     """The solution of a run; ``begin`` is when the call began (perf_counter); ``rtol`` None: fixed steps.
 
     ``atol``: as in :class:`Stats`.  ``ended``: the run was ended from outside, so no part of the scene is to blame.
+    ``asked``: events beside the transitions.
 
     Raises
     ------
@@ -58,7 +60,7 @@ def make_solution(
     failure = trajectory.failure or not_there(trajectory, span, rtol is None)
     if failure is None:
         try:
-            sol = _solution(mechanics, trajectory, stats, None, span.t_eval)
+            sol = _solution(mechanics, trajectory, stats, None, span.t_eval, asked)
             sol.take_time(time.perf_counter() - begin)
             return sol
         except _Unsound as unsound:
@@ -71,13 +73,14 @@ def make_solution(
         around = blame(mechanics, trajectory, t) or circumstances(mechanics, trajectory, reason)
         reason = undefined(mechanics, trajectory, t) or f"{reason}{around}{digits}"
     # of a long run that takes much longer than ending it: Ctrl-C does not wait for it
-    later = partial(_sound_part, mechanics, trajectory, stats, span, end)
+    later = partial(_sound_part, mechanics, trajectory, stats, span, end, asked)
     raise IntegrationError(f"{method} stopped at t = {t:.10g}: {reason}", t=t, reason=reason, later=later)
 
 
 def _solution(
-    mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, t_end: float | None, times: Floats | None
-) -> Solution:
+    mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, t_end: float | None, times: Floats | None,
+    asked: LooksFor | None,
+) -> Solution:  # fmt: skip
     """The solution up to ``t_end`` (None: all of it), or _Unsound."""
     told = _as_told(mechanics, trajectory, stats.rtol)
     run = Run((Piece(told, mechanics.origin, mechanics, t_end),))
@@ -86,6 +89,8 @@ def _solution(
     except IntegrationError as error:
         raise _Unsound(error.t, error.reason, _step_before(trajectory, error.t)) from None
     check_friction(mechanics, trajectory, sol.record.samples, stats.rtol or 0.0)
+    if asked is not None:
+        sol.look_for(asked)
     return sol
 
 
@@ -109,13 +114,14 @@ def find_notes(sol: Solution) -> tuple[str, ...]:
 
 
 def _sound_part(
-    mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, span: Span, end: float | None
-) -> Solution | None:
+    mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, span: Span, end: float | None,
+    asked: LooksFor | None,
+) -> Solution | None:  # fmt: skip
     """The run up to ``end``, or as far as it is sound; None where it never is."""
     while end is not None:
         times = None if span.t_eval is None else span.t_eval[span.t_eval <= end]
         try:
-            return _solution(mechanics, trajectory, stats, end, times if times is None or times.size else None)
+            return _solution(mechanics, trajectory, stats, end, times if times is None or times.size else None, asked)
         except _Unsound as unsound:
             end = unsound.end if unsound.end is not None and unsound.end < end else None
     return None

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fricmb._simulate._arguments import Span
     from fricmb.integrate import Integrator, Trajectory
     from fricmb.scene import Scene
-    from fricmb.solution import Solution
+    from fricmb.solution import LooksFor, Solution
 
 
 @answers
@@ -32,6 +32,8 @@ def simulate(
     observe: Iterable[str] | None = None,
     step: float | None = None,
     max_step: float | None = None,
+    events: Mapping[str, Any] | None = None,
+    terminal: str | Iterable[str] = (),
     progress: bool = False,
     dense: bool | None = None,
     chunk: float | None = None,
@@ -69,6 +71,13 @@ def simulate(
     max_step : float, optional
         Longest step of a method that chooses its own; default: as long as the motion and the functions of time in the
         scene allow.
+    events : dict, optional
+        Expressions by name, whose changes of sign are located and stand in ``sol.events`` with the kind "event":
+        ``{"passes": fm.coordinate("mass.x") - 0.5}``, in ``fm.t``, ``fm.coordinate``, ``fm.speed`` and parameters, or a
+        signal of the solution and a number, ``("sole.force", 2.0)``.  What only comes up to 0 within errors does not
+        pass it.
+    terminal : names, optional
+        Those of ``events`` at the first of which the run ends.
     progress : bool
         Show a bar on the terminal.
     dense : bool, optional
@@ -120,6 +129,7 @@ def simulate(
             floors,
             number,
         )
+        from fricmb._simulate._asked_events import check_events, with_observed
         from fricmb._simulate._ended import run_watched
         from fricmb._simulate._islands import find_runs
         from fricmb._simulate._keep import check_keep, run
@@ -130,13 +140,14 @@ def simulate(
         from fricmb.integrate.run.memory import Footprint
         from fricmb.integrate.run.stop import Watch, watching
 
-        mechanics = prepare(scene, parameters, observe)
+        mechanics = prepare(scene, parameters, with_observed(observe, events))
+        looked_for = check_events(mechanics, events, terminal)
         start, mechanics = find_start(mechanics, initial, number("t_start", t_start, "a finite time"))
         span = check_span(start.t, t_end, t_eval)
         tolerance = check_tolerance(rtol, atol, start.q.size, max_step)
         chosen = find_runs(mechanics, method, start, span, tolerance.rtol)
         fixed = check_step(step, chosen.adaptive, chosen.name, span.t_end - span.t_start)
-        keep = check_keep(dense, chunk, on_chunk, span)
+        keep = check_keep(dense, chunk, on_chunk, span, looked_for)
         asked = check_sensitivities(mechanics.scene, sensitivities, on_chunk)
         if on_chunk is None:
             check_memory(2 * start.q.size + len(mechanics.names.contacts) + 3, span)
@@ -144,10 +155,11 @@ def simulate(
 
         accuracy = rtol if chosen.adaptive else None
 
-        def finish(trajectory: Trajectory, part: Span) -> Solution:
+        def finish(trajectory: Trajectory, part: Span, found: LooksFor | None) -> Solution:
             how = (chosen.name, chosen.why, begin, compiling.seconds, accuracy, floors(tolerance))
             with watching(None):
-                return make_solution(chosen.mechanics, trajectory, part, *how, ended=watch.reason is not None)
+                ended = watch.reason is not None
+                return make_solution(chosen.mechanics, trajectory, part, *how, ended=ended, asked=found)
 
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}

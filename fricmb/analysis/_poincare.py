@@ -26,14 +26,12 @@ from fricmb.analysis._errors import (
     refuse,
 )
 from fricmb.errors import IntegrationError
+from fricmb.field import AskedEvent
 
 if TYPE_CHECKING:
     from fricmb.plot._branches import DiagramPlots
     from fricmb.scene import Scene
     from fricmb.solution import Solution
-
-#: The run is looked at this many times a period of its highest frequency, and at its accepted steps.
-_POINTS = 4000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,22 +127,13 @@ def _check(who: str, section: Any, period: Any, discard: Any) -> None:
 
 
 def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool | None) -> Floats:
-    from scipy.optimize import brentq
-
-    def value(t: Floats) -> Floats:
-        return sol.at(t).scalar(name, "section") - level
-
-    rows = sol.run.row_motion().samples.t
-    t = np.unique(np.concatenate([np.linspace(begin, sol.t_end, _POINTS), rows[rows >= begin]]))
-    x = value(t)
-    up = (x[:-1] < 0.0) & (x[1:] >= 0.0)
-    down = (x[:-1] > 0.0) & (x[1:] <= 0.0)
-    chosen = up if rising else down if rising is not None else up | down
-    found = [
-        brentq(lambda s: float(value(np.array([s]))[0]), t[i], t[i + 1], xtol=1e-13, rtol=1e-13)
-        for i in np.flatnonzero(chosen)
-    ]
-    return np.array(found, dtype=float)
+    found = [np.zeros(0)]
+    for t, sign in AskedEvent("section", (name, level)).changes(sol):
+        chosen = t >= begin
+        if rising is not None:
+            chosen &= sign == (1.0 if rising else -1.0)
+        found.append(t[chosen])
+    return np.concatenate(found)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -41,6 +41,7 @@ def audit(sol: Any, *, rtol: float | None = None, atol: Any = None, seed: int = 
     gathered, notes = Gathered(), []
     rng = np.random.default_rng(seed)
     steps = looked = 0
+    transitions = sol.events.transitions
     for piece in sol.run.pieces:
         statements = Statements(sol, piece)
         rows = piece.rows()
@@ -53,9 +54,9 @@ def audit(sol: Any, *, rtol: float | None = None, atol: Any = None, seed: int = 
         begin = np.flatnonzero(np.diff(rows.t) > 0.0)
         chosen = _chosen(begin, rows, statements, rng)
         steps, looked = steps + begin.size, looked + chosen.size
-        _look(statements, units, gathered, rows, chosen, piece.sample, np.asarray(sol.events.t), rng)
-        Changes(statements, units, gathered, rows, piece.sample).look(sol.events, rng)
-        _onset.look(statements, units, gathered, rows, piece.sample, sol.events)
+        _look(statements, units, gathered, rows, chosen, piece.sample, np.asarray(transitions.t), rng)
+        Changes(statements, units, gathered, rows, piece.sample).look(transitions, rng)
+        _onset.look(statements, units, gathered, rows, piece.sample, transitions)
     _energy(sol, tolerance, gathered)
     return Audit(
         checks=gathered.checks(), rtol=tolerance, n_steps=steps, n_looked=looked, notes=tuple(dict.fromkeys(notes))

@@ -10,7 +10,7 @@ from fricmb.scene._damper import Damper
 from fricmb.scene._driven_joints import DrivenAngle, DrivenSlide
 from fricmb.scene._dry_friction import DryFriction
 from fricmb.scene._element import Element
-from fricmb.scene._expressions import Uses, expression_uses
+from fricmb.scene._expressions import Uses, check_expression, expression_uses
 from fricmb.scene._force import Force
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._gear import Gear
@@ -87,6 +87,7 @@ __all__ = [
     "Wheel",
     "check_axis",
     "check_ends",
+    "check_expression",
     "coordinate",
     "direction",
     "expression_uses",

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.sensitivity._asked_events import with_asked_events
 from fricmb.sensitivity._pass import Tangent
 from fricmb.solution import Derivatives
 
@@ -30,4 +31,4 @@ def derive(sol: Any, asked: tuple[str, ...]) -> None:
         transversality=tangent.transversality,
         unsafe=tangent.unsafe,
     )
-    sol.take_derivatives(found)
+    sol.take_derivatives(with_asked_events(sol, tangent, found))

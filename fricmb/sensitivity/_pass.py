@@ -59,7 +59,7 @@ class Tangent:
         self.columns = (*self.states, *self.parameters)
         sample = piece.trajectory.motion
         breakpoints = e.breakpoints
-        transitions_at = np.asarray(sol.events.t)
+        transitions_at = np.asarray(sol.events.transitions.t)
         self.phases = phases_of(piece, transitions_at, sol.names.row, breakpoints.t, np.zeros(0))
         bends = bends_of(e, self.phases, sample)
         if bends.t.size:
@@ -75,13 +75,13 @@ class Tangent:
         ]
         self.mesh = mesh_of(self.stepper, scale, self.rtol, solved)
         passed = passes(e, self.stepper.rests)
-        happened = happenings(sol.events, sol.names, self.phases, breakpoints.moving(), passed)
+        happened = happenings(sol.events.transitions, sol.names, self.phases, breakpoints.moving(), passed)
         transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
         mode, S = self.phases.mode[:, 0], self._begin()
         first = e.said(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1])
         S = e.settled(first, S)
         one_sided_by, S = one_sided(e, first, mode, S), held(e, first, 0, mode, S)
-        self._march(S, transitions, len(sol.events))
+        self._march(S, transitions, len(sol.events.transitions))
         starts = [
             f"contact {name!r} starts at rest and slips from there on: derivatives with respect to"
             f" {', '.join(repr(self.columns[j]) for j in by)}, which give it a speed, are one-sided"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any, Protocol
 
 from fricmb._facade import facade
 from fricmb.errors import SceneError
@@ -12,17 +13,37 @@ from fricmb.solution._events import Event, Events
 from fricmb.solution._recorded import Recorded
 
 
+class LooksFor(Protocol):
+    """What finds events in a run."""
+
+    @property
+    def events(self) -> tuple[Any, ...]:
+        """Those asked for."""
+
+    def found(self, sol: Any) -> list[Event]:
+        """Events along the whole run."""
+
+
 class Differentiated(Recorded):
     """Transitions, and derivatives of what a run found."""
 
     @cached_property
     def events(self) -> Events:
-        """Transitions of the run in time order."""
+        """Transitions of the run, and the events that were asked for, in time order."""
         if self._events is None:
             (piece,) = self.run.pieces
             found = Events.from_transitions(piece.trajectory.transitions, self.names.contacts)
             self._events = found if piece.t_end >= piece.trajectory.t[-1] else found.until(piece.t_end)
+        if self._look_for is not None:
+            seen = type(self)(names=self.names, run=self.run, stats=self._stats, events=self._events)
+            self._events, self.asked_events = self._events.with_asked(self._look_for.found(seen)), self._look_for.events
+            self._look_for = None
         return self._events
+
+    def look_for(self, asked: LooksFor) -> None:
+        """Have events beside the transitions, located when events are first read."""
+        self.__dict__.pop("events", None)
+        self._look_for = asked
 
     def sensitivity(self, signal: str, name: str) -> Floats:
         """Derivative (n_t,) of a signal with respect to a parameter or an initial value, at fixed times.

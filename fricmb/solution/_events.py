@@ -8,31 +8,43 @@ from dataclasses import dataclass, field
 from typing import Any, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import EVENT_KINDS, Transitions
 from fricmb.integrate.problem import Floats, Ints
 
+#: The kind of an event that a user has asked for.
+ASKED = "event"
+#: Kinds of events: transitions, and what a user has asked for.
+KINDS = (*EVENT_KINDS, ASKED)
+
 
 @dataclass(frozen=True)
 class Event:
-    """A transition of a contact.
+    """A transition of a contact, or a time at which an expression of ``simulate(events=...)`` changes its sign.
 
     Attributes
     ----------
     t : float
-    contact : str
+    name : str
+        Of the contact, or of the expression.
     kind : str
         "stick" (slip ends), "slip" (stick ends), "open", "close" or "reversal" (one-dimensional slip turns round
-        without sticking).
+        without sticking); "event" for an expression.
 
     Of a run with ``sensitivities`` also :meth:`sensitivity` and :attr:`transversality`.
     """
 
     t: float
-    contact: str
+    name: str
     kind: str
     _dt: TimeDerivatives | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def contact(self) -> str:
+        """Name of the contact; "" for an expression."""
+        return "" if self.kind == ASKED else self.name
 
     def sensitivity(self, name: str) -> float:
         """Derivative of the time of the event with respect to a parameter or initial value.
@@ -77,7 +89,7 @@ class TimeDerivatives:
 
 
 class Events(Sequence[Event]):
-    """The transitions of a run in time order.
+    """The transitions of a run, and the events that were asked for, in time order.
 
     A sequence of :class:`Event`; ``events.t`` are the times as an array, ``events.of(kind="stick", contact="lining")``
     a part of them.
@@ -85,11 +97,11 @@ class Events(Sequence[Event]):
 
     def __init__(self, events: Iterable[Event]) -> None:
         held = list(events)
-        self._names = tuple(dict.fromkeys(event.contact for event in held))
+        self._names = tuple(dict.fromkeys(event.name for event in held))
         place = {name: i for i, name in enumerate(self._names)}
         self._t = np.array([event.t for event in held], dtype=float)
-        self._contact = np.array([place[event.contact] for event in held], dtype=np.int64)
-        self._kind = np.array([EVENT_KINDS.index(event.kind) for event in held], dtype=np.int64)
+        self._name = np.array([place[event.name] for event in held], dtype=np.int64)
+        self._kind = np.array([KINDS.index(event.kind) for event in held], dtype=np.int64)
         dt = [event._dt for event in held]
         self._dt = dt if any(one is not None for one in dt) else None
 
@@ -100,18 +112,18 @@ class Events(Sequence[Event]):
 
     @classmethod
     def _of(
-        cls, names: tuple[str, ...], t: Floats, contact: Ints, kind: Ints,
+        cls, names: tuple[str, ...], t: Floats, name: Ints, kind: Ints,
         dt: list[TimeDerivatives | None] | None = None,
     ) -> Events:  # fmt: skip
         events = cls.__new__(cls)
-        events._names, events._t, events._contact, events._kind, events._dt = names, t, contact, kind, dt
+        events._names, events._t, events._name, events._kind, events._dt = names, t, name, kind, dt
         return events
 
     def _part(self, chosen: Any) -> Events:
         dt = None
         if self._dt is not None:
             dt = [self._dt[i] for i in np.arange(len(self))[chosen].tolist()]
-        return self._of(self._names, self._t[chosen], self._contact[chosen], self._kind[chosen], dt)
+        return self._of(self._names, self._t[chosen], self._name[chosen], self._kind[chosen], dt)
 
     def with_derivatives(self, columns: tuple[str, ...], dt: Floats, transversality: Floats) -> Events:
         """The same events with the derivatives of their times (n_events, n_columns)."""
@@ -119,23 +131,53 @@ class Events(Sequence[Event]):
             TimeDerivatives(columns=columns, derivatives=row, transversality=rate)
             for row, rate in zip(dt, transversality.tolist(), strict=True)
         ]
-        return self._of(self._names, self._t, self._contact, self._kind, list(held))
+        return self._of(self._names, self._t, self._name, self._kind, list(held))
 
     @property
     def t(self) -> Floats:
         """Times (n_events,)."""
         return self._t.copy()
 
-    def of(self, *, kind: str | None = None, contact: str | None = None) -> Events:
-        """Events of one kind, of one contact, or both."""
-        if kind is not None and kind not in EVENT_KINDS:
-            raise unknown_name("kind of event", kind, EVENT_KINDS)
+    def of(self, *, kind: str | None = None, contact: str | None = None, name: str | None = None) -> Events:
+        """Events of one kind, of one contact or of one expression, and what is asked of them together.
+
+        Parameters
+        ----------
+        kind : str, optional
+            As in :class:`Event`.
+        contact, name : str, optional
+            Of a contact; of a contact or an expression.
+        """
+        if kind is not None and kind not in KINDS:
+            raise unknown_name("kind of event", kind, KINDS)
         mine = np.ones(len(self), dtype=bool)
         if kind is not None:
-            mine &= self._kind == EVENT_KINDS.index(kind)
+            mine &= self._kind == KINDS.index(kind)
         if contact is not None:
-            mine &= self._contact == (self._names.index(contact) if contact in self._names else -1)
+            mine &= (self._name == self._place(contact)) & (self._kind != KINDS.index(ASKED))
+        if name is not None:
+            mine &= self._name == self._place(name)
         return self._part(mine)
+
+    def _place(self, name: str) -> int:
+        """Number of a name, -1 for one without events."""
+        return self._names.index(name) if name in self._names else -1
+
+    @property
+    def transitions(self) -> Events:
+        """The transitions of contacts alone."""
+        mine = self.is_transition
+        return self if mine.all() else self._part(mine)
+
+    @property
+    def is_transition(self) -> NDArray[np.bool_]:
+        """Whether each event (n_events,) is a transition of a contact."""
+        found: NDArray[np.bool_] = self._kind != KINDS.index(ASKED)
+        return found
+
+    def with_asked(self, asked: Iterable[Event]) -> Events:
+        """These and what was asked for, in time order; at one time transitions come first."""
+        return Events(sorted([*self, *asked], key=lambda event: event.t))
 
     def until(self, t: float) -> Events:
         """Events not later than t."""
@@ -152,12 +194,12 @@ class Events(Sequence[Event]):
         if isinstance(index, slice):
             return self._part(index)
         dt = None if self._dt is None else self._dt[index]
-        return Event(float(self._t[index]), self._names[self._contact[index]], EVENT_KINDS[self._kind[index]], dt)
+        return Event(float(self._t[index]), self._names[self._name[index]], KINDS[self._kind[index]], dt)
 
     def __iter__(self) -> Iterator[Event]:
         dt = [None] * len(self) if self._dt is None else self._dt
-        columns = zip(self._t.tolist(), self._contact.tolist(), self._kind.tolist(), dt, strict=True)
-        return (Event(t, self._names[contact], EVENT_KINDS[kind], one) for t, contact, kind, one in columns)
+        columns = zip(self._t.tolist(), self._name.tolist(), self._kind.tolist(), dt, strict=True)
+        return (Event(t, self._names[name], KINDS[kind], one) for t, name, kind, one in columns)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Events) and len(self) == len(other) and all(map(operator.eq, self, other))
@@ -167,6 +209,6 @@ class Events(Sequence[Event]):
     def __repr__(self) -> str:
         if not len(self):
             return "<no events>"
-        counts = np.bincount(self._kind, minlength=len(EVENT_KINDS)).tolist()
-        shown = ", ".join(f"{n} {kind}" for kind, n in zip(EVENT_KINDS, counts, strict=True) if n)
+        counts = np.bincount(self._kind, minlength=len(KINDS)).tolist()
+        shown = ", ".join(f"{n} {kind}" for kind, n in zip(KINDS, counts, strict=True) if n)
         return f"<{len(self)} events: {shown}>"

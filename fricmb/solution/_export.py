@@ -34,7 +34,7 @@ def export(sol: Signals, path: str | PathLike[str], names: Iterable[str] | None 
 def _events(sol: Signals) -> dict[str, Any]:
     """Transitions as columns."""
     events = list(sol.events)
-    return {"t": [e.t for e in events], "contact": [e.contact for e in events], "kind": [e.kind for e in events]}
+    return {"t": [e.t for e in events], "contact": [e.name for e in events], "kind": [e.kind for e in events]}
 
 
 def _write_mat(file: Path, signals: dict[str, Any], sol: Signals) -> None:

@@ -154,7 +154,7 @@ def _arrays(sol: Solution) -> dict[str, Any]:
         "dof_names": np.array(names.dofs, dtype=np.str_),
         "contact_names": np.array(names.contacts, dtype=np.str_),
         "event_t": sol.events.t,
-        "event_contact": np.array([event.contact for event in sol.events], dtype=np.str_),
+        "event_contact": np.array([event.name for event in sol.events], dtype=np.str_),
         "event_kind": np.array([event.kind for event in sol.events], dtype=np.str_),
     }
 

@@ -36,6 +36,9 @@ class Recorded:
         self._stats, self._find_notes = stats, find_notes
         self._run: Run | Stored = run
         self._events = events
+        self._look_for: Any = None
+        #: What was asked for beside transitions.
+        self.asked_events: tuple[Any, ...] = ()
         self._span = run.t_start, run.t_end
         self.has_rows = times is None
         self._energies: tuple[Floats, Floats] | None = None

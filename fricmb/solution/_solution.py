@@ -57,7 +57,7 @@ class Solution(Signals):
         if "_reference" in self.__dict__:
             other.__dict__["_reference"] = self._reference
         other._units = self._units
-        other._asked = self._asked
+        other._asked, other.asked_events = self._asked, self.asked_events
         return other
 
     @property
@@ -216,7 +216,7 @@ def restore(
 ) -> Solution:
     """A solution from what a file holds; ``run`` is left closed until it is needed."""
     sol = Solution.__new__(Solution)
-    sol._asked, sol._derivatives = (), None
+    sol._asked, sol._derivatives, sol._look_for, sol.asked_events = (), None, None, ()
     sol.names, sol.stats, sol.record, sol.has_rows = names, stats, record, has_rows
     sol._events, sol._span, sol._energies, sol._run = events, span, energies, run
     sol._units = units

@@ -18,6 +18,7 @@ from fricmb.values._numbers import (
     is_plain,
     is_sparse,
     parameters_in,
+    substitute,
     value_of,
 )
 from fricmb.values._parameter import Parameter, parameter
@@ -55,6 +56,7 @@ __all__ = [
     "one_expression",
     "parameter",
     "parameters_in",
+    "substitute",
     "symbolic",
     "value_of",
 ]

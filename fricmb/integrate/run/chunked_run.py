@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar
 
@@ -78,12 +78,13 @@ def pieces(
 
 def run_kept(
     integrator: Integrator, problem: Problem, start: Start, t_end: float, *, t_eval: Floats | None = None,
-    memory: float = MEMORY, **options: Any,
+    memory: float = MEMORY, look: Callable[[Trajectory], None] | None = None, **options: Any,
 ) -> Trajectory:  # fmt: skip
     """A run that keeps no more than ``memory`` bytes of rows at a time.
 
     A run that needs less comes back whole, with its dense output.  Of a longer one the values at ``t_eval`` are kept
-    (None: at the accepted steps); ``options`` are those of :meth:`Integrator.integrate`.
+    (None: at the accepted steps); ``look`` is called with each of its parts before the rest of the part is let go;
+    ``options`` are those of :meth:`Integrator.integrate`.
     """
     kept: list[Samples] = []
     parts: list[Trajectory] = []
@@ -93,6 +94,8 @@ def run_kept(
         last = part.failure is not None or part.end.t >= t_end or not integrator.pauses
         if last and not kept:
             return part
+        if look is not None:
+            look(part)
         samples = with_losses(values_of(part, t_eval, last), before)
         kept.append(samples)
         before = losses_after(part, before)
