@@ -2,6 +2,7 @@
 
 from fricmb._files._containers import hdf5_arrays, mat_arrays, npz_arrays
 from fricmb._files._formats import Formats, one_sentence
+from fricmb._files._matrix_market import matrix_market
 from fricmb._files._text import text_of
 
-__all__ = ["Formats", "hdf5_arrays", "mat_arrays", "npz_arrays", "one_sentence", "text_of"]
+__all__ = ["Formats", "hdf5_arrays", "mat_arrays", "matrix_market", "npz_arrays", "one_sentence", "text_of"]

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
 import scipy.sparse
 
+from fricmb._files._mat import mat_5
 from fricmb.errors import FileError, MissingExtraError
 
 Arrays = dict[str, Any]
@@ -18,7 +18,7 @@ Arrays = dict[str, Any]
 def npz_arrays(path: Path) -> Arrays:
     """Arrays of numpy."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return {key: file[key] for key in file.files}
     except MemoryError:
         raise
@@ -27,18 +27,12 @@ def npz_arrays(path: Path) -> Arrays:
 
 
 def mat_arrays(path: Path) -> Arrays:
-    """Variables of MATLAB, up to version 7; those of 7.3 are HDF5."""
+    """Variables of MATLAB that hold numbers; files of version 7.3 are HDF5."""
     with path.open("rb") as file:
         head = file.read(128)
     if head[:8] == b"\x89HDF\r\n\x1a\n" or b"MATLAB 7.3" in head:
         return hdf5_arrays(path)
-    try:
-        found = scipy.io.loadmat(path)
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise FileError(f"{path}: expected a MAT-file of MATLAB ({error})") from error
-    return {key: value for key, value in found.items() if not key.startswith("__")}
+    return mat_5(path)
 
 
 def hdf5_arrays(path: Path) -> Arrays:

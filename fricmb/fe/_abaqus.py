@@ -42,7 +42,10 @@ def read(path: Path, names: Mapping[str, str] | None) -> dict[str, Any]:
 
 
 def _lines(path: Path) -> list[str]:
-    return text_of(path, "a text file of Abaqus").splitlines()
+    text = text_of(path, "a text file of Abaqus")
+    if not text.endswith("\n"):
+        raise FileError(f"{path}: its last line is cut off")
+    return text.splitlines()
 
 
 # ---- substructures

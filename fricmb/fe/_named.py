@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
 import scipy.sparse
 
-from fricmb._files import hdf5_arrays, mat_arrays, npz_arrays, one_sentence
+from fricmb._files import hdf5_arrays, mat_arrays, matrix_market, npz_arrays, one_sentence
 from fricmb.errors import FileError, unknown_name
 from fricmb.values import is_sparse
 
@@ -63,8 +62,8 @@ def _read_one(path: Path) -> Any:
         if path.suffix == ".mat":
             (matrix,) = _matrices(path, mat_arrays(path)).values()
             return matrix
-        return scipy.io.mmread(path)
-    except MemoryError:
+        return matrix_market(path)
+    except (FileError, MemoryError):
         raise
     except Exception as error:
         raise FileError(f"{path}: expected one matrix, in Matrix Market, npy, mat or npz of scipy ({error})") from error

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy.sparse
 
 from fricmb.errors import FileError, MissingExtraError, unknown_name
 
@@ -49,7 +50,7 @@ def _op4(path: Path) -> dict[str, Any]:
     from pyyeti.nastran import op4
 
     try:
-        found = op4.read(str(path))
+        found = op4.read(str(path), sparse=True)  # what a matrix announces is not allocated
     except Exception as error:
         raise FileError(f"{path}: expected matrices of OUTPUT4 ({type(error).__name__}: {error})") from error
     if not found:
@@ -74,8 +75,12 @@ def _dmig(path: Path) -> tuple[dict[str, Any], Any]:
         raise FileError(f"{path}: expected DMIG entries, found none")
     every = sorted({(int(a), int(b)) for frame in found.values() for a, b in frame.index})
     place = {label: i for i, label in enumerate(every)}
+    if not path.read_bytes().endswith(b"\n"):
+        raise FileError(f"{path}: its last line is cut off")
     matrices = {}
     for key, frame in found.items():
+        if not frame.to_numpy().any():
+            raise FileError(f"{path}: {key}: expected entries, found none; the file is cut off")
         at = np.array([place[int(a), int(b)] for a, b in frame.index])
         matrices[key.lower()] = np.zeros((len(every), len(every)), dtype=frame.to_numpy().dtype)
         matrices[key.lower()][np.ix_(at, at)] = frame.to_numpy()
@@ -108,10 +113,11 @@ def _named(path: Path, matrices: dict[str, Any], names: Mapping[str, str] | None
 
 def _boundary(K: Any) -> int | None:
     """How many rows come before the modal ones of a superelement, which K ties to nothing; None if there are none."""
-    dense = np.abs(np.asarray(K.toarray() if hasattr(K, "toarray") else K))
-    alone = (dense - np.diag(np.diag(dense))).max(axis=1, initial=0.0) <= 1e-12 * dense.max()
+    size = abs(scipy.sparse.csr_array(K))
+    ties = size - scipy.sparse.diags_array(size.diagonal())
+    alone = (ties.max(axis=1).toarray().ravel() if ties.nnz else np.zeros(ties.shape[0])) <= 1e-12 * size.max()
     modal = int(np.argmin(alone[::-1])) if not alone.all() else 0
-    return len(dense) - modal if modal else None
+    return alone.size - modal if modal else None
 
 
 def _assembly(path: Path, n: int, boundary: int | None) -> dict[str, Any]:
