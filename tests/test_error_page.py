@@ -54,13 +54,15 @@ def raised(path):
 def reasons():
     """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
     from fricmb.integrate.constrained import failure_text
+    from fricmb.integrate.constrained.impact import Impacts
     from fricmb.integrate.run.outcomes import FAILURES
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):
         yield from (re.sub(r"\{.*?\}", "...", text) for text in table.values())
     mechanisms = failure_text.failure_text, failure_text._none_found
+    impacts = Impacts._piles_up, Impacts._apply, Impacts._is_sound
     calls = _calls._said, _calls._unknown, _calls._unnamed
-    for function in (*calls, *mechanisms, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
+    for function in (*calls, *mechanisms, *impacts, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
             text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
             if text and text.strip("."):

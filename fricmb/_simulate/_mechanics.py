@@ -126,6 +126,12 @@ class SceneMechanics:
         kinds = {c.name: "" if c.law is None else c.law.kind for c in self.placed.frictional}
         return np.array([kinds[name] == "smooth" for name in self.names.contacts], dtype=np.bool_)
 
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints of a mechanism, as events count them; those of two ends of one part are the same."""
+        mechanism = None if self.whole is None else self.whole.system.problem.mechanism
+        return () if mechanism is None else tuple(name.partition(".")[0] for name in mechanism.joints.names)
+
     def fastest(self) -> float:
         """Largest angular frequency of what was run; what rested was never built."""
         built = [member.system.problem.omega for member in self.members if "system" in vars(member)]

@@ -17,6 +17,9 @@ import numpy as np
 
 from fricmb.integrate.problem import Codes, Floats, Ints, Templates, _f, _i
 
+#: Value of ``hands_over`` of joints whose impacts are computed, and of ``dropped`` of those that are open.
+RIGID, APART = 2, 2
+
 
 @dataclass(frozen=True, kw_only=True)
 class Entries:
@@ -83,10 +86,16 @@ class Joints:
     one_sided : (k,) int8
         1: its single multiplier pushes only (lam >= 0); where it would pull, contact is lost.
     hands_over : (k,) int8
-        1: where contact is lost the joint opens and the run goes on.
+        1: where contact is lost the joint opens and the run goes on.  2: as well, and impacts are computed.
     inner : (k,) int8
         1: what ties the coordinates of one body together, named after it.  It holds no part to another, and reactions
         and reports leave it out.
+    restitution, tangential : (k,)
+        Coefficients of restitution along the normal and along slip; nan where impacts are not computed.
+    mu_impact : (k,)
+        Coefficient of friction in impacts; nan: that of slip.
+    side : (k,) int8
+        Of a part with two ends, which become two joints, -1 for the lower and 1 for the upper one; else 0.
     names : tuple of str
     dropped : (m,) int8
         1: a constraint that follows from the others; its multiplier is 0.  2: a joint that is open.
@@ -99,6 +108,10 @@ class Joints:
     one_sided: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     hands_over: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     inner: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    restitution: Floats = field(default_factory=lambda: _f(0))
+    tangential: Floats = field(default_factory=lambda: _f(0))
+    mu_impact: Floats = field(default_factory=lambda: _f(0))
+    side: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     names: tuple[str, ...] = ()
     dropped: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
 
@@ -141,6 +154,11 @@ class Mechanism:
     joints: Joints
     slip: Templates
     least_mass: Floats = field(default_factory=lambda: _f(0))
+
+    @property
+    def has_impacts(self) -> bool:
+        """Whether something is rigid and may be hit."""
+        return bool((self.joints.hands_over == RIGID).any())
 
     @property
     def n_y(self) -> int:

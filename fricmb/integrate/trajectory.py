@@ -6,6 +6,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
 from typing import Any
 
+import numpy as np
+
 from fricmb.integrate.problem import Codes, Floats, Ints, Problem, Start
 
 
@@ -51,13 +53,26 @@ class Samples(MotionSamples):
     input: Floats
 
 
+#: What is kept of an impact: time; number among contacts and joints; kind; impulses along the normal and along slip;
+#: speed of approach; energy lost; of "rest" the time that further bounces would have taken and the bound of its error;
+#: how many others were hit at the same instant; side of a part with two ends.
+IMPACT_COLUMNS = (
+    "t", "contact", "kind", "normal", "tangential", "approach", "loss", "left", "bound", "others", "side",
+)  # fmt: skip
+
+
 @dataclass(frozen=True, kw_only=True)
 class Transitions:
-    """Transitions in time order: ``t`` (n_e,), ``contact`` (n_e,) index, ``kind`` (n_e,) index into EVENT_KINDS."""
+    """Transitions in time order: ``t`` (n_e,), ``contact`` (n_e,) index, ``kind`` (n_e,) index into EVENT_KINDS.
+
+    ``contact`` counts on behind the contacts with the joints of a mechanism.  ``impacts`` (n_i, 11): of every event of
+    kind "impact" or "rest", in order, the columns :data:`IMPACT_COLUMNS`.
+    """
 
     t: Floats
     contact: Ints
     kind: Ints
+    impacts: Floats = field(default_factory=lambda: np.zeros((0, len(IMPACT_COLUMNS))))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -57,6 +57,8 @@ class Joint(Part):
     """
 
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b")
+    #: Fields that are no part of its formulas.
+    _beside: ClassVar[frozenset[str]] = frozenset(("friction",))
     #: Whether the joint has slip and load.
     takes_friction: ClassVar[bool] = False
     #: Number of directions of slip.
@@ -111,10 +113,10 @@ class Joint(Part):
             self._refuse("friction", law, f"a law of {words} of slip")
 
     def bare(self) -> Self:
-        """The same without its law, whose numbers are no part of the joint's formulas."""
+        """The same without its law and what impacts are like, whose numbers are no part of the joint's formulas."""
         copy = object.__new__(type(self))
         for field in fields(self):
-            object.__setattr__(copy, field.name, None if field.name == "friction" else getattr(self, field.name))
+            object.__setattr__(copy, field.name, None if field.name in self._beside else getattr(self, field.name))
         return copy
 
     @property
@@ -152,6 +154,25 @@ class Joint(Part):
     def load_rows(self) -> int:
         """How many multipliers that joint has."""
         return 0
+
+    @property
+    def impact(self) -> tuple[float, float, float] | None:
+        """Restitution along the normal and along slip, friction in impacts (nan: that of slip); None: not computed."""
+        return None
+
+    @property
+    def side(self) -> int:
+        """-1 for the lower and 1 for the upper end of a part that becomes two joints; else 0."""
+        return 0
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether impacts on it are computed."""
+        return any(side.impact is not None for side in self.sides())
+
+    def sides(self) -> tuple[Joint, ...]:
+        """The joints that it is made of: itself, but for a part with two ends."""
+        return (self,)
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """The coordinates x that the joint depends on; their velocities follow."""

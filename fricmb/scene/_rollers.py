@@ -37,8 +37,15 @@ class RollerOnLine(Surface):
         The line can push but not pull; where it would have to pull, contact is lost.
     when_lost : str
         "end": the run ends there with an error that says so.  "open": it goes on without this joint, and ends with an
-        error where the point meets the line again (impacts are not computed).  A scene that starts with the point
-        away from the line, on the side of the normal, or leaving it, starts open.
+        error where the point meets the line again (impacts are not computed without ``restitution``).  A scene that
+        starts with the point away from the line, on the side of the normal, or leaving it, starts open.
+    restitution : float, optional
+        With ``push_only``, from 0 to 1: a point that meets the line with speed v leaves it with ``restitution`` v, by
+        Newton's law of impact over all that is hit or held at the instant; ``when_lost`` is "open" then.
+    tangential_restitution : float, optional
+        The same along the line, from -1 to 1 (default 0), where friction in the impact allows it.
+    mu_impact : float, optional
+        Coefficient of friction in impacts, >= 0; default: mu_k of a Coulomb law.  Other laws need it.
     slide : number or SymPy expression in ``fm.t``, or two of them
         Velocity of the surface along the line; of two the second across the plane.  The point is guided there, and
         slip across is part of the cone.
@@ -117,6 +124,8 @@ class RollerOnCircle(BetweenPoints, Surface):
         > 0.
     push_only, when_lost : bool, str
         As of RollerOnLine; the circle pushes outward.
+    restitution, tangential_restitution, mu_impact : float, optional
+        As of RollerOnLine.
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction; slip relative to a circle that does not turn.
     """

@@ -162,8 +162,12 @@ class InnerConstraint(Joint):
 
 
 def with_inner(parts: Iterable[Any]) -> list[Any]:
-    """Parts, and behind each what is built with it."""
-    return [one for part in parts for one in (part, *part.parts_within())]
+    """Parts, those with two ends by their ends, and behind each what is built with it."""
+    return [
+        one
+        for part in parts
+        for one in (*(part.sides() if isinstance(part, Joint) else (part,)), *part.parts_within())
+    ]
 
 
 @dataclass(frozen=True)

@@ -5,20 +5,26 @@ from __future__ import annotations
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
-from fricmb.errors import SceneError
+from fricmb.errors import SceneError, shown
 from fricmb.scene._axes import check_axis, check_ends, direction
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._one_coordinate import ANGLE, one_coordinate
 from fricmb.scene._part import GROUND, End
 from fricmb.scene._rigid import angle_of
+from fricmb.scene._rigid_stops import RigidBacklash, RigidStop
 from fricmb.scene._turning import relative_angle
 from fricmb.values import value_of
 
 
 @dataclass(frozen=True, eq=False)
 class _Touching(Element):
-    """What pushes back where a coordinate goes beyond limits."""
+    """What pushes back where a coordinate goes beyond limits.
+
+    With ``restitution=`` the call makes a part that does not give, the class ``_rigid``.
+    """
+
+    _rigid: ClassVar[type]
 
     bends: ClassVar[bool] = True
     positive: ClassVar[tuple[str, ...]] = ("stiffness",)
@@ -32,6 +38,19 @@ class _Touching(Element):
     hunt_crossley: Any = 0.0
     damping: Any = 0.0
     damping_depth: Any = None
+
+    def __new__(cls, *arguments: Any, restitution: Any = None, **fields: Any) -> Any:
+        """A part of this class, or with a coefficient of restitution one that does not give."""
+        if restitution is None:
+            return super().__new__(cls)
+        for argument in ("stiffness", "hunt_crossley", "damping", "damping_depth"):
+            if fields.get(argument) is not None:
+                name = shown(arguments[0] if arguments else fields.get("name"))
+                raise SceneError(
+                    f"{cls.__name__} {name}: {argument} must be left out beside restitution (what is rigid does not"
+                    f" give), got {shown(fields[argument])}"
+                )
+        return cls._rigid(*arguments, restitution=restitution, **fields)
 
     def __post_init__(self) -> None:
         self._check_axis()
@@ -101,7 +120,7 @@ class _Touching(Element):
 
 @dataclass(frozen=True, eq=False)
 class Stop(_Touching):
-    """Ends of a way: a spring and a damper that cannot pull, where a coordinate goes beyond its limits.
+    """Ends of a way: a spring and a damper that cannot pull, where a coordinate goes beyond its limits; or rigid ends.
 
     Force on a, of the depth ``d = x - upper`` (``d = lower - x`` at the other end) and its rate d':
     ``max(0, stiffness d (1 + hunt_crossley d') + damping s(d) d')`` back into the way where ``d > 0``, else 0.
@@ -125,6 +144,10 @@ class Stop(_Touching):
     damping_depth : float
         Over which ``damping`` comes in, > 0: ``s(d) = u^2 (3 - 2 u)``, ``u = min(1, d/damping_depth)``; to be given
         where there is damping.  Without it the force would jump where it touches.
+    restitution : float
+        In place of all these: the ends do not give, and what meets one with speed v leaves it with ``restitution`` v,
+        from 0 to 1.  Impacts are events, ``sol.impulse(name)`` and ``sol.energy.impact_loss`` tell of them, and bounces
+        that come to rest are followed to their end; ``sol.reaction(name)`` is the force on a where it is held.
 
     Raises
     ------
@@ -149,8 +172,16 @@ class Stop(_Touching):
     >>> touches = sol.touches("ends")
     >>> [float(t.round(6)) for t in touches.begin], touches.side
     ([0.5, 1.814159], ['upper', 'lower'])
+
+    Between rigid ones it loses a part of its speed at each:
+
+    >>> rigid = fm.Stop("ends", block, axis="x", lower=-1.0, upper=1.0, restitution=0.5)
+    >>> sol = fm.simulate(fm.Scene("block", [block, rigid]), t_end=3.0, rtol=1e-8)
+    >>> [(round(hit.t, 6), hit.side, round(hit.impulse, 6)) for hit in sol.events.of(kind="impact")]
+    [(0.5, 'upper', 3.0), (2.5, 'lower', 1.5)]
     """
 
+    _rigid: ClassVar[type] = RigidStop
     _: KW_ONLY
     lower: Any = None
     upper: Any = None
@@ -194,6 +225,8 @@ class Backlash(_Touching):
         Loss that grows with the force of the spring, 1/speed, >= 0.
     damping, damping_depth : float
         Force per speed, >= 0, and the depth over which it comes in, > 0.
+    restitution : float
+        In place of all these, rigid flanks, as of a :class:`Stop`; then gap > 0.
 
     Raises
     ------
@@ -215,6 +248,7 @@ class Backlash(_Touching):
     [0.0, 1.0]
     """
 
+    _rigid: ClassVar[type] = RigidBacklash
     _: KW_ONLY
     gap: Any
     ratio: Any = None

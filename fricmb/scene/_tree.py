@@ -67,7 +67,8 @@ class Topology:
 def topology(scene: Scene, names: Iterable[str] | None = None) -> Topology:
     """Tree and loops of the joints in a scene (of those with the given names)."""
     held = None if names is None else set(names)
-    joints = {j.name: j for j in scene.joints if j.constrains and (held is None or j.name in held)}
+    ties = [j for j in scene.joints if j.constrains and not j.is_rigid]
+    joints = {j.name: j for j in ties if held is None or j.name in held}
     if not joints:
         return Topology()
     # imported here: it takes a tenth of a second, and scenes without joints do not need it

@@ -31,6 +31,8 @@ class Wheel(RollerOnLine):
         Direction of the line in the axes of b; the disc is on the side of the normal, 90 degrees further.
     push_only, when_lost : bool, str
         As of :class:`RollerOnLine`: whether it may lift off, and what happens then.
+    restitution, tangential_restitution, mu_impact : float, optional
+        As of :class:`RollerOnLine`: what impacts are like.
     slide : number or SymPy expression in ``fm.t``
         Velocity of the surface along the line (a belt, a roller table).
     friction : FrictionLaw, optional

@@ -32,7 +32,10 @@ class Differentiated(Recorded):
         """Transitions of the run, and the events that were asked for, in time order."""
         if self._events is None:
             (piece,) = self.run.pieces
-            found = Events.from_transitions(piece.trajectory.transitions, self.names.contacts)
+            transitions, names = piece.trajectory.transitions, self.names.contacts
+            if transitions.contact.max(initial=-1) >= len(names):
+                names = (*names, *piece.mechanics.joint_names)
+            found = Events.from_transitions(transitions, names)
             self._events = found if piece.t_end >= piece.trajectory.t[-1] else found.until(piece.t_end)
         if self._look_for is not None:
             seen = type(self)(names=self.names, run=self.run, stats=self._stats, events=self._events)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import EVENT_KINDS, Transitions
-from fricmb.integrate.problem import Floats, Ints
+from fricmb.integrate.problem import EVENT_IMPACT, EVENT_REST, Floats, Ints
+from fricmb.integrate.trajectory import IMPACT_COLUMNS
 
 #: The kind of an event that a user has asked for.
 ASKED = "event"
@@ -30,8 +31,12 @@ class Event:
     name : str
         Of the contact, or of the expression.
     kind : str
-        "stick" (slip ends), "slip" (stick ends), "open", "close" or "reversal" (one-dimensional slip turns round
-        without sticking); "event" for an expression.
+        "stick" (slip ends), "slip" (stick ends), "open", "close", "reversal" (one-dimensional slip turns round
+        without sticking), "impact" or "rest" (bounces have ended, and the contact is held);
+        "event" for an expression.
+
+    Of an impact also :attr:`impulse`, :attr:`tangential_impulse`, :attr:`approach`, :attr:`loss`, :attr:`others`; of a
+    rest :attr:`left` and :attr:`bound`; of both :attr:`side`.
 
     Of a run with ``sensitivities`` also :meth:`sensitivity` and :attr:`transversality`.
     """
@@ -40,6 +45,52 @@ class Event:
     name: str
     kind: str
     _dt: TimeDerivatives | None = field(default=None, compare=False, repr=False)
+    _impact: tuple[float, ...] | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def impulse(self) -> float:
+        """Of an impact: the impulse along the normal, >= 0."""
+        return self._of_impact("normal")
+
+    @property
+    def tangential_impulse(self) -> float:
+        """Of an impact: that of friction, on the contact's first end along its direction of slip."""
+        return self._of_impact("tangential")
+
+    @property
+    def approach(self) -> float:
+        """Of an impact, or the last one before a rest: the speed with which the distance closed, >= 0."""
+        return self._of_impact("approach")
+
+    @property
+    def loss(self) -> float:
+        """Of an impact: the energy that it took."""
+        return self._of_impact("loss")
+
+    @property
+    def others(self) -> int:
+        """Of an impact: how many other contacts took an impulse at the same instant."""
+        return int(self._of_impact("others"))
+
+    @property
+    def left(self) -> float:
+        """Of a rest: for how long before it the contact is held in the run, while bounces would still fade."""
+        return self._of_impact("left")
+
+    @property
+    def bound(self) -> float:
+        """Of a rest: bound of the error of its time, by bounces left out, round-off, and rtol of the time so far."""
+        return self._of_impact("bound")
+
+    @property
+    def side(self) -> str:
+        """Of an impact or rest of a part with two ends: "lower" or "upper"; else ""."""
+        return {-1: "lower", 0: "", 1: "upper"}[int(self._of_impact("side"))]
+
+    def _of_impact(self, column: str) -> float:
+        if self._impact is None:
+            raise SceneError(f"this event is a {self.kind!r}; only those of kind 'impact' and 'rest' have that")
+        return float(self._impact[IMPACT_COLUMNS.index(column)])
 
     @property
     def contact(self) -> str:
@@ -104,26 +155,50 @@ class Events(Sequence[Event]):
         self._kind = np.array([KINDS.index(event.kind) for event in held], dtype=np.int64)
         dt = [event._dt for event in held]
         self._dt = dt if any(one is not None for one in dt) else None
+        rows = [event._impact for event in held if event._impact is not None]
+        self._impacts = np.array(rows, dtype=float).reshape(-1, len(IMPACT_COLUMNS))
 
     @classmethod
     def from_transitions(cls, transitions: Transitions, contacts: tuple[str, ...]) -> Events:
-        """Name the transitions that an integrator recorded; objects are made when they are looked at."""
-        return cls._of(contacts, transitions.t, transitions.contact, transitions.kind)
+        """Name the transitions that an integrator recorded; objects are made when they are looked at.
+
+        ``contacts``: names of contacts, and behind them of joints; those of both ends of a part are the same.
+        """
+        place = {name: i for i, name in enumerate(dict.fromkeys(contacts))}
+        contact = np.array([place[name] for name in contacts], dtype=np.int64)[transitions.contact]
+        return cls._of(tuple(place), transitions.t, contact, transitions.kind, impacts=transitions.impacts)
 
     @classmethod
     def _of(
         cls, names: tuple[str, ...], t: Floats, name: Ints, kind: Ints,
-        dt: list[TimeDerivatives | None] | None = None,
+        dt: list[TimeDerivatives | None] | None = None, impacts: Floats | None = None,
     ) -> Events:  # fmt: skip
         events = cls.__new__(cls)
         events._names, events._t, events._name, events._kind, events._dt = names, t, name, kind, dt
+        events._impacts = np.zeros((0, len(IMPACT_COLUMNS))) if impacts is None else impacts
         return events
+
+    @property
+    def impacts(self) -> Floats:
+        """Numbers of the impacts and rests among them, in order (n_i, 11)."""
+        return self._impacts
+
+    def with_impacts(self, impacts: Floats) -> Events:
+        """The same events with the numbers of their impacts and rests (n_i, 11)."""
+        return self._of(self._names, self._t, self._name, self._kind, self._dt, impacts)
+
+    def _row_of_impact(self) -> Ints:
+        """Row of each event among the impacts (n_events,), -1 for others."""
+        mine = (self._kind == EVENT_IMPACT) | (self._kind == EVENT_REST)
+        return np.where(mine & (len(self._impacts) > 0), np.cumsum(mine) - 1, -1)
 
     def _part(self, chosen: Any) -> Events:
         dt = None
         if self._dt is not None:
             dt = [self._dt[i] for i in np.arange(len(self))[chosen].tolist()]
-        return self._of(self._names, self._t[chosen], self._name[chosen], self._kind[chosen], dt)
+        rows = self._row_of_impact()[chosen]
+        impacts = self._impacts[rows[rows >= 0]]
+        return self._of(self._names, self._t[chosen], self._name[chosen], self._kind[chosen], dt, impacts)
 
     def with_derivatives(self, columns: tuple[str, ...], dt: Floats, transversality: Floats) -> Events:
         """The same events with the derivatives of their times (n_events, n_columns)."""
@@ -131,7 +206,7 @@ class Events(Sequence[Event]):
             TimeDerivatives(columns=columns, derivatives=row, transversality=rate)
             for row, rate in zip(dt, transversality.tolist(), strict=True)
         ]
-        return self._of(self._names, self._t, self._name, self._kind, list(held))
+        return self._of(self._names, self._t, self._name, self._kind, list(held), self._impacts)
 
     @property
     def t(self) -> Floats:
@@ -194,12 +269,18 @@ class Events(Sequence[Event]):
         if isinstance(index, slice):
             return self._part(index)
         dt = None if self._dt is None else self._dt[index]
-        return Event(float(self._t[index]), self._names[self._name[index]], KINDS[self._kind[index]], dt)
+        row, name = int(self._row_of_impact()[index]), self._names[self._name[index]]
+        impact = None if row < 0 else tuple(self._impacts[row].tolist())
+        return Event(float(self._t[index]), name, KINDS[self._kind[index]], dt, impact)
 
     def __iter__(self) -> Iterator[Event]:
         dt = [None] * len(self) if self._dt is None else self._dt
-        columns = zip(self._t.tolist(), self._name.tolist(), self._kind.tolist(), dt, strict=True)
-        return (Event(t, self._names[name], KINDS[kind], one) for t, name, kind, one in columns)
+        impacts = [tuple(row) for row in self._impacts.tolist()]
+        held = [None if row < 0 else impacts[row] for row in self._row_of_impact().tolist()]
+        columns = zip(self._t.tolist(), self._name.tolist(), self._kind.tolist(), dt, held, strict=True)
+        return (
+            Event(t, self._names[name], KINDS[kind], one, impact) for t, name, kind, one, impact in columns
+        )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Events) and len(self) == len(other) and all(map(operator.eq, self, other))

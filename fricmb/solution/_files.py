@@ -46,6 +46,7 @@ _OLD = (
 )
 _RUN = "run_"
 _SENSITIVITY = "sensitivity_"
+_IMPACTS = "event_impacts"
 #: Attributes of :class:`Derivatives` and the entries that hold them.
 _DERIVED = {"S": "S", "end": "end", "event_times": "moved", "transversality": "transversality"}
 
@@ -156,6 +157,7 @@ def _arrays(sol: Solution) -> dict[str, Any]:
         "event_t": sol.events.t,
         "event_contact": np.array([event.name for event in sol.events], dtype=np.str_),
         "event_kind": np.array([event.kind for event in sol.events], dtype=np.str_),
+        **({_IMPACTS: sol.events.impacts} if len(sol.events.impacts) else {}),
     }
 
 
@@ -332,4 +334,5 @@ def _stats(held: dict[str, Any]) -> Stats:
 
 def _events(data: Any) -> Events:
     columns = zip(data["event_t"].tolist(), data["event_contact"].tolist(), data["event_kind"].tolist(), strict=True)
-    return Events(Event(*row) for row in columns)
+    found = Events(Event(*row) for row in columns)
+    return found.with_impacts(data[_IMPACTS]) if _IMPACTS in data else found

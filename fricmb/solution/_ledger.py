@@ -6,12 +6,14 @@ from functools import cached_property
 
 from fricmb.integrate import Samples
 from fricmb.integrate.problem import Floats
+from fricmb.solution._differentiated import Differentiated
 from fricmb.solution._energy import Energy, Reference
-from fricmb.solution._recorded import Recorded, finite
+from fricmb.solution._impacts import with_impacts
+from fricmb.solution._recorded import finite
 from fricmb.solution._run import Record
 
 
-class Ledger(Recorded):
+class Ledger(Differentiated):
     """Kinetic and potential energy, losses and input; integrated from the dense output when they are asked for."""
 
     @cached_property
@@ -24,7 +26,8 @@ class Ledger(Recorded):
             Where an energy is beyond what numbers hold.
         """
         energies = self.run.energies(self.record) if self._energies is None else self._energies
-        return self._ledger(energies, self.accounts, None if self.has_rows else self._reference)
+        found = self._ledger(energies, self.accounts, None if self.has_rows else self._reference)
+        return with_impacts(found, self.events, self.t, rows=self.has_rows)
 
     @cached_property
     def accounts(self) -> Samples:

@@ -33,6 +33,10 @@ class Mechanics(Protocol):
     def smooth(self) -> Flags:
         """Whether each contact has a force law that never sticks (n_c,)."""
 
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints of a mechanism, as events count them; those of two ends of one part are the same."""
+
     def fastest(self) -> float:
         """Largest angular frequency of what was run."""
 

@@ -14,6 +14,7 @@ from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._derivatives import Derivatives
 from fricmb.solution._energy import Reference
 from fricmb.solution._events import Events
+from fricmb.solution._impacts import Impulses, impulses
 from fricmb.solution._names import Names
 from fricmb.solution._run import Record
 from fricmb.solution._signals import Signals
@@ -94,6 +95,25 @@ class Solution(Signals):
         fricmb.audit.Audit
             ``.ok``, ``.checks``, ``.table()``; printed, three lines.
         """
+
+    def impulse(self, name: str) -> Impulses:
+        """Impulses of a part with ``restitution=``.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Impulses
+            ``.t``, ``.normal``, ``.tangential`` (n,), and ``.side``; ``len`` counts them.
+
+        Raises
+        ------
+        UnknownNameError
+            For the name of another part; lists those near.
+        """
+        return impulses(self.events, name, tuple(joint.name for joint in self.scene.joints if joint.is_rigid))
 
     @facade
     def touches(self, name: str) -> Touches:

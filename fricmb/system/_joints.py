@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import accumulate
+from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from fricmb.equations import joint_template, numbers, signal_expression, uniform_signal
-from fricmb.integrate.mechanism import Joints
+from fricmb.integrate.mechanism import APART, RIGID, Joints
 from fricmb.scene import Joint, Part
 from fricmb.system._contacts import ContactArrays
 from fricmb.system._motions import Motions
@@ -46,6 +47,8 @@ class JointArrays:
     one_sided: list[int] = field(default_factory=list)
     hands_over: list[int] = field(default_factory=list)
     inner: list[int] = field(default_factory=list)
+    impact: list[tuple[float, float, float]] = field(default_factory=list)
+    side: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     loaded_by: list[str] = field(default_factory=list)
     forms: list[tuple[Row, ...]] = field(default_factory=list)
@@ -53,8 +56,8 @@ class JointArrays:
     def lists(self) -> tuple[list[Any], ...]:
         """See :class:`Growing`."""
         return (
-            self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.names, self.loaded_by,
-            self.forms,
+            self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.impact,
+            self.side, self.names, self.loaded_by, self.forms,
         )  # fmt: skip
 
     def marks(self) -> tuple[int, ...]:
@@ -63,6 +66,10 @@ class JointArrays:
 
     def add(self, joint: Joint, kept: Kept, *, inner: bool = False) -> None:
         """Append a joint, and its friction to the contacts; ``inner``: of one body alone."""
+        for side in joint.sides():
+            self._add(side, kept, inner)
+
+    def _add(self, joint: Joint, kept: Kept, inner: bool) -> None:
         add_share(kept.joints, joint, self, lambda joint: self._append(joint, inner), _hold_alike)
         self.port.append(-1)
         if joint.friction is not None:
@@ -76,7 +83,9 @@ class JointArrays:
         self.table.add(template.address, numbers(joint.bare()), [*(r.value() for r in rows), *(r.rate() for r in rows)])
         self.rows.append(int(template.facts["rows"]))
         self.one_sided.append(int(joint.one_sided))
-        self.hands_over.append(int(joint.hands_over))
+        self.hands_over.append(int(joint.hands_over) if joint.impact is None else RIGID)
+        self.impact.append(joint.impact or (nan, nan, nan))
+        self.side.append(joint.side)
         self.inner.append(int(inner))
         self.names.append(joint.name)
         self.loaded_by.append(joint.loaded_by or joint.name)
@@ -95,17 +104,24 @@ class JointArrays:
         return Row((), ((j, 1.0),))
 
     def build(self, n_y: int, n_u: int) -> Joints:
-        """The arrays."""
+        """The arrays; what is rigid is open until a run finds it held."""
+        impact = np.array(self.impact, dtype=float).reshape(-1, 3)
+        hands_over = np.array(self.hands_over, dtype=np.int8)
+        apart = np.where(hands_over == RIGID, APART, 0).astype(np.int8)
         return Joints(
             table=self.table.build(n_y, n_u),
             row=np.array([0, *accumulate(self.rows)], dtype=np.int64),
             load_of=np.array([self.names.index(name) for name in self.loaded_by], dtype=np.int64),
             port=np.array(self.port, dtype=np.int64),
             one_sided=np.array(self.one_sided, dtype=np.int8),
-            hands_over=np.array(self.hands_over, dtype=np.int8),
+            hands_over=hands_over,
             inner=np.array(self.inner, dtype=np.int8),
+            restitution=impact[:, 0].copy(),
+            tangential=impact[:, 1].copy(),
+            mu_impact=impact[:, 2].copy(),
+            side=np.array(self.side, dtype=np.int8),
             names=tuple(self.names),
-            dropped=np.zeros(sum(self.rows), dtype=np.int8),
+            dropped=np.repeat(apart, np.array(self.rows, dtype=np.int64)),
         )
 
 

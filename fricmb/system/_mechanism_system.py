@@ -77,6 +77,10 @@ class MechanismSystem(System):
         """Multipliers of a joint (m, n_t) at states with their friction modes."""
         joints = self.mechanism.joints
         holds = np.diff(joints.row) > 0
+        both = [f"{joint}.{side}" for side in ("lower", "upper")]
+        if both[0] in joints.names:  # of two ends what both together push with along the axis
+            found = self.reactions(samples)
+            return found[both[0]] - found[both[1]]
         known = [name for name, inner, has in zip(joints.names, joints.inner, holds, strict=True) if has and not inner]
         if joint not in known:
             raise unknown_name("joint", joint, known)
@@ -94,8 +98,10 @@ class MechanismSystem(System):
         force[:, m + rows :] = self._directions(samples).T
         q, v, z = (np.ascontiguousarray(x.T) for x in (samples.q, samples.v, samples.z))
         opened = np.zeros((count, len(joints.port)), np.int8)
+        rigid = self.mechanism.has_impacts
         for k in range(count if joints.hands_over.any() else 0):
-            opened[k] = away(self.problem, Start(t=float(samples.t[k]), q=q[k], v=np.zeros_like(q[k]), z=z[k]))
+            now = v[k] if rigid else np.zeros_like(v[k])
+            opened[k] = away(self.problem, Start(t=float(samples.t[k]), q=q[k], v=now, z=z[k]))
         # just after a contact has opened it is no distance away yet, but its friction knows
         rubs = np.flatnonzero((joints.hands_over != 0) & (joints.port >= 0))
         opened[:, rubs] |= (samples.mode[joints.port[rubs]] == OPEN).T

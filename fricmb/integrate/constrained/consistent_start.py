@@ -10,14 +10,16 @@ import numpy as np
 from fricmb.errors import SceneError
 from fricmb.integrate.constrained.least_change import Constrained, Least, constraints_at, names_of_rows, unit_rows
 from fricmb.integrate.constrained.problem_structs import masses
-from fricmb.integrate.constrained.structure import mechanism_of
-from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.constrained.structure import mechanism_of, with_open
+from fricmb.integrate.mechanism import RIGID, Mechanism
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Codes, Floats, Problem, Start
 
 #: A constraint is satisfied to this part of the sizes that occur.
 CLOSED = 1e-12
 CORRECTIONS = 60
+#: Distance at which something rigid is touched, and depth by which it may be entered at the start, beside positions.
+TOUCHES, CLOSED_RIGID = 1e-12, 1e-9
 
 
 def consistent_start(problem: Problem, start: Start) -> tuple[Start, tuple[str, ...]]:
@@ -77,13 +79,34 @@ def away(problem: Problem, start: Start) -> Codes:
     joints = mechanism_of(problem).joints
     opened = np.zeros(len(joints.port), np.int8)
     if joints.hands_over.any():
-        here = constraints_at(problem, start.t, np.asarray(start.q, float), np.asarray(start.v, float))
+        here = distances_at(problem, start)
         may = np.flatnonzero(joints.hands_over)
-        row = joints.row[may]
-        far = here.phi[row] > 1e-9 * max(float(np.abs(start.q).max(initial=0.0)), 1e-300)
-        leaves = here.rate[row] > 1e-9 * max(float(np.abs(start.v).max(initial=0.0)), 1e-300)
-        opened[may] = far | leaves
+        row, rigid = joints.row[may], joints.hands_over[may] == RIGID
+        size, speed = (max(float(np.abs(x).max(initial=0.0)), 1e-300) for x in (start.q, start.v))
+        far = here.phi[row] > np.where(rigid, TOUCHES, 1e-9) * size
+        # what is rigid is met by an impact
+        rate = np.where(rigid, np.abs(here.rate[row]), here.rate[row])
+        opened[may] = far | (rate > 1e-9 * speed)
     return opened
+
+
+def distances_at(problem: Problem, start: Start) -> Constrained:
+    """Constraints at a start, those of joints that are open as well."""
+    held = with_open(problem, np.zeros(len(mechanism_of(problem).joints.port), np.int8))
+    return constraints_at(held, start.t, np.asarray(start.q, float), np.asarray(start.v, float))
+
+
+def check_apart(problem: Problem, start: Start) -> None:
+    """Refuse, by SceneError, a start at which something is inside of what is rigid."""
+    m = mechanism_of(problem)
+    if not m.has_impacts:
+        return
+    phi = distances_at(problem, start).phi[np.minimum(m.joints.row[:-1], m.n_rows - 1)]
+    deep = np.where(m.joints.hands_over == RIGID, phi, 0.0)
+    size = max(float(np.abs(start.q).max(initial=0.0)), 1e-300)
+    if deep.min(initial=0.0) < -CLOSED_RIGID * size:
+        j = int(np.argmin(deep))
+        raise SceneError(f"{m.joints.names[j]!r} is rigid, and the run starts {-deep[j]:.6g} inside of it")
 
 
 def least_change(G: object, weight: Floats, r: Floats) -> Floats:

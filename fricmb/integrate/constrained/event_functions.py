@@ -16,6 +16,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats
+from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import first_below
 
 #: Forces at the stages are of lower order than velocities: this part of the largest one, between them, is no sign.
@@ -23,14 +24,47 @@ ROUGH = 1e-6
 
 
 @kernel
-def gaps(mech: Mech, k: Moving, y: State, out: Watch) -> None:
-    """Distances of open joints at a state."""
+def gaps(mech: Mech, k: Moving, t: float, q: Floats, v: Floats, lam: Floats, out: Watch) -> None:
+    """Distances of open joints at a state, their rates, and what is round-off of them."""
     joint = mech.joint
-    move(mech, k, y.t, y.q, y.v)
+    move(mech, k, t, q, v)
     for j in range(joint.port.shape[0]):
         if is_open(mech, j):
-            call_joint(mech, k, j, y.lam)
-            out.gap[j] = k.out[0]
+            n_x = call_joint(mech, k, j, lam)
+            rate = 0.0
+            for a in range(n_x):
+                rate += k.out[1 + a] * k.x[n_x + a]
+            out.gap[j], out.rate[j] = k.out[0], rate
+            out.grain[j] = max(out.grain[j], gap_noise(mech, k, j, n_x) + 0.5 * EPS * abs(t * rate))
+
+
+@kernel
+def gap_noise(mech: Mech, k: Moving, j: int, n_x: int) -> float:
+    """Round-off of the distance that joint j has just been evaluated to."""
+    table, value = mech.joint.table, 0.0
+    for a in range(n_x):
+        first = table.x_start[j] + a
+        size = abs(table.form_constant[first])
+        for i in range(table.form_start[first], table.form_start[first + 1]):
+            size += abs(table.form_coefficient[i] * k.s.X[table.form_index[i]])
+        value += abs(k.out[1 + a]) * size
+    return 4.0 * EPS * value
+
+
+@kernel
+def gaps_within(mech: Mech, k: Moving, y: State, end: State, st: Stages, out: Watch) -> None:
+    """Distances of open joints at the start and the stages of the step from y to end, into ``out.inner``."""
+    first = 2 * y.mode.shape[0]
+    out.grain[:] = 0.0
+    gaps(mech, k, y.t, y.q, y.v, y.lam, out)
+    for j in range(out.gap.shape[0]):
+        if is_open(mech, j):
+            out.inner[0, first + j] = out.gap[j]
+    for i in range(st.tab.c.shape[0]):
+        gaps(mech, k, y.t + st.tab.c[i] * (end.t - y.t), st.Q[i], st.V[i], y.lam, out)
+        for j in range(out.gap.shape[0]):
+            if is_open(mech, j):
+                out.inner[i + 1, first + j] = out.gap[j]
 
 
 @kernel
@@ -88,7 +122,7 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
     if is_slip(j, y):
         return float(1e-13 * out.top_slip)
     if is_open(mech, j - 2 * n_c):
-        return float(1e-13 * out.top_position)
+        return float(max(out.grain[j - 2 * n_c], 1e-290))
     return float(1e-13 * out.top_force)
 
 
@@ -99,23 +133,24 @@ def violated(mech: Mech, k: Moving, w: Instant, out: Watch, y: State, end: State
     ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.
     """
     s = st.tab.c.shape[0]
-    worst, least = -1, 0.0
+    worst, least, first = -1, 0.0, 2 * end.mode.shape[0]
     out.where = 1.0
     shared = share_stages(mech, k, w, y, end, st)
     triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
     out.inner[0] = out.trigger
-    if out.opened > 0:
-        gaps(mech, k, end, out)
     for i in range(s):
         triggers(mech, k, out, end.mode, end.n, st.F[i], st.N[i], st.g[i], st.lam[i], False)
         out.inner[i + 1] = out.trigger
     out.rough[:] = out.trigger
+    if out.opened > 0:
+        gaps_within(mech, k, y, end, st, out)
+        gaps(mech, k, end.t, end.q, end.v, end.lam, out)
     triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     out.inner[s] = out.trigger
     for j in range(out.trigger.shape[0]):
         # forces of stages are of lower order, and in a short step the round-off of velocities over the step: at its end
         # those that follow from accelerations show by how much
-        rough = 2.0 * abs(out.trigger[j] - out.rough[j])
+        rough = 0.0 if is_open(mech, j - first) else 2.0 * abs(out.trigger[j] - out.rough[j])
         limit = 10.0 * grain(mech, out, j, end)
         for i in range(s):
             value = out.inner[i + 1, j] + (rough if i < s - 1 else 0.0)
@@ -143,13 +178,10 @@ def has_come_to_rest(mech: Mech, k: Moving, out: Watch, y: State, end: State) ->
 
 @kernel
 def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
-    """Whether trigger j is what its values say between the stages: neither an open joint's nor one almost without load.
-
-    Open joints have no values but at the end of the step; slip almost without load may turn as it likes.
-    """
+    """Whether trigger j is what its values say between the stages: slip almost without load may turn as it likes."""
     n_c = y.mode.shape[0]
     if j >= 2 * n_c:
-        return not is_open(mech, j - 2 * n_c)
+        return True
     if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
         return bool(mech.port.normal[j // 2] == NORMAL_LAW)
     loaded = lack(mech, k, j // 2, y.N[j // 2]) == 0.0
@@ -169,7 +201,8 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         jumps = shared and j < 2 * y.mode.shape[0] and y.mode[j // 2] == STICK and may_share(mech, j // 2)
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
-        hair = 10.0 * grain(mech, out, j, y) if is_slip(j, y) else ROUGH * out.top_force
+        fine = is_slip(j, y) or is_open(mech, j - 2 * y.mode.shape[0])
+        hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * out.top_force
         for i in range(st.tab.c.shape[0]):
             out.values[i] = out.inner[i + 1, j] + hair
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment

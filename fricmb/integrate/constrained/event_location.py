@@ -6,6 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.event_functions import gaps, grain, triggers, violated
+from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, step_to
@@ -35,6 +36,18 @@ def by_polynomial(st: Stages, out: Watch, j: int, h: float) -> tuple[float, floa
 
 
 @kernel
+def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
+    """Where a distance that is 0 at the start of a step h, and opens at a rate, vanishes again; -1 where it does not.
+
+    By the polynomial of the distance over the time, without the root at the start: hops may be far shorter than steps.
+    """
+    for i in range(st.tab.c.shape[0]):
+        out.values[i] = out.inner[i + 1, j] / st.tab.c[i]
+    x = first_crossing(st.tab, rate * h, out.values, out.series)
+    return x * h if 0.0 < x <= 1.0 else -1.0
+
+
+@kernel
 def locate_trigger(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float, first: int
 ) -> tuple[float, int]:
@@ -47,27 +60,31 @@ def locate_trigger(
     """
     inside = out.where
     if out.opened > 0:
-        gaps(mech, k, y, out)
+        gaps(mech, k, y.t, y.q, y.v, y.lam, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
+    n_slips = 2 * y.mode.shape[0]
+    opens = out.rate[first - n_slips] if is_open(mech, first - n_slips) else 0.0
     low, f_low = 0.0, max(out.trigger[j], 0.0)
     if out.opened > 0:
-        gaps(mech, k, end, out)
+        gaps(mech, k, end.t, end.q, end.v, end.lam, out)
     triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     high, f_high = h, min(out.trigger[j], 0.0)
     side = 0
     step = h
     left = np.inf
     # where friction ends or begins; loads that set in or bend are found from both sides
-    rubs = first < 2 * y.mode.shape[0] and first % 2 == 0
-    guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and rubs else (-1.0, 0.0)
+    exact = (first < n_slips and first % 2 == 0) or is_open(mech, first - n_slips)
+    guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
+    if opens > 0.0 and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
+        guess, slope = from_touch(st, out, first, h, opens), 0.0
     for i in range(80):
         gap = f_low - f_high
         step = low + (high - low) * (f_low / gap if gap > 0.0 and f_high < 0.0 and f_low > 0.0 else 0.5)
         if i % 8 == 7:
             step = 0.5 * (low + high)
         step = min(max(step, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
-        if inside < 1.0:
+        if inside < 1.0 and not low < guess < inside * high:
             step = inside * high
         elif low < guess < high:
             step = guess
@@ -86,15 +103,17 @@ def locate_trigger(
             f_low = max(out.inner[0, j], 0.0) if low == 0.0 else 0.0
             continue
         value = out.trigger[j]
-        limit = grain(mech, out, j, end)
+        # where a step begins beyond by what `violated` takes for nothing, no shorter one comes nearer
+        limit = grain(mech, out, j, end) * (1.0 if f_low > 0.0 else 10.0)
         if worst >= 0 and worst != j and out.trigger[j] >= -limit:
             j = worst
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
             continue
-        # where a step begins beyond by what `violated` takes for nothing, no shorter one comes nearer
-        if abs(value) <= (limit if f_low > 0.0 else 10.0 * limit) or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
+        if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
-        if j != first or abs(value) > BETTER * left:
+        if is_open(mech, j - n_slips):
+            slope = out.rate[j - n_slips]
+        elif j != first or abs(value) > BETTER * left:
             slope = 0.0
         left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)
         if value < 0.0 or worst >= 0:

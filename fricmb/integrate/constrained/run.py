@@ -9,15 +9,16 @@ import numpy as np
 
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.constrained.bdf_history import Formula, formula_of, no_formula, signals
-from fricmb.integrate.constrained.consistent_start import away, consistent_start
+from fricmb.integrate.constrained.consistent_start import away, check_apart, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
+from fricmb.integrate.constrained.impact import Impacts
 from fricmb.integrate.constrained.impulses import impulse_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
 from fricmb.integrate.constrained.problem_structs import masses, mech_of
 from fricmb.integrate.constrained.recorder import record_of, width
 from fricmb.integrate.constrained.state import State
-from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of, with_open
-from fricmb.integrate.constrained.structure import mechanism_of
+from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of
+from fricmb.integrate.constrained.structure import mechanism_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
@@ -66,6 +67,7 @@ def run_mechanism(
     """
     whole = problem
     if mechanism_of(problem).joints.hands_over.any():
+        check_apart(problem, start)
         problem = with_open(problem, away(problem, start))
     start, notes = consistent_start(problem, start)
     if problem.contacts.knots.size:
@@ -80,15 +82,22 @@ def run_mechanism(
         past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
         limits = steps_of_run(problem, start.t, t_end, tolerance)
         seen = limits.edge, limits.longest
-        go_on = partial(drive, mech, k, w, y, end, before, st, control, out, record, part, *past, *seen)
-        chunks = Chunks(record, "values", "span", "force", "mode", "opened", "after")
+        go_on: Callable[[], int] = partial(
+            drive, mech, k, w, y, end, before, st, control, out, record, part, *past, *seen
+        )  # fmt: skip
+        chunks, impacts = Chunks(record, "values", "span", "force", "mode", "opened", "after"), None
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
         if code == DONE:
             chunks.note_changes(problem.contacts, start, y.mode, y.n)
             _settle(workspace, problem, start, t_end)
+            if mechanism_of(problem).has_impacts:
+                impacts = Impacts(problem, mech, workspace, record, part)
+                code, go_on = impacts.at_start(), impacts.around(go_on)
+        if code == DONE:
             code = chunks.fill(go_on, y, memory, progress)
         chunks.take()
         failure = None if code == DONE else ended()
+        failure = failure or (impacts.failure if impacts is not None else None)
         failure = failure or (failure_text(code, problem, k, y, out) if code not in (DONE, FULL, SLICE_OVER) else None)
         last, counts = end_of(y), control.counts.copy()
     values, span, force, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
@@ -96,8 +105,12 @@ def run_mechanism(
         failure = failure or FAILURES[FAIL_INFINITE]
     notes = (*notes, *_dropped_notes(mechanism_of(problem)), *held_notes(problem, span[:, 0], mode, opened))
     notes = (*notes, *impulse_notes(problem, span, values))
+    transitions = chunks.transitions()
+    if impacts is not None:
+        notes = (*notes, *impacts.log.notes)
+        transitions = impacts.log.transitions(transitions, span[:, 0], opened, last.t)
     return StepTrajectory(
-        whole, span, values, force, mode, opened, after, chunks.transitions(), counters(counts, notes), last, failure,
+        whole, span, values, force, mode, opened, after, transitions, counters(counts, notes), last, failure,
         nodes_of(stages), tolerance.rtol,
     )  # fmt: skip
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from fricmb.integrate.constrained.instants import instants
 from fricmb.integrate.constrained.problem_structs import masses, mech_of
-from fricmb.integrate.constrained.structure import mechanism_of
+from fricmb.integrate.constrained.structure import mechanism_of, with_open
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.output.step_energies import integrate_between, integrate_powers, scale_of
@@ -199,21 +198,13 @@ class StepTrajectory(Trajectory):
         return motion, found[5][0], found[6].T
 
 
-def with_open(problem: Problem, opened: Codes) -> Problem:
-    """The problem with some joints open (n_j,), on arrays of its own."""
-    m = mechanism_of(problem)
-    dropped = m.joints.dropped.copy()
-    dropped[m.joints.row[:-1][opened != 0]] = 2
-    return replace(problem, mechanism=replace(m, joints=replace(m.joints, dropped=dropped)))
-
-
 def complete_open(
     problem: Problem, opened: Codes, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats,
     *, project: bool = False, side: Floats | None = None, still: float | None = None,
 ) -> tuple[Floats, ...]:  # fmt: skip
     """As :func:`complete_at`, ``opened`` (n_t, n_j) saying which joints are open."""
     side = t if side is None else side
-    if not opened.any():
+    if not opened.any() and not mechanism_of(problem).has_impacts:
         return complete_at(problem, t, q, v, z, mode, force, project=project, side=side, still=still)
     patterns, which = np.unique(opened, axis=0, return_inverse=True)
     found: list[Floats] = []

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fricmb.integrate.csr import Csr
-from fricmb.integrate.mechanism import Entries, Joints, Mechanism, Places
+from fricmb.integrate.mechanism import APART, Entries, Joints, Mechanism, Places
 from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import Ints, Problem, Templates
+from fricmb.integrate.problem import Codes, Ints, Problem, Templates
 
 
 def mechanism_of(problem: Problem) -> Mechanism:
@@ -61,3 +63,12 @@ def _slip_forms(problem: Problem) -> Templates:
 
 def _starts(counts: Ints) -> Ints:
     return np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+
+
+def with_open(problem: Problem, opened: Codes) -> Problem:
+    """The problem with some of the joints that may open open (n_j,), the others held; on arrays of its own."""
+    m = mechanism_of(problem)
+    dropped, may = m.joints.dropped.copy(), m.joints.hands_over != 0
+    rows = m.joints.row[:-1][may]
+    dropped[rows] = np.where(opened[may] != 0, APART, np.where(dropped[rows] == APART, 0, dropped[rows]))
+    return replace(problem, mechanism=replace(m, joints=replace(m.joints, dropped=dropped)))

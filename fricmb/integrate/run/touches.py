@@ -25,7 +25,7 @@ from fricmb.integrate.problem import (
     Ints,
     Problem,
 )
-from fricmb.integrate.trajectory import MotionSamples, Samples, Trajectory, Transitions
+from fricmb.integrate.trajectory import MotionSamples, Samples, Trajectory
 
 _Samples = TypeVar("_Samples", bound=MotionSamples)
 
@@ -47,9 +47,8 @@ class WithoutTouches(Trajectory):
         for c, first, last in zip(contact, begin, end, strict=True):
             t, which = held.transitions.t, held.transitions.contact
             kept &= (which != c) | (t < first) | (t > last)
-        self.transitions = Transitions(
-            t=held.transitions.t[kept], contact=held.transitions.contact[kept], kind=held.transitions.kind[kept]
-        )
+        t, which, kind = (getattr(held.transitions, name)[kept] for name in ("t", "contact", "kind"))
+        self.transitions = replace(held.transitions, t=t, contact=which, kind=kind)
         self.counters, self.end, self.failure = held.counters, held.end, held.failure
         self.moving, self.instead, self.of_scene = held.moving, held.instead, held.of_scene
 
@@ -117,7 +116,7 @@ def without_touches(trajectory: Trajectory, row: Ints, continuous: NDArray[np.bo
     found = [
         touch
         for c in np.unique(trajectory.transitions.contact).tolist()
-        if continuous[c]
+        if c < continuous.size and continuous[c]
         for touch in _candidates(trajectory, c, rtol)
     ]
     if not found:

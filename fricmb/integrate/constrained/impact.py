@@ -1,0 +1,239 @@
+"""Impacts of a run: what is hit, velocities behind it, what is held from there on, and when bounces have come to rest.
+
+The loop of a run ends with FAIL_HIT where the distance of an open joint has come to 0.  Of joints that are rigid the
+impact is computed here, and the loop goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.constrained.impact_law import Answer, Hit, solve_impact
+from fricmb.integrate.constrained.impact_log import ImpactLog, Outcome
+from fricmb.integrate.constrained.impact_rest import Bounces, Hop, Leaving
+from fricmb.integrate.constrained.impact_resume import resume, tell_changes
+from fricmb.integrate.constrained.impact_surfaces import Surfaces
+from fricmb.integrate.constrained.impulse_matrix import ImpulseMatrix
+from fricmb.integrate.mechanism import APART
+from fricmb.integrate.problem import NORMAL_REACTION, Codes, Floats, Ints, Problem
+from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MODES, SLICE_OVER
+
+#: Energy that an impact may bring by round-off, beside the kinetic energy.
+GAIN = 1e-11
+#: Impacts at one instant, for each contact, after which the run ends.
+PILE = 8
+
+
+class Impacts:
+    """The impacts of one run.
+
+    Attributes
+    ----------
+    failure : str or None
+        Why the run cannot go on.
+    log : ImpactLog
+    surfaces : Surfaces
+    """
+
+    def __init__(self, problem: Problem, mech: Any, workspace: Any, record: Any, part: Codes) -> None:
+        self.problem = problem
+        self.failure: str | None = None
+        self.surfaces = Surfaces(problem, mech, workspace)
+        self.joints = self.surfaces.joints
+        self.log = ImpactLog(problem, self.joints)
+        self._mech, self._workspace, self._record, self._part = mech, workspace, record, part
+        self._inverse = ImpulseMatrix(self.surfaces.mechanism)
+        self._bounces = Bounces(len(self.joints.port), float(workspace.y.t), float(workspace.control.rtol))
+        self._last, self._count = -np.inf, 0
+
+    def around(self, drive: Callable[[], int]) -> Callable[[], int]:
+        """The loop of the run with impacts in it."""
+
+        def go_on() -> int:
+            code = drive()
+            if code != FAIL_HIT:
+                return code
+            code = self.go_through()
+            return SLICE_OVER if code == DONE else code
+
+        return go_on
+
+    def at_start(self) -> int:
+        """Impacts at the first instant: of what touches and approaches."""
+        s = self.surfaces
+        s.look()
+        hit = s.open & s.rigid & (s.gap <= 10.0 * s.noise) & (s.rates(self._workspace.y.v) < -s.still())
+        return self.go_through() if hit.any() else DONE
+
+    def go_through(self) -> int:
+        """The impact at the present state; DONE, or why the run ends."""
+        s, y, before = self.surfaces, self._workspace.y, self._workspace.before
+        s.look()
+        rate = s.rates(y.v)
+        touched = s.touched(rate)
+        if (touched & ~s.rigid).any() or not touched.any() or self._piles_up(float(y.t), int(touched.sum())):
+            return FAIL_HIT
+        members, falls = np.flatnonzero(touched | s.held), s.pressed()
+        opened = self.joints.dropped.copy()
+        _copy(y, before)
+        e = self.joints.restitution[members].copy()
+        code, outcome = self._apply(members, e, touched)
+        if code != DONE or outcome is None:
+            return code
+        hops = self._hops(members, touched, rate, outcome.answer, falls)
+        ends = np.array([hop is not None and hop.ends for hop in hops])
+        if ends.any():
+            _copy(before, y)
+            self.joints.dropped[:] = opened
+            e[ends] = 0.0
+            code, outcome = self._apply(members, e, touched)
+            if code != DONE or outcome is None:
+                return code
+        tell_changes(self._mech, y, before, self._record)
+        rested = (touched & s.held)[members].tolist()
+        self.log.add(float(y.t), members, rested, -rate[members], outcome, hops)
+        return DONE
+
+    def _piles_up(self, t: float, count: int) -> bool:
+        """Whether there is no end of impacts at one instant."""
+        self._count = self._count + 1 if t - self._last <= 8.0 * EPS * abs(t) else 0
+        self._last = t
+        if self._count > PILE * (count + 1):
+            self.failure = (
+                f"impacts pile up at one instant ({self._count} at t = {t:.10g}): several contacts come to rest by"
+                " impacts in turn, and rest is dated for single contacts alone"
+            )
+        return self.failure is not None
+
+    # -- velocities behind --------------------------------------------------------------------------------------
+    def _apply(self, members: Ints, e: Floats, touched: Any) -> tuple[int, Outcome | None]:
+        """Velocities, modes and reactions behind the impact with coefficients e of the members."""
+        s, y = self.surfaces, self._workspace.y
+        hit, push, reaction, held = self._hit(members, e)
+        answer = solve_impact(hit)
+        if answer is None:
+            names = ", ".join(repr(self.joints.names[j]) for j in members)
+            self.failure = f"no impulses satisfy the law of impact at t = {float(y.t):.10g} for {names} together"
+            return FAIL_HIT, None
+        outcome = Outcome(
+            answer=answer, tangential=hit.tangential, lost=-0.5 * answer.impulse * (answer.rate + hit.rate)
+        )
+        if not self._is_sound(outcome, held, reaction):
+            return FAIL_LOST, None
+        change = push @ answer.impulse
+        fed = float(np.sum(change * self._inverse.momentum(y.v + 0.5 * change)))
+        y.v[:] += change
+        lost = float(outcome.lost.sum())
+        y.work[-2] += lost
+        y.work[-1] += fed + lost
+        leaves = answer.rate[: len(members)] > s.still()[members]
+        for j, apart in zip(members.tolist(), leaves.tolist(), strict=True):
+            s.set_open(j, apart)
+        code = self._resume([j for j in members.tolist() if touched[j]])
+        return (self._hold_again(members) if code == DONE else code), outcome
+
+    def _hit(self, members: Ints, e: Floats) -> tuple[Hit, Floats, Floats, Ints]:
+        """The problem of the impact, velocities and reactions (of rows held both ways) by its unit impulses."""
+        s, y, mu = self.surfaces, self._workspace.y, self._mu(members)
+        port, row = self.joints.port[members], self.problem.contacts.row
+        along = np.flatnonzero((port >= 0) & (mu > 0.0))
+        slip = row[port[along]]
+        A = np.concatenate([s.G[s.first[members]], s.W[slip]])
+        before = A @ y.v + np.concatenate([s.G0[s.first[members]], s.W0[slip]])
+        held = self._held_both_ways()
+        push, reaction = self._inverse.answers(s.G[held], A)
+        tangential = np.full(len(members), -1)
+        tangential[along] = len(members) + np.arange(along.size)
+        hit = Hit(
+            D=A @ push, rate=before, normal=np.arange(len(members)), tangential=tangential, e=e,
+            e_t=self.joints.tangential[members], mu=mu,
+        )  # fmt: skip
+        return hit, push, reaction, held
+
+    def _mu(self, members: Ints) -> Floats:
+        """Coefficients of friction in impacts."""
+        contacts, port, own = self.problem.contacts, self.joints.port[members], self.joints.mu_impact[members]
+        if not contacts.mu_0.size:
+            return np.zeros(len(members))
+        found: Floats = np.where(port < 0, 0.0, np.where(np.isnan(own), contacts.mu_0[np.maximum(port, 0)], own))
+        return found
+
+    def _held_both_ways(self) -> Ints:
+        """Rows that hold in an impact both ways: of joints that are there and not rigid."""
+        owner = np.searchsorted(self.joints.row, np.arange(len(self.joints.dropped)), side="right") - 1
+        found: Ints = np.flatnonzero((self.joints.dropped == 0) & ~self.surfaces.rigid[owner])
+        return found
+
+    def _is_sound(self, outcome: Outcome, held: Ints, reaction: Floats) -> bool:
+        """Whether no energy is gained, and nothing that only pushes would have to pull; ``failure`` says so if not."""
+        y, lost = self._workspace.y, outcome.lost
+        scale = 0.5 * float(np.sum(y.v * self._inverse.momentum(y.v))) + float(np.abs(lost).sum())
+        if lost.sum() < -GAIN * scale:
+            self.failure = (
+                f"the impact at t = {float(y.t):.10g} would gain the energy {-lost.sum():.3g}: Newton's law of"
+                " impact does with this friction; with tangential_restitution equal to restitution it never does"
+            )
+            return False
+        owner = np.searchsorted(self.joints.row, held, side="right") - 1
+        impulse = reaction @ outcome.answer.impulse
+        wrong = (self.joints.one_sided[owner] != 0) & (impulse < -1e-9 * np.abs(impulse).max(initial=0.0))
+        if wrong.any():
+            name = self.joints.names[owner[int(np.argmax(wrong))]]
+            self.failure = f"contact of {name!r} is lost in an impact: it would have to pull (surfaces only push)"
+            return False
+        dry = (self.joints.port[owner] >= 0) & (np.abs(impulse) > 0.0)
+        if dry.any():
+            ports = self.joints.port[owner[dry]]
+            rubs = ports[self.problem.contacts.normal[ports] == NORMAL_REACTION]
+            self.log.bear_impulses([self.problem.contact_names[c] for c in rubs.tolist()])
+        return True
+
+    def _resume(self, members: list[int]) -> int:
+        """Modes and reactions of what is held; ports of ``members`` that are held are so from now on."""
+        ws, fresh = self._workspace, np.zeros(self.problem.n_c, np.int8)
+        for j in members:
+            if self.joints.port[j] >= 0 and not self.surfaces.open[j]:
+                fresh[self.joints.port[j]] = 1
+        ws.out.opened = int((self.joints.dropped == APART).sum())
+        return int(resume(self._mech, ws.k, ws.w, ws.y, ws.control, ws.out, self._part, fresh))
+
+    def _hold_again(self, members: Ints) -> int:
+        """Hold what rests on its surface and would fall into it, since something else has let go."""
+        for _ in range(len(members) + 1):
+            falls = self.surfaces.falling(members, self.surfaces.rates(self._workspace.y.v))
+            if not falls.size:
+                return DONE
+            self.surfaces.set_open(int(falls[0]), False)
+            code = self._resume([int(falls[0])])
+            if code != DONE:
+                return code
+        return FAIL_MODES
+
+    def _hops(self, members: Ints, touched: Any, rate: Floats, answer: Answer, falls: Floats) -> list[Hop | None]:
+        """The bounce that each member begins, where it does; ``falls``: accelerations before the impact."""
+        s, t = self.surfaces, float(self._workspace.y.t)
+        rises, reach, hops = s.pressed(), s.reach(), []
+        for i, j in enumerate(members.tolist()):
+            speed, leaves = float(answer.rate[i]), bool(touched[j] and s.open[j] and answer.impulse[i] > 0.0)
+            hops.append(
+                self._bounces.after(
+                    Leaving(
+                        joint=j, t=t, speed=speed, e=float(self.joints.restitution[j]), rises=float(rises[j]),
+                        falls=float(falls[j]), size=max(float(reach[j]), -float(rate[j])), noise=float(s.noise[j]),
+                    )
+                )
+                if leaves and speed > 0.0
+                else None
+            )  # fmt: skip
+        return hops
+
+
+def _copy(source: Any, target: Any) -> None:
+    """Put one state into another."""
+    target.t = source.t
+    for name in ("q", "v", "a", "z", "lam", "F", "N", "g", "ga", "n", "zd", "mode", "work", "rate"):
+        getattr(target, name)[...] = getattr(source, name)

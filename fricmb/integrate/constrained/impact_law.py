@@ -1,0 +1,191 @@
+"""The law of impact: velocities behind an impact of all that is hit or held, with friction over its cone.
+
+Newton's law in the form of Moreau (J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, in
+Nonsmooth Mechanics and Applications, Springer 1988): with ``xi = gamma+ + e gamma-`` in every direction,
+
+    0 <= xi_N  complementary to  Lambda_N >= 0,      -Lambda_T in mu Lambda_N Sgn(xi_T),
+    gamma+ = gamma- + D Lambda,                      D = W M^-1 W^T on the velocities that joints allow.
+
+What is held has gamma_N- = 0, so that its own e does not act.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from fricmb.integrate.problem import Floats, Ints
+
+#: What a contact does in an impact: takes no impulse; takes one without slip, or with slip one way or the other.
+FREE, STICKS, FORWARD, BACKWARD = 0, 1, 2, -2
+#: Round-off of velocities and impulses beside the largest.
+ROUND_OFF = 1e-11
+#: So many combinations are all tried, and other solutions are counted; of more the first that fits is taken.
+ALL, MOST = 256, 20000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hit:
+    """What takes part in an impact: k contacts over r rows.
+
+    Attributes
+    ----------
+    D : (r, r)
+        Change of the rates of the rows by unit impulses along them.
+    rate : (r,)
+        Rates before.
+    normal, tangential : (k,) int64
+        Rows of each contact; -1: no friction.
+    e, e_t, mu : (k,)
+        Coefficients of restitution and friction.
+    """
+
+    D: Floats
+    rate: Floats
+    normal: Ints
+    tangential: Ints
+    e: Floats
+    e_t: Floats
+    mu: Floats
+
+    @property
+    def target(self) -> Floats:
+        """What ``gamma+`` is less where ``xi`` vanishes (r,): ``-e gamma-``, of what leaves already 0."""
+        found = np.zeros(self.rate.size)
+        found[self.normal] = -self.e * np.minimum(self.rate[self.normal], 0.0)
+        some = self.tangential >= 0
+        found[self.tangential[some]] = -self.e_t[some] * self.rate[self.tangential[some]]
+        return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """Impulses (r,), rates behind the impact (r,), and whether others fit as well."""
+
+    impulse: Floats
+    rate: Floats
+    others: bool
+
+
+def solve_impact(hit: Hit) -> Answer | None:
+    """The impulses; None where none fit (or where there are too many contacts to try all combinations)."""
+    found: list[Answer] = []
+    size = float(np.abs(hit.rate).max(initial=0.0))
+    count = int(np.prod([2.0 if t < 0 else 4.0 for t in hit.tangential]))
+    if count > MOST:
+        return _pivoted(hit)
+    for doing in _combinations(hit):
+        answer = _try(hit, doing, size)
+        if answer is None:
+            continue
+        if all(np.abs(answer.rate - other.rate).max() > 1e-6 * size for other in found):
+            found.append(answer)
+        if count > ALL:
+            break
+    if not found:
+        return None
+    return Answer(impulse=found[0].impulse, rate=found[0].rate, others=len(found) > 1)
+
+
+def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
+    """What each contact may do; first that all take an impulse and stick."""
+    return product(*((STICKS, FREE) if t < 0 else (STICKS, FORWARD, BACKWARD, FREE) for t in hit.tangential))
+
+
+def _try(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
+    """The impulses of one combination, where they contradict nothing."""
+    r, columns, rows = hit.rate.size, [], []
+    for i, what in enumerate(doing):
+        if what == FREE:
+            continue
+        column = np.zeros(r)
+        column[hit.normal[i]] = 1.0
+        if what in (FORWARD, BACKWARD):
+            column[hit.tangential[i]] = -hit.mu[i] * np.sign(what)
+        columns.append(column)
+        rows.append(hit.normal[i])
+        if what == STICKS and hit.tangential[i] >= 0:
+            along = np.zeros(r)
+            along[hit.tangential[i]] = 1.0
+            columns.append(along)
+            rows.append(hit.tangential[i])
+    target, impulse = hit.target, np.zeros(r)
+    if rows:
+        B = np.stack(columns, axis=1)
+        A = hit.D[rows] @ B
+        b = target[rows] - hit.rate[rows]
+        u = _solution(A, b, size)
+        if u is None:
+            return None
+        impulse = B @ u
+    after = hit.rate + hit.D @ impulse
+    return _checked(hit, doing, impulse, after, target, size)
+
+
+def _solution(A: Floats, b: Floats, size: float) -> Floats | None:
+    """Of ``A u = b``, of least norm where A is singular; None where there is none."""
+    scale = np.sqrt(np.maximum(np.abs(np.diag(A)), 1e-300))
+    try:
+        if np.linalg.cond(A / scale[:, None] / scale) < 1e10:
+            return np.asarray(np.linalg.solve(A, b), dtype=float)
+    except np.linalg.LinAlgError:
+        pass
+    u = np.asarray(np.linalg.lstsq(A / scale[:, None], b / scale, rcond=1e-11)[0], dtype=float)
+    return u if np.abs(A @ u - b).max() <= 1e-9 * size else None
+
+
+def _checked(
+    hit: Hit, doing: tuple[int, ...], impulse: Floats, after: Floats, target: Floats, size: float
+) -> Answer | None:
+    """The answer, or None where it contradicts the law."""
+    xi, small = after - target, ROUND_OFF * size
+    force = ROUND_OFF * float(np.abs(impulse).max(initial=0.0))
+    for i, what in enumerate(doing):
+        a, b = int(hit.normal[i]), int(hit.tangential[i])
+        if what == FREE:
+            if xi[a] < -small:
+                return None
+            continue
+        if impulse[a] < -force:
+            return None
+        if b < 0:
+            continue
+        if what == STICKS and abs(impulse[b]) > hit.mu[i] * impulse[a] + force:
+            return None
+        if what in (FORWARD, BACKWARD) and xi[b] * np.sign(what) < -small:
+            return None
+    return Answer(impulse=impulse, rate=after, others=False)
+
+
+def _pivoted(hit: Hit) -> Answer | None:
+    """Without friction, by principal pivots of least index (K. G. Murty, Opsearch 11 (1974) 103): any number."""
+    if (hit.tangential >= 0).any():
+        return None
+    size = float(np.abs(hit.rate).max(initial=0.0))
+    doing = [FREE] * hit.normal.size
+    for _ in range(50 * hit.normal.size):
+        answer = _try(hit, tuple(doing), size)
+        if answer is not None:
+            return answer
+        wrong = _first_wrong(hit, doing, size)
+        if wrong is None:
+            return None
+        doing[wrong] = STICKS if doing[wrong] == FREE else FREE
+    return None
+
+
+def _first_wrong(hit: Hit, doing: list[int], size: float) -> int | None:
+    """The first contact that contradicts what it does."""
+    on = [i for i, what in enumerate(doing) if what != FREE]
+    rows, target, impulse = hit.normal[on], hit.target, np.zeros(hit.rate.size)
+    if on:
+        impulse[rows] = np.linalg.lstsq(hit.D[np.ix_(rows, rows)], target[rows] - hit.rate[rows], rcond=1e-11)[0]
+    xi = hit.rate + hit.D @ impulse - target
+    for i, what in enumerate(doing):
+        a = int(hit.normal[i])
+        if (impulse[a] < 0.0) if what != FREE else (xi[a] < -ROUND_OFF * size):
+            return i
+    return None

@@ -1,0 +1,103 @@
+"""When bounces come to rest: infinitely many in a finite time, dated from the last of them that is computed.
+
+A contact leaves with speed v and is slowed by ``rises``, then falls back by ``falls`` (accelerations towards the
+surface; they differ where friction turns round on the way, or a force depends on velocity).  With constant ones hops
+shrink by ``e sqrt(falls/rises)`` and all of them take
+
+    T = (v/rises) (1 + sqrt(rises/falls)) / (1 - e sqrt(falls/rises)),
+
+with equal ones ``2 v/(a (1 - e))``.  Where the acceleration changes at a rate j, ``T - (j/3a) T^2`` is left, up to
+terms of the third order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.breakpoints import EPS
+
+#: Bounces end when what is left of them is less than this part of the time in which the acceleration would bring about
+#: the largest speed so far: earlier the dating errs, later round-off of positions does.
+SHORT = 3e-5
+#: Part by which the acceleration may change meanwhile.
+CALM = 3e-3
+#: Roundings of the time by which an impact is located.
+LOCATED = 16.0
+#: Height of a hop beside the round-off of distances, below which there is none.
+SEEN = 1e3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hop:
+    """A bounce: whether bounces ``end`` with it; then the time ``left`` until rest, and a ``bound`` of its error."""
+
+    ends: bool
+    left: float = 0.0
+    bound: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leaving:
+    """A contact behind an impact.
+
+    Attributes
+    ----------
+    joint : int
+    t : float
+    speed : float
+        With which it leaves.
+    e : float
+        Coefficient of restitution.
+    rises, falls : float
+        Accelerations towards the surface on the way up and on the way back.
+    size : float
+        Largest speed so far.
+    noise : float
+        Round-off of the distance.
+    """
+
+    joint: int
+    t: float
+    speed: float
+    e: float
+    rises: float
+    falls: float
+    size: float
+    noise: float
+
+
+class Bounces:
+    """What is known of the last impact of each of n joints in a run from ``t_start`` with a tolerance ``rtol``."""
+
+    def __init__(self, n: int, t_start: float, rtol: float) -> None:
+        self._t_start, self._rtol = t_start, rtol
+        self._t: Floats = np.full(n, -np.inf)
+        self._falls: Floats = np.zeros(n)
+        self._count = np.zeros(n, np.int64)
+
+    def after(self, leaving: Leaving) -> Hop:
+        """The bounce that begins."""
+        j, since = leaving.joint, leaving.t - self._t[leaving.joint]
+        rate = (leaving.falls - self._falls[j]) / since if np.isfinite(since) and since > 0.0 else np.inf
+        self._t[j], self._falls[j] = leaving.t, leaving.falls
+        self._count[j] += 1
+        if not (leaving.rises > 0.0 and leaving.falls > 0.0):
+            return Hop(ends=False)
+        ratio = leaving.e * np.sqrt(leaving.falls / leaving.rises)
+        if not ratio < 1.0:
+            return Hop(ends=False)
+        up = leaving.speed / leaving.rises
+        T = float(up * (1.0 + np.sqrt(leaving.rises / leaving.falls)) / (1.0 - ratio))
+        a = leaving.falls
+        lost = leaving.speed * up / 2.0 < SEEN * leaving.noise or 64.0 * EPS * abs(leaving.t) >= T
+        calm = abs(rate) * T <= CALM * a
+        if not lost and not (SHORT * leaving.size / a >= T and calm):
+            return Hop(ends=False)
+        change = rate * T / a if calm else CALM
+        left = T * (1.0 - change / 3.0)
+        bound = T * change * change + leaving.noise / leaving.speed / (1.0 - ratio) + (T if lost and not calm else 0.0)
+        bound += LOCATED * EPS * abs(leaving.t) * self._count[j] + self._rtol * (leaving.t - self._t_start)
+        return Hop(ends=True, left=float(left), bound=float(bound))

@@ -1,0 +1,110 @@
+"""Rigid surfaces at an instant: which are open, distances and their rates, which are touched."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.constrained.impact_rows import gap_accelerations, impact_rows
+from fricmb.integrate.constrained.structure import mechanism_of
+from fricmb.integrate.mechanism import APART, RIGID
+from fricmb.integrate.problem import OPEN, Floats, Ints, Problem
+from fricmb.integrate.run.breakpoints import EPS
+
+#: Times to contact that are the same, in roundings of the time.
+SAME = 64.0 * EPS
+#: Speed that is none, and acceleration, beside what velocities so far and accelerations now could bring.
+STILL, SLIGHT = 1e-12, 1e-9
+
+
+class Surfaces:
+    """Rigid joints of a run, looked at at its present state (``look`` anew where positions have changed).
+
+    Attributes
+    ----------
+    G, G0 : (m, n), (m,)
+        Rates of constraints are ``G v + G0``, those of open joints as well.
+    W, W0 : (m_p, n), (m_p,)
+        Slip velocities are ``W v + W0``.
+    gap, noise : (n_j,)
+        Distances and their round-off.
+    first : (n_j,) int64
+        Row of each joint.
+    rigid : (n_j,) bool
+    """
+
+    def __init__(self, problem: Problem, mech: Any, workspace: Any) -> None:
+        self.problem, self.mechanism = problem, mechanism_of(problem)
+        self.joints = self.mechanism.joints
+        self.rigid = self.joints.hands_over == RIGID
+        self.first: Ints = np.minimum(self.joints.row[:-1], max(self.mechanism.n_rows - 1, 0))
+        self._mech, self._workspace = mech, workspace
+
+    def look(self) -> None:
+        """Rows and distances at the present positions."""
+        n, m, m_p, n_j = self.problem.n, self.mechanism.n_rows, self.problem.m, len(self.joints.port)
+        self.G, self.G0, self.W, self.W0 = np.zeros((m, n)), np.zeros(m), np.zeros((m_p, n)), np.zeros(m_p)
+        self.gap, self.noise = np.zeros(n_j), np.zeros(n_j)
+        impact_rows(
+            self._mech, self._workspace.k, self._workspace.y, np.zeros(n), self.G, self.G0, self.W, self.W0, self.gap,
+            self.noise, np.zeros(m), np.zeros(m_p),
+        )  # fmt: skip
+
+    @property
+    def open(self) -> Any:
+        """Joints that are open (n_j,)."""
+        return (self.joints.hands_over != 0) & (self.joints.dropped[self.first] == APART)
+
+    @property
+    def held(self) -> Any:
+        """Rigid joints that are held (n_j,)."""
+        return self.rigid & ~self.open
+
+    def rates(self, v: Floats) -> Floats:
+        """Rates of distances (n_j,)."""
+        found: Floats = (self.G @ v + self.G0)[self.first]
+        return found
+
+    def reach(self) -> Floats:
+        """Rates of distances (n_j,) that velocities so far could bring."""
+        found: Floats = np.abs(self.G[self.first]) @ self._workspace.control.v + np.abs(self.G0[self.first])
+        return found
+
+    def still(self) -> Floats:
+        """Rates of distances (n_j,) that are none."""
+        return STILL * self.reach()
+
+    def touched(self, rate: Floats) -> Any:
+        """Open joints (n_j,) that are hit now, or touch: at the same time by the time to contact, not the distance."""
+        opened = self.open
+        near = 10.0 * self.noise + SAME * abs(float(self._workspace.y.t)) * np.abs(rate)
+        found = opened & (self.gap <= near)
+        comes = np.flatnonzero(opened & (rate < 0.0))
+        if comes.size:
+            found[comes[int(np.argmin(self.gap[comes] / -rate[comes]))]] = True
+        return found
+
+    def pressed(self) -> Floats:
+        """Accelerations (n_j,) towards the surfaces, with those of the present state."""
+        found = np.zeros(len(self.first))
+        gap_accelerations(self._mech, self._workspace.k, self._workspace.y, found)
+        return -found
+
+    def falling(self, members: Ints, rate: Floats) -> Ints:
+        """Open members that are at rest on their surface and would fall into it, the worst first."""
+        y, pressed = self._workspace.y, self.pressed()
+        size = np.abs(self.G[self.first]) @ np.abs(y.a)
+        found = self.open & (np.abs(rate) <= self.still()) & (pressed > SLIGHT * size) & (self.gap <= 10.0 * self.noise)
+        mine = members[found[members]]
+        return np.asarray(mine[np.argsort(-pressed[mine])], dtype=np.int64)
+
+    def set_open(self, joint: int, apart: bool) -> None:
+        """Mark a joint as open, its reaction and friction 0; or as held."""
+        y, row, c = self._workspace.y, self.problem.contacts.row, int(self.joints.port[joint])
+        self.joints.dropped[self.first[joint]] = APART if apart else 0
+        if apart:
+            y.lam[self.first[joint]] = 0.0
+            if c >= 0:
+                y.mode[c] = OPEN
+                y.F[row[c] : row[c + 1]] = 0.0
