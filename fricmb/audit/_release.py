@@ -17,6 +17,8 @@ from fricmb.integrate.problem import Floats
 MOST = 400
 #: A difference over this share of the time scale stands for a derivative.
 _STEP = 1e-5
+#: Least share of the time itself for that: beside it a first step of a run may be too short to be told.
+_LEAST = 1e-9
 #: Singular values this small beside 1 are 0; sides of the pyramid for a cone, rounds in which loads come in anew.
 _RANK, _SIDES, _ROUNDS = 1e-9, 64, 6
 
@@ -73,7 +75,7 @@ def held_together(statements: Statements, moment: Moment, held: Sequence[int], h
     for at, part in statements.mass_matrices:
         M[np.ix_(at, at)] += part if isinstance(part, np.ndarray) else part.toarray()
     W = _matrix(rows, n, 0)
-    step = _STEP * h
+    step = max(_STEP * h, _LEAST * abs(float(moment.t[0])))
     ahead = Moment(**{**_fields(free), "t": free.t + step, "q": free.q + step * free.v})
     drift = (_rates(statements.found(ahead), joints, held) - _rates(found, joints, held))[:, 0] / step
     solved = np.linalg.solve(M, np.column_stack([found.force[:, 0], W.T]))

@@ -81,6 +81,36 @@ def links(n: int) -> fm.Scene:
     return fm.Scene(f"chain of {n} links", [*bars, *pins, fm.Gravity("weight")])
 
 
+#: Of the rope on half a drum: coefficient, tension of the end that holds, stiffness of the whole, its mass.
+_MU, _HELD, _STIFF, _MASS = 0.5, 10.0, 1e5, 0.1
+
+
+def capstan(n: int) -> fm.Scene:
+    """A rope on half a drum, pulled at one end by 10 + 10 t: n masses and springs; 1: the part.
+
+    The contact of a mass is under the tension times the angle by which it turns.
+    """
+    if n == 1:
+        a, b = (fm.Body(name, mass=_MASS / 2) for name in ("a", "b"))
+        pulls = [
+            fm.Force("hold", a, axis="x", value=_HELD), fm.Force("pull", b, axis="x", value=_HELD + 10.0 * fm.t),
+        ]  # fmt: skip
+        rope = fm.Rope("rope", (a, b), axes="xx", angle=math.pi, friction=_MU)
+        return fm.Scene("rope on half a drum", [a, b, *pulls, rope])
+    k, mass, turn = _STIFF * n, _MASS / n, 2 * math.sin(math.pi / n / 2)
+    bits = [fm.Body(f"p{i}", mass=mass) for i in range(n)]
+    x = [fm.coordinate(f"p{i}.x") for i in range(n)]
+    tension = [_HELD, *(_HELD + k * (x[i + 1] - x[i]) for i in range(n - 1)), _HELD + 10.0 * fm.t]
+    parts: list[Any] = [*bits, fm.Force("pull", bits[-1], axis="x", value=10.0 * fm.t)]
+    for i in range(n):
+        N = turn * (tension[i] + tension[i + 1]) / 2
+        parts.append(fm.Contact(f"c{i}", bits[i], law=fm.laws.Coulomb(mu_s=_MU), normal_force=N, axes="x"))
+    for i in range(n - 1):
+        parts.append(fm.Spring(f"s{i}", bits[i], bits[i + 1], axis="x", stiffness=k))
+        parts.append(fm.Damper(f"d{i}", bits[i], bits[i + 1], axis="x", damping=0.1 * math.sqrt(k * mass)))
+    return fm.Scene(f"rope of {n} masses on half a drum", parts)
+
+
 SIZES = (
     SizeCase(
         name="chain", title="chain of n blocks on a belt, t = 20", build=models.stick_slip_chain, t_end=20.0,
@@ -98,6 +128,10 @@ SIZES = (
         name="links", title="open chain of n pinned links, one step", build=links, t_end=0.5,
         sizes=(6, 12, 25, 50, 100, 200, 400), per_step=True,
     ),
+    SizeCase(
+        name="capstan", title="rope on half a drum pulled until it slips: one part (1), n masses and springs",
+        build=capstan, t_end=4.2, sizes=(1, 4, 10, 30),
+    ),
 )  # fmt: skip
 
 
@@ -105,6 +139,8 @@ def size_methods(case: SizeCase) -> list[str]:
     """Integrators of variable step, and CVODE for the chain; for grids the one that is made for large scenes."""
     if case.name == "links":
         return ["auto", "bdf"]
+    if case.name == "capstan":
+        return ["auto"]
     if case.name == "grid":
         return ["taylor"]
     own = ["auto", *(name for name, kind in fm.integrators.items() if kind.adaptive)]

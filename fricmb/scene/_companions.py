@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from fricmb.scene._guide_friction import GuideFriction
 from fricmb.scene._joint import Joint
+from fricmb.scene._joints import Prismatic
 
 
 def with_companions(parts: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -34,6 +36,16 @@ def keeps_companions(old: Any, new: Any) -> bool:
         return True
     before, after = old.companions(), new.companions()
     return len(before) == len(after) and all(_alike(*pair) for pair in zip(before, after, strict=True))
+
+
+def with_guides(parts: tuple[Any, ...], changed: dict[str, Any]) -> dict[str, Any]:
+    """Changed parts, and behind guides whose angle is another the friction along them."""
+    turned = {name: part.angle for name, part in changed.items() if isinstance(part, Prismatic)}
+    if not turned:
+        return changed
+    along = [part for part in parts if isinstance(part, GuideFriction) and part.guide in turned]
+    follow = {part.name: replace(part, angle=turned[part.guide]) for part in along if part.name not in changed}
+    return {**changed, **follow}
 
 
 def _kept(old: Any, new: Any) -> Any:

@@ -9,6 +9,8 @@ from fricmb.errors import SceneError
 from fricmb.laws import Coulomb, FrictionLaw
 from fricmb.scene._axes import Direction, check_axis
 from fricmb.scene._contact import Contact
+from fricmb.scene._guide_friction import GuideFriction, along_guide
+from fricmb.scene._joints import Prismatic
 from fricmb.scene._one_coordinate import ANGLE, one_coordinate
 from fricmb.scene._part import GROUND, End, Part
 from fricmb.scene._turning import relative_angle
@@ -48,9 +50,10 @@ class DryFriction(Contact):
         Unique in a scene, without dots.
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
-    axis : "x", "y", "z", "angle", tuple of float, or Revolute
+    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
         Coordinate of a less that of b: along a letter or a direction tuple; "angle" of bodies that turn in the plane.
-        A pin stands for the angle of its bodies.
+        A pin stands for the angle of its bodies, a guide for the way along its line, which may turn: the part is a
+        :class:`GuideFriction` then, whose law is ``"dry.friction.mu_s"`` among the parameters.
     static : float, Parameter or expression of parameters
         Force (torque) that breaks away, >= 0.
     kinetic : float, Parameter or expression of parameters, optional
@@ -95,6 +98,12 @@ class DryFriction(Contact):
     >>> [event.kind for event in sol.events]
     ['reversal', 'stick']
     """
+
+    def __new__(cls, *arguments: Any, axis: Any = None, **given: Any) -> Any:
+        """Along a guide of the plane a :class:`GuideFriction`: its line may turn."""
+        if not isinstance(axis, Prismatic):
+            return super().__new__(cls)
+        return _on_guide(cls, axis, *arguments, **given)
 
     def __init__(
         self,
@@ -158,3 +167,16 @@ class DryFriction(Contact):
         if axis == ANGLE:
             return Direction(ANGLE, ((ANGLE, 1.0),), relative_angle(self, self.a, self.b))
         return super()._direction(axis, label)
+
+
+def _on_guide(
+    cls: type[DryFriction], guide: Prismatic, name: str, a: End, b: End = GROUND, *, static: Any = None,
+    kinetic: Any = None, law: FrictionLaw | None = None, normal_force: Any = 1.0, slide: Any = None,
+) -> GuideFriction:  # fmt: skip
+    """As the arguments of :class:`DryFriction` say."""
+    part = object.__new__(cls)
+    part._set("name", name)
+    if slide is not None:
+        part._refuse("slide", slide, "left out along a guide")
+    load = part._number("normal_force", normal_force, above=0.0)
+    return along_guide(part, a, b, guide, law_of_limits(part, static, kinetic, law), load)

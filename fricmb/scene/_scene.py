@@ -15,7 +15,7 @@ from fricmb.errors import SceneError, shown, unknown_name
 from fricmb.scene import _parameters
 from fricmb.scene._bodies import Body, Driven
 from fricmb.scene._check import check_scene
-from fricmb.scene._companions import keeps_companions, with_companions
+from fricmb.scene._companions import keeps_companions, with_companions, with_guides
 from fricmb.scene._contact import Contact
 from fricmb.scene._element import Element
 from fricmb.scene._family_of import family_of
@@ -365,6 +365,7 @@ class Scene:
 
     def _with_parts(self, changed: dict[str, Part]) -> Scene:
         changed = {name: part for name, part in changed.items() if part is not self._by_name[name]}
+        changed = with_guides(self.parts, changed)
         if not changed:
             return self
         parts = with_changed(self, changed)

@@ -1,5 +1,7 @@
 """Mechanisms in the suite: Andrews' equations written by hand, and chains of links."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from fricmb.bench import _andrews as hand
 from fricmb.bench._dae_methods import Explicit, Mechanism, dae_methods, measure_dae
 from fricmb.bench._daes import dae_cases
 from fricmb.bench._run import Setting
-from fricmb.bench._size import links, measure_size
+from fricmb.bench._size import capstan, links, measure_size
 
 CASE = next(case for case in dae_cases() if case.name == "andrews")
 
@@ -67,3 +69,14 @@ def test_a_heavy_top_by_hand_and_as_a_body_in_space():
         np.testing.assert_allclose(found[:2], case.end, rtol=1e-9)
         assert counters["n_rhs"] > 100
     assert not Explicit().takes(CASE)
+
+
+def test_a_rope_costs_a_twentieth_of_one_by_hand():
+    """30 masses and springs on half a drum beside one part, which slips at e^(mu pi)."""
+    rope, chain = (measure_size("capstan", "auto", n) for n in (1, 30))
+    assert rope["seconds"] < 0.05 * chain["seconds"]
+    sol = fm.simulate(capstan(1), t_end=4.2)
+    assert float(sol.events[0].t) == pytest.approx(math.exp(0.5 * math.pi) - 1, rel=1e-12)
+    slip = [event.t for event in fm.simulate(capstan(10), t_end=4.2).events if event.kind == "slip"]
+    turn = 0.5 * math.sin(math.pi / 20)
+    assert float(slip[-1]) == pytest.approx(((1 + turn) / (1 - turn)) ** 10 - 1, rel=1e-3)

@@ -244,3 +244,18 @@ def bar(n):
 )
 def test_one_contact_on_many_degrees_of_freedom(scene, method):
     assert fm.simulate(scene, t_end=0.1).stats.method == method
+
+
+@pytest.mark.parametrize(("values", "n", "method"), [
+    (2000, 1, "radau"), (2000, 2, "radau"), (50, 1, "taylor"), (2000, 4, "taylor"),
+])  # fmt: skip
+def test_a_long_series_is_left_to_steps_of_one_sample(values, n, method):
+    """Taylor steps end before and behind each bend of a load: for few contacts they take twice as long."""
+    t = np.linspace(0.0, 20.0, values)
+    scene = row(n, COULOMB)
+    force = fm.Force("f", scene["b0"], axis="x", value=fm.Signal(t, np.sin(t) + 0.1 * np.cos(7 * t)))
+    scene = fm.Scene("series", [*scene.parts, force])
+    found = {name: fm.simulate(scene, t_end=20.0, method=name)["b0.x"][-1] for name in ("auto", "radau", "taylor")}
+    assert fm.simulate(scene, t_end=20.0).stats.method == method
+    assert found["auto"] == pytest.approx(found["taylor"], abs=1e-6)
+    assert found["auto"] == pytest.approx(found["radau"], abs=1e-6)
