@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 from pathlib import Path
 
 from .audits import audit_all
-from .campaign import gathered, tried
+from .campaign import begun, gathered, noted, tried
 from .random_scenes import KINDS
 from .shrink import BAD
 from .table import METHODS
@@ -29,6 +30,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--audits", action="store_true", help="audits of the table's runs, and of wrong ones")
     parser.add_argument("--laws", default="", help="with --table or --audits: these alone")
     parser.add_argument("--shrink", action="store_true", help="look for a smaller scene that fails")
+    parser.add_argument("--log", type=Path, help="one line a scene; scenes that are in it already are not tried again")
+    parser.add_argument("--truths", type=Path, help="a folder for what the oracle says of scenes, to be read again")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     return parser.parse_args()
 
@@ -39,8 +42,11 @@ def main() -> int:
     if options.audits:
         return audit_all(options.rtol, options.laws.split(",") if options.laws else (), options.minutes, options.json)
     tally, start = Tally(options.rtol, options.seed), time.monotonic()
-    found = tried(options, 0, start) if options.processes == 1 else gathered(options, start)
-    for kind, where, outcome, verdicts in found:
+    fresh = tried(options, 0, start) if options.processes == 1 else gathered(options, start)
+    for found in itertools.chain(((item, False) for item in begun(options.log)), ((item, True) for item in fresh)):
+        (kind, where, outcome, verdicts), new = found
+        if new:
+            noted(options.log, found[0])
         if outcome not in ("judged", "marginal"):
             print(*where.values(), "undecided:", outcome, flush=True)
             outcome = "undecided"
@@ -52,7 +58,7 @@ def main() -> int:
                     verdict.why, *extra.values(), flush=True,
                 )  # fmt: skip
             tally.run(method, verdict, {**where, **extra})
-        if options.json:
+        if options.json and new:
             tally.save(options.json, (time.monotonic() - start) / 60.0)
     print(tally.text())
     return int(any(failure["verdict"] == "wrong" for failure in tally.failures))

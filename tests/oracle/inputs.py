@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,17 +16,19 @@ import sympy
 
 import fricmb as fm
 
+from .drawn import Generator, even, some
 from .judge import Case
 from .laws import parts_of
 from .problem import Contact, Problem, nothing
 
-Generator = np.random.Generator
 #: Part of the inverse of a frequency that a step of the oracle takes at most; where it begins anew about what is brief,
 #: in widths.
 SEEN, WITHIN = 0.25, (-6.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 6.0)
 FORMS = ("fast", "slow", "chirp", "bell", "triangle", "rectangle", "engagement", "noise", "beats")
 PLACES = ("load", "normal", "ground")
-BODIES = ("block", "pair", "modes", "line", "hinge")
+BODIES = ("block", "pair", "modes", "line", "hinge", "space hinge")
+#: Those of which the ground does not move.
+HINGES = ("hinge", "space hinge")
 LAWS: dict[str, dict[str, Any]] = {
     "Coulomb": {"mu_s": 0.7, "mu_k": 0.5}, "Stribeck": {"mu_s": 0.7, "mu_k": 0.5, "v_s": 0.1},
     "Tabulated": {"speed": (0.0, 0.05, 0.2, 1.0), "mu": (0.6, 0.5, 0.45, 0.5), "mu_s": 0.7},
@@ -132,16 +134,8 @@ class Shaken:
 
 #: Force that ground holds at rest, the normal force, and the radius of a dry hinge, which is pressed the harder.
 HOLD, N, RADIUS = 0.7, 1.0, 0.5
-
-
-def some(rng: Generator, low: float, high: float) -> float:
-    """A number of four digits between, evenly over its logarithm."""
-    return float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3e}")
-
-
-def even(rng: Generator, low: float, high: float) -> float:
-    """A number of four digits between."""
-    return round(float(rng.uniform(low, high)), 4)
+#: At which a force turns the hinge in space: long, so that it hardly lifts it.
+ARM = 20.0
 
 
 def shaken(rng: Generator) -> Shaken:
@@ -150,7 +144,7 @@ def shaken(rng: Generator) -> Shaken:
     body, law = BODIES[rng.integers(len(BODIES))], list(LAWS)[rng.integers(len(LAWS))]
     if place == "ground" and form == "rectangle":
         form = "triangle"  # a surface that jumps is a transition of its own
-    if body in ("line", "hinge") and place != "load":
+    if body in HINGES and place == "ground":
         place = "load"
     t_end = even(rng, 10.0, 40.0)
     at = even(rng, 0.2 * t_end, 0.8 * t_end)
@@ -175,7 +169,7 @@ def shaken(rng: Generator) -> Shaken:
         size = max(size, -0.95)
     else:
         size = some(rng, 0.02, 0.5)
-    springs = [some(rng, 0.3, 10.0)] if body != "hinge" and rng.random() < 0.6 else [0.0]
+    springs = [some(rng, 0.3, 10.0)] if body not in HINGES and rng.random() < 0.6 else [0.0]
     if body == "pair":
         springs.append(some(rng, 0.3, 10.0))
     return Shaken(
@@ -196,9 +190,15 @@ def case_of(spec: Shaken) -> Case:
     elif spec.body == "modes":
         signals = ("plate.mode1", "plate.mode2", "plate.mode3")
     else:
-        signals = ("b.angle",) if spec.body == "hinge" else ("b.x",) if spec.body == "line" else ("b0.x",)
+        signals = {"hinge": ("b.angle",), "space hinge": ("b.d1_x", "b.d1_z"), "line": ("b.x",)}.get(spec.body, ("b0.x",))
     name = f"{spec.body}-{spec.place}-{spec.input.form}"
-    return Case(name=name, scene=scene(spec), problem=numbers(spec), signals=signals)
+    return Case(name=name, scene=scene(spec), problem=numbers(spec), signals=signals,
+                seen=turned if spec.body == "space hinge" else None)  # fmt: skip
+
+
+def turned(t: np.ndarray, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """X and z of what lay along x, of a body that turns about y."""
+    return np.array([np.cos(q[0]), -np.sin(q[0])]), v[0] * np.array([-np.sin(q[0]), -np.cos(q[0])])
 
 
 def scene(spec: Shaken) -> Any:
@@ -206,16 +206,8 @@ def scene(spec: Shaken) -> Any:
     law = getattr(fm.laws, spec.law)(**LAWS[spec.law])
     value = spec.size * spec.input.given()
     load = spec.constant * HOLD + (value if spec.place == "load" else 0.0)
-    if spec.body == "line":
-        body = fm.RigidBody("b", mass=1.0, inertia=0.1, velocity=(spec.v, 0.0))
-        parts = [body, fm.Gravity("g", acceleration={"y": -N}), fm.Force("f", body, axis="x", value=load)]
-        if spec.springs[0]:
-            parts.append(fm.Spring("k", body, axis="x", stiffness=spec.springs[0]))
-        return fm.Scene("inputs", [*parts, fm.RollerOnLine("c", body, friction=law)])
-    if spec.body == "hinge":
-        body = fm.RigidBody("b", mass=1.0, inertia=1.0, angular_velocity=spec.v)
-        parts = [body, fm.Gravity("g", acceleration={"y": -N / RADIUS}), fm.Torque("f", body, value=load)]
-        return fm.Scene("inputs", [*parts, fm.Revolute("c", body, radius=RADIUS, friction=law)])
+    if spec.body in ("line", *HINGES):
+        return jointed(spec, law, load, value)
     ground = fm.Driven("ground", velocity={"x": value}) if spec.place == "ground" else fm.GROUND
     normal = N * (1 + value) if spec.place == "normal" else N
     if spec.body == "modes":
@@ -237,6 +229,32 @@ def scene(spec: Shaken) -> Any:
     return fm.Scene("inputs", parts)
 
 
+def jointed(spec: Shaken, law: Any, load: Any, value: Any) -> Any:
+    """A body on a line or a hinge, which its weight presses; what takes some of that away is a force."""
+    weight = N if spec.body == "line" else N / RADIUS
+    up, spin = {"axis": "z" if spec.body == "space hinge" else "y"}, (0.0, 1.0, 0.0)
+    parts: list[Any]
+    if spec.body == "space hinge":
+        body = fm.space.RigidBody(
+            "b", mass=1.0, inertia=(1.0, 1.0, 1.0), angular_velocity=(0.0, spec.v, 0.0), points={"arm": (-ARM, 0, 0)}
+        )
+        hinge = fm.space.Revolute("c", body, axis=spin, radius=RADIUS, friction=law)
+        parts = [body, hinge, fm.Force("f", body.point("arm"), axis="z", value=load / ARM)]
+    elif spec.body == "hinge":
+        body = fm.RigidBody("b", mass=1.0, inertia=1.0, angular_velocity=spec.v)
+        parts = [body, fm.Revolute("c", body, radius=RADIUS, friction=law), fm.Torque("f", body, value=load)]
+    else:
+        body = fm.RigidBody("b", mass=1.0, inertia=0.1, velocity=(spec.v, 0.0))
+        slide = value if spec.place == "ground" else 0.0
+        line = fm.RollerOnLine("c", body, friction=law, slide=slide)
+        parts = [body, line, fm.Force("f", body, axis="x", value=load)]
+        if spec.springs[0]:
+            parts.append(fm.Spring("k", body, axis="x", stiffness=spec.springs[0]))
+    if spec.place == "normal":
+        parts.append(fm.Force("press", body, value=-weight * value, **up))
+    return fm.Scene("inputs", [*parts, fm.Gravity("g", acceleration={up["axis"]: -weight})])
+
+
 def numbers(spec: Shaken) -> Problem:
     """As the oracle has it."""
     value, slope = spec.input.numeric()
@@ -250,29 +268,40 @@ def numbers(spec: Shaken) -> Problem:
     if spec.body == "pair":
         K = K + spec.springs[1] * np.array([[1.0, -1.0], [-1.0, 1.0]])
     parts = parts_of(getattr(fm.laws, spec.law)(**LAWS[spec.law]), 1)
-    ways = RADIUS * ways if spec.body == "hinge" else ways
-    normal, slide, rate = (lambda t, q, v: N / RADIUS if spec.body == "hinge" else N), nothing, nothing
+    hinge = spec.body in HINGES
+    ways = RADIUS * ways if hinge else ways
+    weight = N / RADIUS if hinge else N
+    normal, slide, rate = (lambda t, q, v: weight), nothing, nothing
     if spec.place == "normal":
-        normal = lambda t, q, v: N * (1.0 + spec.size * value(t))  # noqa: E731
+        normal = lambda t, q, v: weight * (1.0 + spec.size * value(t))  # noqa: E731
     if spec.place == "ground":
         slide = lambda t: np.array([spec.size * value(t)])  # noqa: E731
         rate = lambda t: np.array([spec.size * slope(t)])  # noqa: E731
-    pushed = ways[:, 0] if spec.body != "hinge" else np.ones(1)
+    pushed = ways[:, 0] if not hinge else np.ones(1)
     contacts = tuple(
         Contact(
-            name="c" if spec.body in ("line", "hinge") else f"c{i}", W=ways[:, [i]], N=normal, slide=slide,
+            name="c" if spec.body in ("line", *HINGES) else f"c{i}", W=ways[:, [i]], N=normal, slide=slide,
             slide_rate=rate, constant=spec.place != "normal", **parts,
         )
         for i in range(1 if spec.body != "pair" else 2)
     )  # fmt: skip
 
+    fastest = spec.input.fastest(spec.t_end)
+    longest = min(spec.t_end / 100.0, SEEN / fastest) if fastest else spec.t_end / 100.0
+    breaks = tuple(b for b in spec.input.breaks() if math.isfinite(b))
+    if spec.body == "space hinge":  # the force keeps its direction, and its lever shortens as the body turns
+        pushes = lambda t: spec.constant * HOLD + (spec.size * value(t) if spec.place == "load" else 0.0)  # noqa: E731
+        pressed = normal
+        normal = lambda t, q, v: abs(pressed(t, q, v) - pushes(t) / ARM)  # noqa: E731
+        return Problem(
+            M=M, K=K, C=C, q=np.zeros(n), v=np.array([spec.v]), t_end=spec.t_end, breaks=breaks, max_step=longest,
+            contacts=(replace(contacts[0], N=normal),), extra=lambda t, q, v: np.cos(q) * pushes(t),
+        )
+
     def load(t: float) -> np.ndarray:
         return pushed * (spec.constant * HOLD + (spec.size * value(t) if spec.place == "load" else 0.0))
 
-    fastest = spec.input.fastest(spec.t_end)
-    longest = min(spec.t_end / 100.0, SEEN / fastest) if fastest else spec.t_end / 100.0
     v = np.zeros(n) if spec.body == "modes" else np.full(n, spec.v)
-    breaks = tuple(b for b in spec.input.breaks() if math.isfinite(b))
     return Problem(
         M=M, K=K, C=C, q=np.zeros(n), v=v, load=load, t_end=spec.t_end, contacts=contacts, breaks=breaks,
         max_step=longest,

@@ -18,7 +18,7 @@ from numba.core import event as numba_event
 
 import fricmb as fm
 
-from .problem import Motion, OracleError, Problem
+from .problem import Motion, OracleError, Problem, Transition
 from .run import solve
 
 #: Perturbation of starts and loads that tells the growth of errors.
@@ -41,6 +41,11 @@ class Case:
     signals: tuple[str, ...]
     seen: Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
     """Positions and velocities of the signals from time and those of the oracle, where these are others."""
+    length: float = 1.0
+    time: float = 1.0
+    """The oracle's units in those of the scene."""
+    alike: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """Contacts of the scene that one of the oracle stands for."""
 
 
 @dataclass
@@ -205,7 +210,14 @@ def truth(case: Case, n: int = 97) -> Truth:
         marginal = "transitions hang on the sixth digit"
     elif growth > UNRULY:
         marginal = f"errors grow {growth:.0e} times"
-    return Truth(case, t, q, v, growth, found.events, marginal, scales)
+    return Truth(case, t, q, v, growth, told(case, found), marginal, scales)
+
+
+def told(case: Case, motion: Motion) -> list[Transition]:
+    """Transitions by the names that contacts have in the scene."""
+    return [
+        replace(event, contact=name) for event in motion.events for name in case.alike.get(event.contact, [event.contact])
+    ]
 
 
 def seen(case: Case, t: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -266,7 +278,8 @@ def attempt(scene: Any, method: str, rtol: float, t: np.ndarray, t_end: float, s
 def judge(true: Truth, method: str, rtol: float = 1e-6, worker: Worker | None = None) -> Verdict:
     """What one method makes of it at ``rtol``; with a worker, within its limit of time."""
     case = true.case
-    asked = (case.scene, method, rtol, true.t, case.problem.t_end, case.signals)
+    times = case.time * true.t, case.time * case.problem.t_end
+    asked = (case.scene, method, rtol, *times, case.signals)
     outcome = attempt(*asked) if worker is None else worker.ask(*asked)
     if outcome.kind != "done":
         return Verdict(outcome.kind, why=outcome.why)
@@ -277,7 +290,11 @@ def compare(true: Truth, found: Outcome, rtol: float) -> Verdict:
     """Errors of positions and velocities and the number of wrong transitions of a run."""
     assert found.q is not None
     assert found.v is not None
-    off = max(np.abs((found.q - true.q) / true.scales[0]).max(), np.abs((found.v - true.v) / true.scales[1]).max())
+    length, speed = true.case.length, true.case.length / true.case.time
+    off = max(
+        np.abs((found.q / length - true.q) / true.scales[0]).max(),
+        np.abs((found.v / speed - true.v) / true.scales[1]).max(),
+    )
     ratio = float(off / (rtol * true.growth))
     wrong = wrong_transitions([(e.contact, e.kind) for e in true.events], found.events)
     if ratio <= BAR and wrong == 0:
@@ -294,7 +311,8 @@ def uncertain(true: Truth, delta: float) -> bool:
         p, expected = true.case.problem, sequence(true.events)
         try:
             true.hangs[delta] = any(
-                kinds(solve(perturbed(p, change), 10.0 * RTOL)) != expected for change in (delta, -delta)
+                sequence(told(true.case, solve(perturbed(p, change), 10.0 * RTOL))) != expected
+                for change in (delta, -delta)
             )
         except OracleError:
             true.hangs[delta] = True

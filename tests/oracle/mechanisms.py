@@ -49,7 +49,7 @@ def case_of(chain: Chain) -> Case:
     return Case(name=chain.kind, scene=scene(chain), problem=numbers(chain), signals=names)
 
 
-def scene(chain: Chain) -> Any:
+def scene(chain: Chain, gravity: float = GRAVITY) -> Any:
     """As fricmb has it: bodies that turn, pins between."""
     parts: list[Any] = []
     x = y = vx = vy = 0.0
@@ -68,7 +68,7 @@ def scene(chain: Chain) -> Any:
         parts += [link, fm.Revolute(f"pin{i}", link.point("root"), *end, radius=chain.radii[i], friction=law)]
         x, y, vx, vy = x + length * s, y - length * c, vx + length * c * rate, vy + length * s * rate
         before = link
-    parts.append(fm.Gravity("gravity", acceleration={"y": -GRAVITY}))
+    parts.append(fm.Gravity("gravity", acceleration={"y": -gravity}))
     if chain.torque:
         parts.append(fm.Torque("motor", before, value=chain.torque * sympy.sin(chain.omega * fm.t)))
     return fm.Scene(chain.kind, parts)

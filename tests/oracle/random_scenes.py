@@ -7,22 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from .drawn import Drawn, Generator, even, some
+from .driven import driven
+from .drives import drives
+from .feet import feet
+from .groups import bare, elsewhere, together
 from .inputs import shaken as inputs
 from .mechanisms import Chain
 from .space import Bodies, Link, Push, Triple, turned
 from .spec import Pull, Spec, Touch
+from .units import beside, units
 
-Generator = np.random.Generator
-
-
-def some(rng: Generator, low: float, high: float) -> float:
-    """A number of four digits between, evenly over its logarithm."""
-    return float(f"{np.exp(rng.uniform(np.log(low), np.log(high))):.3e}")
-
-
-def even(rng: Generator, low: float, high: float) -> float:
-    """A number of four digits between."""
-    return round(float(rng.uniform(low, high)), 4)
 
 
 def law(rng: Generator) -> tuple[str, dict[str, float]]:
@@ -314,9 +309,20 @@ def roller(rng: Generator) -> Bodies:
     return spec
 
 
+def other_units(rng: Generator) -> Drawn:
+    """A scene whose units are others."""
+    return units(rng, {"line": line, "plane": plane, "stack": stack, "modes": modes, "chain": chain, "shaken": shaken})
+
+
+def other_scales(rng: Generator) -> Drawn:
+    """A scene beside idle bodies."""
+    return beside(rng, {"line": line, "plane": plane, "stack": stack, "chain": chain, "shaken": shaken, "loop": loop})
+
+
 KINDS: dict[str, Callable[[Generator], Any]] = {
     "line": line, "shaken": shaken, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes,
-    "chain": chain, "tree": tree, "roller": roller, "inputs": inputs,
+    "chain": chain, "tree": tree, "roller": roller, "inputs": inputs, "feet": feet, "driven": driven, "drives": drives,
+    "together": together, "bare": bare, "elsewhere": elsewhere, "units": other_units, "beside": other_scales,
 }  # fmt: skip
 
 

@@ -17,6 +17,8 @@ from .slow import leap
 #: Slip speeds in two directions, over the scale, at which it is decided whether a contact sticks.
 NEAR = 1e-9
 LIMIT = 3000
+#: Part of the run within which what happens happens at one instant.
+SAME = 1e-11
 
 
 class Run:
@@ -141,9 +143,22 @@ class Run:
         for j, i in enumerate(resting):
             if j in slips:
                 self.modes[i] = SLIP
-                self.signs[i] = -1.0 if F[rows[j].start] > 0.0 else 1.0
+                self.signs[i] = self.sign(moving, t, F[rows[j].start], (D @ F + b)[rows[j].start], columns[rows[j].start])
                 if p.contacts[i].d > 1:
                     self.start[i] = push
+
+    def sign(self, moving: Field, t: float, F: float, rate: float, column: int) -> float:
+        """Which way slip of one direction sets out: against its friction, or where there is none as it is pushed."""
+        if F != 0.0:
+            return -1.0 if F > 0.0 else 1.0
+        if rate == 0.0:  # as it will be pushed
+            later = self.y.copy()
+            step = 1e-6 * (self.end - t)
+            a = moving.evaluate(t, self.y)[0]
+            later[: self.n] += step * later[self.n : 2 * self.n]
+            later[self.n : 2 * self.n] += step * a
+            rate = float(moving.speed_up(t + step, later, moving.evaluate(t + step, later)[0])[column])
+        return -1.0 if rate < 0.0 else 1.0
 
     def consistent(
         self, D: np.ndarray, b: np.ndarray, resting: list[int], loads: list[float], rows: list[slice],
@@ -226,11 +241,11 @@ class Run:
             dense = solver.dense_output()
             hit = None if last is None else self.first_crossing(field, dense, solver.t_old, solver.t, last)
             if hit is not None:
-                t, which, i = hit
+                t, crossed = hit
                 self.keep(solver.t_old, t, dense)
                 self.t, self.y = t, dense(t)
                 self.slow = False
-                self.cross(field, which, i)
+                self.cross(field, crossed)
                 return
             self.keep(solver.t_old, solver.t, dense)
             self.t, self.y = solver.t, solver.y.copy()
@@ -258,18 +273,19 @@ class Run:
         if b > a:
             self.motion.pieces.append((a, b, dense))
 
-    def cross(self, field: Field, which: int, i: int) -> None:
-        """What crossed: a margin of the mode (0) or the normal force (1)."""
+    def cross(self, field: Field, crossed: list[tuple[int, int]]) -> None:
+        """What crossed at one instant: margins of modes (0) or a normal force (1), with the contact."""
+        which, i = crossed[0]
         if which == 1:
             if self.p.contacts[i].force is None:
                 self.settle(flipped=frozenset([i]))
-        elif self.modes[i] == STICK:
-            if field.active:
-                self.settle(one_of=frozenset(field.active))
-            else:
-                self.settle(released=frozenset([i]))
+            return
+        gone = frozenset(j for kind, j in crossed if kind == 0 and self.modes[j] == STICK)
+        arrived = frozenset(j for kind, j in crossed if kind == 0 and self.modes[j] != STICK)
+        if gone and field.active:
+            self.settle(one_of=frozenset(field.active), arrived=arrived)
         else:
-            self.settle(arrived=frozenset([i]))
+            self.settle(released=gone, arrived=arrived)
 
     def catch(self, field: Field) -> bool:
         """In several directions: whether a contact comes to rest here; if it does, to first order exactly."""
@@ -319,8 +335,8 @@ class Run:
 
     def first_crossing(
         self, field: Field, dense: Any, a: float, b: float, last: np.ndarray
-    ) -> tuple[float, int, int] | None:
-        """The first time in (a, b] at which a margin passes 0: time, kind and contact."""
+    ) -> tuple[float, list[tuple[int, int]]] | None:
+        """The first time in (a, b] at which a margin passes 0, and all that do then: kind and contact."""
         times = np.linspace(a, b, 6)
         values = [last, *(field.margins(t, dense(t)) for t in times[1:])]
         table = np.array(values)  # (6, 2, contacts)
@@ -336,7 +352,11 @@ class Run:
                 t = self.root(field, dense, times, column, which, i, size[which])
                 if t is not None:
                     found.append((t, which, i))
-        return min(found) if found else None
+        if not found:
+            return None
+        found.sort()
+        first = found[0][0]
+        return first, [(which, i) for t, which, i in found if t - first <= SAME * self.p.t_end]
 
     def root(
         self, field: Field, dense: Any, times: np.ndarray, column: np.ndarray, which: int, i: int, tiny: float
