@@ -19,7 +19,6 @@ from .spec import Pull, Spec, Touch
 from .units import beside, units
 
 
-
 def law(rng: Generator) -> tuple[str, dict[str, float]]:
     """A set-valued law: most with more friction at rest, some with as much in slip."""
     mu_k = even(rng, 0.3, 0.8)

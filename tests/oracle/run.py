@@ -143,7 +143,8 @@ class Run:
         for j, i in enumerate(resting):
             if j in slips:
                 self.modes[i] = SLIP
-                self.signs[i] = self.sign(moving, t, F[rows[j].start], (D @ F + b)[rows[j].start], columns[rows[j].start])
+                row = rows[j].start
+                self.signs[i] = self.sign(moving, t, F[row], (D @ F + b)[row], columns[row])
                 if p.contacts[i].d > 1:
                     self.start[i] = push
 
