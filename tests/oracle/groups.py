@@ -1,7 +1,8 @@
-"""Blocks that let go at one instant, blocks without friction, and forces that jump where another body passes a place."""
+"""Blocks that let go at one instant, blocks without friction, forces that jump where another body passes a place."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -121,7 +122,7 @@ def elsewhere_case(n: dict[str, Any]) -> Case:
     breaks = [(edge + 2 * math.pi * k - phase) / omega for k in range(turns) for edge in edges]
     breaks = sorted(b for b in breaks if 0.0 < b < p.t_end)
     between = np.array([0.0, *breaks, p.t_end])
-    values = [high if above(0.5 * (a + b)) else low for a, b in zip(between, between[1:], strict=False)]
+    values = [high if above(0.5 * (a + b)) else low for a, b in itertools.pairwise(between)]
     W = np.eye(len(spec.masses))[0]
 
     def load(t: float) -> np.ndarray:

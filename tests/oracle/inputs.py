@@ -190,7 +190,8 @@ def case_of(spec: Shaken) -> Case:
     elif spec.body == "modes":
         signals = ("plate.mode1", "plate.mode2", "plate.mode3")
     else:
-        signals = {"hinge": ("b.angle",), "space hinge": ("b.d1_x", "b.d1_z"), "line": ("b.x",)}.get(spec.body, ("b0.x",))
+        jointed = {"hinge": ("b.angle",), "space hinge": ("b.d1_x", "b.d1_z"), "line": ("b.x",)}
+        signals = jointed.get(spec.body, ("b0.x",))
     name = f"{spec.body}-{spec.place}-{spec.input.form}"
     return Case(name=name, scene=scene(spec), problem=numbers(spec), signals=signals,
                 seen=turned if spec.body == "space hinge" else None)  # fmt: skip

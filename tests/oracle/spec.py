@@ -18,6 +18,8 @@ from .problem import Contact, Problem, nothing
 
 AXES = "xy"
 Vector = tuple[float, ...]
+#: A coefficient that stands for none.
+NOTHING = 1e-8
 #: Part of the inverse of a frequency that a step takes at most; where within a bell steps begin anew, in widths.
 SEEN, WITHIN = 0.25, (-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 6.0)
 
@@ -99,7 +101,8 @@ def from_data(data: dict[str, Any]) -> Spec:
 
 def case_of(spec: Spec) -> Case:
     """Both forms."""
-    return Case(name=spec.kind, scene=scene(spec), problem=numbers(spec), signals=signals(spec))
+    silent = frozenset(f"c{i}" for i, t in enumerate(spec.touches) if t.fields.get("mu_s", 1.0) < NOTHING)
+    return Case(name=spec.kind, scene=scene(spec), problem=numbers(spec), signals=signals(spec), silent=silent)
 
 
 def signals(spec: Spec) -> tuple[str, ...]:

@@ -62,7 +62,8 @@ def units_case(n: dict[str, Any]) -> Case:
         return replace(case, name="units", scene=mechanisms.scene(scaled_chain(made, L, T, m), GRAVITY * L / T**2),
                        time=T)  # fmt: skip
     case = spec.case_of(made)
-    return replace(case, name="units", scene=spec.scene(scaled(made, L, T, m)), length=L, time=T)
+    own = L * math.sqrt(m) if made.frequencies else L  # coordinates of modes are lengths by roots of masses
+    return replace(case, name="units", scene=spec.scene(scaled(made, L, T, m)), length=own, time=T)
 
 
 def scaled(made: Spec, L: float, T: float, m: float) -> Spec:
