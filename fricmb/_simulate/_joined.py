@@ -101,6 +101,11 @@ class JoinedRun(Trajectory):
         """Ends of the run."""
         return self._start.t, self.end.t
 
+    @property
+    def breakpoints(self) -> Floats:
+        """Times at which inputs of any island jump or bend."""
+        return np.unique(np.concatenate([run.breakpoints for _, run in self.runs]))
+
     def rows(self) -> Samples:
         """Values at the rows; at a transition first the left, then the right-hand values."""
         t = self.t

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -29,7 +29,7 @@ from fricmb.integrate import MotionSamples, Start, Trajectory
 from fricmb.integrate.problem import LAW_CONSTANT, Codes, Floats, Ints
 from fricmb.integrate.run.touches import is_continuous, own_run
 from fricmb.plan import Plan, Selection, make_plan, truncated
-from fricmb.scene import Element, MatrixElement, Scene, SpaceBody
+from fricmb.scene import Element, Joint, MatrixElement, Scene, SpaceBody
 from fricmb.scene._family import NUMBERS, of_same_parts
 from fricmb.solution import Flags, Motion, Names, Origin, Vector, builder
 from fricmb.system import System, build
@@ -188,19 +188,29 @@ class SceneMechanics:
 
     def freedom(self, samples: MotionSamples) -> int | None:
         """Degrees of freedom of a mechanism, constraints taken off; None for a scene without joints."""
-        if self.whole is None or not self.placed.is_mechanism or not samples.t.size:
+        if not self.placed.is_mechanism or not samples.t.size:
             return None
-        return self.whole.system.freedom(samples)
+        return sum(system.freedom(part) for system, part in self._parts(samples))
 
     def reaction(self, joint: str, samples: MotionSamples) -> Floats:
         """Reactions of a joint (rows, n_t); UnknownNameError for a name that is none."""
-        if self.whole is None:
-            raise unknown_name("joint", joint, ())
-        return self.whole.system.reaction(joint, samples)
+        if self.whole is not None:
+            return self.whole.system.reaction(joint, samples)
+        for member in self.members:
+            if joint in member.selection.parts and isinstance(self.placed[joint], Joint):
+                return member.system.reaction(joint, member.place.part(samples))
+        raise unknown_name("joint", joint, [part.name for part in self.placed.parts if isinstance(part, Joint)])
 
     def reactions(self, samples: MotionSamples) -> dict[str, Floats]:
         """Reactions of all joints by name."""
-        return {} if self.whole is None or not self.placed.is_mechanism else self.whole.system.reactions(samples)
+        if not self.placed.is_mechanism:
+            return {}
+        return {name: found for system, part in self._parts(samples) for name, found in system.reactions(part).items()}
+
+    def _parts(self, samples: MotionSamples) -> Iterator[tuple[System, MotionSamples]]:
+        """Every member's arrays and its share of samples."""
+        for member in self.members:
+            yield member.system, samples if self.whole is not None else member.place.part(samples)
 
     def signals(self, t: Floats) -> tuple[Floats, Floats]:
         """Positions and velocities of the driven bodies (n_driven, n_t), in the order of ``names.signals``."""
@@ -274,7 +284,6 @@ def mechanics_of(
 ) -> SceneMechanics:
     """Plan a scene, or take what is kept on it."""
     by = dict(shift or {})
-    together = together or scene.is_mechanism  # run as one
     key = ("mechanics", observe, tuple(sorted(by.items())), together)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):

@@ -24,7 +24,7 @@ def frame_of(names: Any, piece: Any) -> Frame:
         found: Floats = position[names.signals[name]]
         return found
 
-    breaks = piece.trajectory.problem.signals.breakpoints if scene.is_mechanism else np.zeros(0)
+    breaks = piece.trajectory.breakpoints if scene.is_mechanism else np.zeros(0)
     return Frame(scene=scene, index=dict(names.dof_index), driven=driven, breaks=breaks)
 
 

@@ -137,6 +137,11 @@ class Trajectory(ABC):
         """Ends of the run."""
         return float(self.t[0]), float(self.t[-1])
 
+    @property
+    def breakpoints(self) -> Floats:
+        """Times at which inputs jump or bend."""
+        return self.problem.signals.breakpoints
+
     @abstractmethod
     def rows(self) -> Samples:
         """Values at the rows; at a transition first the left, then the right-hand values."""

@@ -58,7 +58,15 @@ def links_of(scene: Scene) -> Links:
         n=len(place), parts=[parts[i] for i in where[order].tolist()], at=where[order], start=start,
         dofs=np.concatenate([table.dofs for table in tables])[entries], acts=together("acts"),
         idle=together("idle"), starts=together("starts"), rubs=together("rubs"), kinds=tuple(kinds), kind=kind[order],
+        turning=_turning(scene, place),
     )  # fmt: skip
+
+
+def _turning(scene: Scene, place: dict[str, int]) -> Ints:
+    """Pairs (2, k): the first degree of freedom of each body that turns with every other of its own."""
+    bodies = [body for body in scene.bodies if isinstance(body, RigidBody | SpaceBody)]
+    pairs = [(place[body.dof_names[0]], place[name]) for body in bodies for name in body.dof_names[1:]]
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2).T
 
 
 @dataclass(frozen=True, kw_only=True)

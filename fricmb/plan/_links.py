@@ -66,6 +66,8 @@ class Links:
     kinds : tuple of ElementFacts
     kind : (k,) int
         Of an element: which of ``kinds``; else -1.
+    turning : (2, m) int
+        Pairs of degrees of freedom of one body that turns: places of its points take all of them.
     """
 
     n: int
@@ -79,6 +81,7 @@ class Links:
     rubs: Flags
     kinds: tuple[Any, ...]
     kind: Ints
+    turning: Ints
 
     @cached_property
     def owner(self) -> Ints:
@@ -110,8 +113,8 @@ class Links:
         acting &= ~self.idle[self.owner]
         given = np.array(sorted(set(targets)), dtype=np.int64)
         # from what feels a link to the link, from there to all that it depends on; the root is before the given ones
-        source = np.concatenate([self.dofs[acting], n + self.owner, np.full(given.size, n + k)])
-        target = np.concatenate([n + self.owner[acting], self.dofs, given])
+        source = np.concatenate([self.dofs[acting], n + self.owner, np.full(given.size, n + k), *self.turning])
+        target = np.concatenate([n + self.owner[acting], self.dofs, given, *self.turning[::-1]])
         graph = coo_array((np.ones(source.size, dtype=np.int8), (source, target)), shape=(n + k + 1, n + k + 1))
         found = breadth_first_order(graph.tocsr(), n + k, return_predecessors=False)
         return np.sort(found[found < n]).tolist()  # type: ignore[no-any-return]
@@ -120,8 +123,8 @@ class Links:
     def labels(self) -> Ints:
         """A number for each degree of freedom, the same for those that parts tie together (n,)."""
         bound = self.first[self.owner] >= 0
-        pairs = self.first[self.owner[bound]], self.dofs[bound]
-        graph = coo_array((np.ones(pairs[0].size, dtype=np.int8), pairs), shape=(self.n, self.n))
+        pairs = np.hstack([[self.first[self.owner[bound]], self.dofs[bound]], self.turning])
+        graph = coo_array((np.ones(pairs.shape[1], dtype=np.int8), tuple(pairs)), shape=(self.n, self.n))
         found: Ints = connected_components(graph, directed=False)[1].astype(np.int64)
         return found
 

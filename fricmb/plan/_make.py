@@ -204,7 +204,7 @@ def _islands(scene: Scene, links: Links, kept: Sequence[int], dofs: tuple[str, .
                 dofs=names,
                 parts=tuple(dict.fromkeys(names_of[ends[number] : ends[number + 1]])),
                 bodies=bodies,
-                inert=not starts[number],
+                inert=not starts[number] and not scene.is_mechanism,
                 held=bool(others[number]) or is_held(scene, bodies),
             )
         )

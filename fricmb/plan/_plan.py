@@ -137,7 +137,7 @@ class Plan:
         lines += [f"  {name:<{width}}  {count}" for name, count in self.counts.items() if count or name in _ALWAYS]
         lines.append(f"  {'storage':<{width}}  {self.storage} (half-bandwidth {self.bandwidth})")
         if len(self.islands) > 1:
-            lines.append("islands (run together)" if self.tree else "islands (each run on its own)")
+            lines.append("islands (each run on its own)")
             lines += _some([f"  {island}" for island in self.islands])
         if self.tree:
             lines.append("tree of bodies and joints")
