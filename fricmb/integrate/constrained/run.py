@@ -25,7 +25,7 @@ from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import Differences, differences, no_differences
 from fricmb.integrate.model.state import set_out
-from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
@@ -131,8 +131,9 @@ def _set_up(
     c.knot = -np.inf
     workspace.out.opened = (m.joints.dropped == 2).sum()
     first, weight = _first_speeds(problem, start, t_end), np.sqrt(c.mass)
-    if (weight * c.v).max(initial=0.0) <= 1e-12 * (weight * first).max(initial=0.0):
-        y.v[:] = 0.0  # round-off of a start at rest
+    trifle = (weight * c.v).max(initial=0.0) <= 1e-12 * (weight * first).max(initial=0.0)
+    if trifle and not (problem.contacts.law == LAW_SMOOTH).any():
+        y.v[:] = 0.0  # round-off of a start at rest; smooth laws know no rest, and their forces tell such speeds apart
     slip = _slip_by(problem, start, y.v, first)
     return 1e-12 * float(slip.max(initial=0.0)), FURTHER * float(np.linalg.norm(weight * first))
 
