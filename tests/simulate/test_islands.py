@@ -236,3 +236,39 @@ def test_fifty_values_derive_and_compile_nothing(monkeypatch):
             fm.simulate(scene, t_end=1.0, parameters={"k1x.stiffness": 1.0 + 0.02 * i, "lining.normal_force": 10.0 + i})
     assert compiled.buffer == []
     assert looked_up == []  # not even on the disk: all templates are in memory
+
+
+def dry_pendulum(name, at):
+    """A link on a dry pin."""
+    link = fm.RigidBody(name, mass=1.0, inertia=0.1, position=(at + 0.5, 0.0), points={"root": (-0.5, 0.0)})
+    law = fm.laws.Coulomb(mu_s=0.3, mu_k=0.2)
+    return [link, fm.Revolute(f"pin {name}", link.point("root"), fm.ground_point(at, 0.0), radius=0.1, friction=law)]
+
+
+def test_islands_with_joints_move_as_alone():
+    """To the last bit, reactions and transitions too; a free body that turns is one island."""
+    free = fm.RigidBody("free", mass=1.0, inertia=1.0, velocity=(1.0, 0.0), angular_velocity=2.0)
+    gravity, push = fm.Gravity("g"), fm.Force("push", free, axis="x", value=1.0)
+    parts = [*dry_pendulum("a", 0.0), *dry_pendulum("b", 3.0), free, gravity, push]
+    sol = fm.simulate(fm.Scene("three", parts), t_end=2.0)
+    alone = fm.simulate(fm.Scene("one", [*dry_pendulum("a", 0.0), fm.Gravity("g")]), t_end=2.0)
+    assert len(sol.stats.islands) == 3
+    assert sol["a.angle"][-1] == alone["a.angle"][-1]
+    assert [(e.kind, e.t) for e in sol.events if e.contact == "pin a"] == [(e.kind, e.t) for e in alone.events]
+    np.testing.assert_array_equal(sol.reaction("pin a")[:, -1], alone.reaction("pin a")[:, -1])
+    assert sol["free.x"][-1] == pytest.approx(4.0, abs=1e-12)
+    assert sol.audit().ok
+    with pytest.raises(KeyError, match="unknown joint 'pin c'"):
+        sol.reaction("pin c")
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e6])
+def test_what_is_idle_beside_has_no_part_in_scales(length):
+    """A block that is braked to rest on the plane, beside a pendulum of another size."""
+    top = fm.RigidBody("bob", mass=1e5, inertia=1e5 * length**2, position=(0.0, -length), points={"top": (0.0, length)},
+                       angular_velocity=3.0)  # fmt: skip
+    block = fm.Body("block", mass=1.0, axes="xy", velocity={"x": 0.3, "y": 0.4})
+    rubs = fm.Contact("sole", block, law=fm.laws.Coulomb(mu_s=0.5), normal_force=1.0, axes="xy")
+    scene = fm.Scene("beside", [top, fm.Revolute("pin", top.point("top")), block, rubs])
+    (stop,) = fm.simulate(scene, t_end=2.0, method="radau").events
+    assert stop.t == pytest.approx(1.0, abs=1e-7)
