@@ -536,7 +536,12 @@ SHARED = {
     "analysis.StabilityMap": "analysis.stability_map", "analysis.EnergyLedger": "analysis.energy_ledger",
     "analysis.Phase": "analysis.energy_ledger", "analysis.ModalEnergy": "analysis.modal_energy",
 } | dict.fromkeys(
-    [f"squeal.{kind}" for kind in ("Study", "Threshold", "Feed", "Derivatives", "Growth", "Saturation", "Uncertainty")],
+    [
+        f"squeal.{kind}"
+        for kind in (
+            "Study", "Threshold", "Feed", "Derivatives", "Growth", "Saturation", "Screening", "Uncertainty",
+        )
+    ],
     "squeal.study",
 ) | _examples_fe.SHARED | _examples_space.SHARED  # fmt: skip
 

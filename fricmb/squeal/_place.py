@@ -13,6 +13,8 @@ from fricmb.analysis import AnalysisError, SteadySliding
 from fricmb.analysis._eigenvalues import growing, steady_at
 from fricmb.errors import FricmbError
 from fricmb.integrate.run.one_thread import one_thread
+from fricmb.scene import Element, ModalBody
+from fricmb.values import value_of
 
 if TYPE_CHECKING:
     from fricmb.scene import Scene
@@ -126,3 +128,24 @@ class Places:
         order = np.lexsort((values[found].real, values[found].imag))
         kept: NDArray[np.int64] = found[order]
         return kept
+
+
+def check_friction(who: str, scene: Scene) -> None:
+    """Refuse a scene without friction: parts, or matrices and forces that may stand for it (of FE, of a user)."""
+    forces = (part for part in scene.parts if isinstance(part, Element))
+    if scene.frictional or scene.matrices or any(type(f).define_force is not Element.define_force for f in forces):
+        return
+    raise AnalysisError(
+        f"{who}: nothing slides in scene {scene.name!r}: it has no contact, no joint with friction, and no matrix or"
+        " force that may stand for one"
+    )
+
+
+def true_modes(scene: Scene) -> float:
+    """Angular frequency up to which modes of reduced bodies are modes."""
+    found = [
+        float(np.max(value_of(body.frequencies)[: body.n_modes - body.residual]))
+        for body in scene.parts
+        if isinstance(body, ModalBody) and 0 < body.residual < body.n_modes
+    ]
+    return min(found, default=np.inf)

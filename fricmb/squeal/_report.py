@@ -12,6 +12,7 @@ from fricmb.squeal._derivatives import Derivatives
 from fricmb.squeal._feed import Feed
 from fricmb.squeal._growth import Growth
 from fricmb.squeal._saturation import Saturation
+from fricmb.squeal._screening import Screening
 from fricmb.squeal._tables import of_answer, tables
 from fricmb.squeal._uncertain import Uncertainty
 
@@ -30,6 +31,7 @@ _TITLES = {
     Growth: "Growth in a run",
     Saturation: "Where growth ends",
     Uncertainty: "How sure that is",
+    Screening: "Which parameters matter",
 }
 
 

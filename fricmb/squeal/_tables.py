@@ -12,6 +12,7 @@ from fricmb.squeal._derivatives import Derivatives
 from fricmb.squeal._feed import Feed
 from fricmb.squeal._growth import Growth
 from fricmb.squeal._saturation import Saturation
+from fricmb.squeal._screening import Screening
 from fricmb.squeal._tracking import moving_most
 from fricmb.squeal._uncertain import Uncertainty
 
@@ -49,6 +50,10 @@ def of_answer(answer: Any, study: Study) -> tuple[str, Table]:
     if isinstance(answer, Uncertainty):
         columns = np.column_stack([answer.values, answer.growth, answer.frequency])
         return "uncertainty", ((*answer.names, "growth", "frequency"), [tuple(row) for row in columns.tolist()])
+    if isinstance(answer, Screening):
+        columns = np.column_stack([answer.effects, answer.errors, answer.scatter])
+        rows = [(name, *row) for name, row in zip(answer.names, columns.tolist(), strict=True)]
+        return "screening", (("parameter", "effect", "error", "scatter"), rows)
     _, name, values = answer
     rows = [(*here, values[i, j]) for i, j, here in _each(study)]
     return "amplitudes", ((*study.over, name), rows)

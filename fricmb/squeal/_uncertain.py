@@ -82,7 +82,7 @@ class Uncertainty:
         return "\n".join(lines)
 
 
-def distribution(name: str, given: Any, value: float) -> Any:
+def distribution(who: str, name: str, given: Any, value: float) -> Any:
     """A distribution of scipy: as given, even between two numbers, or normal with a relative standard deviation."""
     accepted = "(low, high), a relative standard deviation, or a distribution of scipy.stats with its numbers"
     if hasattr(given, "ppf") and hasattr(given, "rvs"):
@@ -93,7 +93,7 @@ def distribution(name: str, given: Any, value: float) -> Any:
             return stats.uniform(low, high - low)
     spread = as_float(given)
     if not (np.isfinite(spread) and spread > 0.0 and value):
-        raise AnalysisError(f"uncertainty: of {name} (now {value:g}) must be {accepted}; got {shown(given)}")
+        raise AnalysisError(f"{who}: of {name} (now {value:g}) must be {accepted}; got {shown(given)}")
     return stats.norm(value, abs(value) * spread)
 
 

@@ -223,6 +223,40 @@ def test_probability_in_closed_form():
     assert asked.uncertainty({MU: 0.1}, {MU: 0.75}).probability == pytest.approx(0.5, abs=0.02)
 
 
+def test_which_parameters_matter(tmp_path):
+    pytest.importorskip("SALib")
+    from scipy import stats
+
+    from fricmb.squeal._screening import screening
+
+    plane = {"a": stats.uniform(0.0, 2.0), "b": stats.norm(1.0, 0.1), "c": stats.uniform(0.0, 1.0)}
+    found = screening(plane, {}, 6, 1, lambda p: 3.0 * p[:, 0] - 5.0 * p[:, 2])
+    np.testing.assert_allclose(found.effects, [6.0, 0.0, 5.0], atol=1e-12)  # over the whole of each distribution
+    np.testing.assert_allclose(found.scatter, 0.0, atol=1e-12)
+    asked = study(two_modes(), over={MU: [0.8, 0.9]})
+    found = asked.screening({MU: (0.8, 0.9), "lining.normal_force.preload": 0.1}, trajectories=4)
+    assert found.effects[1] == pytest.approx(0.0, abs=1e-9)  # the load does not matter
+    rise = by_hand(0.9)[0].real.max() - by_hand(0.8)[0].real.max()
+    assert found.effects[0] == pytest.approx(rise, rel=0.2)
+    assert str(found).splitlines()[1].startswith(MU)
+    asked.report(tmp_path / "report.html")
+    assert "Which parameters matter" in (tmp_path / "report.html").read_text()
+    assert asked.tables()["screening"][1][0][0] == MU
+
+
+def test_a_study_goes_on_on_a_cluster(tmp_path):
+    """What one client has kept, another need not make; results are those of this process."""
+    distributed = pytest.importorskip("dask.distributed")
+    over = {MU: [0.5, 0.8, 0.9]}
+    plain = study(two_modes(), over=over)
+    with distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as client:
+        study(two_modes(), over={MU: [0.5, 0.8]}, workers=client, store=tmp_path)
+        kept = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+        again = study(two_modes(), over=over, workers=client, store=tmp_path)
+    np.testing.assert_array_equal(again.eigenvalues, plain.eigenvalues)
+    assert kept
+
+
 def test_a_study_goes_on_where_it_stopped(tmp_path, monkeypatch):
     over = {MU: [0.5, 0.8]}
     first = study(two_modes(), over=over, store=tmp_path)
