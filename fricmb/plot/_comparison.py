@@ -15,6 +15,11 @@ if TYPE_CHECKING:
     from fricmb.measure import Comparison
 
 
+CYCLES = "cycles per unit of time"
+#: Pairs of modes whose numbers are written.
+MOST = 120
+
+
 class ComparisonPlots:
     """Pictures of a comparison: ``found.plot.mac()``.
 
@@ -44,7 +49,10 @@ class ComparisonPlots:
         )
         axes[0].set_yticks(range(mac.shape[0]), [f"{w / (2 * np.pi):.5g}" for w in self.found.frequencies[0]])
         axes[0].figure.colorbar(image, ax=axes[0], label="modal assurance criterion")
-        finish(axes[0], x="test [cycles]", y="body [cycles]")
+        for (i, j), value in np.ndenumerate(mac if mac.size <= MOST else np.zeros((0, 0))):
+            axes[0].text(j, i, f"{value:.2f}", ha="center", va="center", color="white" if value > 0.6 else "black")
+        finish(axes[0], x=f"test, {CYCLES}", y=f"body, {CYCLES}")
+        axes[0].grid(visible=False)
         return figure_of(axes)
 
     @drawn
@@ -64,5 +72,5 @@ class ComparisonPlots:
         axes[0].semilogy(measured.f, np.abs(measured.values), linewidth=THIN, color=paint().stick, label="measured")
         axes[0].semilogy(measured.f, np.abs(values), linewidth=THIN, color=paint().slip, label="body")
         what = f"{measured.kind} {measured.node}.{measured.axis} over {measured.reference}.{measured.reference_axis}"
-        finish(axes[0], x="frequency [cycles]", y=what, legend=True)
+        finish(axes[0], x=f"frequency, {CYCLES}", y=what, legend=True)
         return figure_of(axes)
