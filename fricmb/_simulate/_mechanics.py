@@ -12,6 +12,7 @@ import numpy as np
 from fricmb._simulate._arguments import check_scene
 from fricmb._simulate._driven import DrivenMotions, shifted
 from fricmb._simulate._joined import JoinedRun
+from fricmb._simulate._massless import with_masses
 from fricmb._simulate._members import (
     Idle,
     Member,
@@ -264,6 +265,7 @@ def prepare(scene: Any, parameters: Any, observe: Any) -> SceneMechanics:
         )
     if parameters:
         scene = scene.with_parameters(parameters)
+    scene = with_masses(scene)
     if observe is not None and (isinstance(observe, str) or not has_entries(observe)):
         raise SceneError(f"observe: got {shown(observe)}; expected a list of names of dofs, points and contacts")
     names = None if observe is None else tuple(observe)

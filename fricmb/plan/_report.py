@@ -110,10 +110,11 @@ def resting(scene: Scene, islands: Iterable[Island]) -> list[Omission]:
 
 
 def remarks(scene: Scene) -> list[str]:
-    """What laws say of themselves."""
+    """What laws say of themselves, and what is solved in place of bodies without mass."""
     laws = {id(part.law): part for part in scene.frictional}
     said = [(part.name, part.law.remark()) for part in laws.values() if part.law is not None]
-    return [f"{name}: {text}" for name, text in said if text]
+    notes: tuple[str, ...] = scene._cache.get("notes", ())
+    return [*notes, *(f"{name}: {text}" for name, text in said if text)]
 
 
 def unloaded(idle: tuple[str, ...]) -> list[str]:

@@ -64,7 +64,8 @@ class Body(PartEnd):
     name : str
         Unique in a scene, without dots.
     mass : float
-        > 0.
+        > 0; 0 for a slider between one spring and one contact under Coulomb's law (a Jenkins element), and for a body
+        on springs whose velocity dampers or viscous laws determine (quasi-dynamic blocks): runs alone take it.
     axes : str
         Any of "x", "y", "z"; each is a degree of freedom, named ``"name.x"``.
     position, velocity : dict of str to float
@@ -86,7 +87,7 @@ class Body(PartEnd):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._set("mass", self._number("mass", self.mass, above=0.0))
+        self._set("mass", self._number("mass", self.mass, minimum=0.0))
         check_letters(self, "axes", self.axes)
         for argument in ("position", "velocity"):
             if _is_start(getattr(self, argument), self.axes):

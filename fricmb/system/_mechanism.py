@@ -38,6 +38,7 @@ from fricmb.system._mechanism_system import MechanismSystem
 from fricmb.system._series import series_of
 from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._structure import Structure
+from fricmb.values import value_of
 
 #: Bodies may be carried by this share of the geometry at the start.
 _FAR = 0.5
@@ -68,6 +69,8 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     joints = JointArrays(motions=motions, contacts=contacts)
     kept_shares = Kept(*(shares_of(scene, (which, extended)) for which in Kept._fields))
     for part in parts:
+        if isinstance(part, Body) and not float(value_of(part.mass)) > 0.0:
+            raise SceneError(f"{part.dof_names[0]}: the mass must be > 0, got 0")
         _add(part, structure, contacts, joints, kept_shares)
     for gravity in (part for part in parts if isinstance(part, Gravity)):
         add_gravity(gravity, parts, structure)
