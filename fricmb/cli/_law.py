@@ -38,6 +38,9 @@ def show_law(options: argparse.Namespace) -> int:
     if law.kind != "smooth":
         N = options.normal_force
         print(f"break-away {law.break_away(N):.6g}, slip for r -> 0 {law.slip_limit(N):.6g}; sticks")
+        if law.offsets():
+            centre = ", ".join(f"{-float(c):.6g}" for c in law.numeric().offsets())
+            print(f"centre of the cone {centre}: friction differs by direction")
     else:
         creep = law.creep(0.5)
         print(

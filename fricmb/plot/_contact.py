@@ -50,6 +50,14 @@ def static_limit(sol: Solution, contact: str) -> Floats | None:
     return np.array([law.break_away(load) for load in loads])[where] * normal_force
 
 
+def static_centre(sol: Solution, contact: str) -> Floats:
+    """Centre (d, n_t) of the cone of a contact: 0, but for a law with offsets."""
+    law = sol.scene[contact].law
+    offsets = np.array(law.numeric().offsets() or (0.0,) * len(sol.force(contact)), dtype=float)
+    found: Floats = -offsets[:, None] * sol.normal_force(contact)
+    return found
+
+
 def force_window(sol: Solution, contact: str, span: tuple[float, float]) -> tuple[float, float] | None:
     """A few swings of a force that swings too often to be seen."""
 
@@ -73,10 +81,12 @@ def draw_force_history(
     planar = len(force) == 2
     shown = np.hypot(*force) if planar else force[0]
     ax.plot(sol.t, shown, color=paint().stick, linewidth=THIN, label="friction force")
-    if limit is not None:
-        ax.plot(sol.t, limit, color=paint().slip, linestyle="--", linewidth=THIN, label="break-away force")
+    centre = static_centre(sol, contact) if limit is not None else np.zeros((1, 1))
+    if limit is not None and not (planar and centre.any()):
+        bound = {"color": paint().slip, "linestyle": "--", "linewidth": THIN}
+        ax.plot(sol.t, limit + centre[0], label="break-away force", **bound)
         if not planar:
-            ax.plot(sol.t, -limit, color=paint().slip, linestyle="--", linewidth=THIN)
+            ax.plot(sol.t, centre[0] - limit, **bound)
     name = f"|F| of {contact}" if planar else f"F of {contact}"
     finish(ax, x=f"time [{units.time}]", y=f"{name} [{units.force}]", legend=legend)
 
@@ -127,7 +137,11 @@ def _draw_plane(sol: Solution, contact: str, ax: Axes, units: Units, *, legend: 
     if limit is not None:
         angle = np.linspace(0, 2 * np.pi, 3601)
         radius = limit.max(initial=0.0)
-        ax.plot(radius * np.cos(angle), radius * np.sin(angle), "--", color=paint().slip, linewidth=THIN, label="cone")
+        x, y = static_centre(sol, contact)[:, int(np.argmax(limit))] if limit.size else (0.0, 0.0)
+        ax.plot(
+            x + radius * np.cos(angle), y + radius * np.sin(angle), "--", color=paint().slip, linewidth=THIN,
+            label="cone",
+        )  # fmt: skip
     first, second = sol.names.axes(contact)
     finish(ax, x=f"force {along(first)} [{units.force}]", y=f"force {along(second)} [{units.force}]", legend=legend)
 

@@ -158,7 +158,8 @@ def draw_break_away(law: FrictionLaw, ax: Axes, normal_force: float) -> None:
         return
     held = law.break_away(normal_force) if law.kind != "smooth" else 0.0
     slip = law.slip_limit(normal_force) if law.kind != "smooth" else law.creep(0.5).break_away
-    ax.plot([0.0, 0.0, 0.0, 1.0], [0.0, held, slip, slip], **line(0))
+    centre = float(law.numeric().offsets()[0]) if law.offsets() else 0.0  # of slip forward
+    ax.plot([0.0, 0.0, 0.0, 1.0], [0.0, held + centre, slip + centre, slip + centre], **line(0))
     _finish(ax, x="displacement, pulled slowly from rest", y="friction / normal force")
 
 
