@@ -14,6 +14,8 @@ from fricmb.integrate.problem import (
     LAW_SMOOTH,
     NORMAL_CONSTANT,
     NORMAL_LAW,
+    Contacts,
+    Elements,
     Templates,
 )
 from fricmb.system import System
@@ -72,7 +74,7 @@ def contact_slopes(system: System, q: Floats, v: Floats, z: Floats, t: float = 0
     for k in range(system.problem.n_c):
         rows = slice(int(contacts.row[k]), int(contacts.row[k + 1]))
         states = slice(int(contacts.z_start[k]), int(contacts.z_start[k + 1]))
-        N, N_X = _normal(system, k, X)
+        N, N_X = normal_at(contacts, k, X)
         r = float(np.linalg.norm(g[rows]))
         F, rate, J = friction_at(system, k, g[rows], r, N, z[states])
         # J over (g, N, z) of (F, z')
@@ -104,7 +106,7 @@ def linearise(system: System, q: Floats, v: Floats, z: Floats, t: float = 0.0) -
     force_X = np.zeros((n, X.size))
     force_X[:, 1 : 1 + n] -= K[:, :n]
     force_X[:, 1 + n : 1 + 2 * n] -= C[:, :n]
-    _add_elements(system, X, force, force_X)
+    add_elements(problem.elements, X, force, force_X)
     rate, rate_X = np.zeros(n_z), np.zeros((n_z, X.size))
     force_z, rate_z = np.zeros((n, n_z)), np.zeros((n_z, n_z))
     F, g = np.zeros(problem.m), np.zeros(problem.m)
@@ -137,9 +139,9 @@ def stiffness_without_friction(system: System, q: Floats, v: Floats) -> Floats:
     X = np.concatenate([np.zeros(1), q, v, u[0], u[1]])
     force_X = np.zeros((n, X.size))
     force_X[:, 1 : 1 + n] -= problem.linear.Kx[:n, :n]
-    _add_elements(system, X, np.zeros(n), force_X)
+    add_elements(problem.elements, X, np.zeros(n), force_X)
     for k in np.flatnonzero(problem.contacts.normal == NORMAL_LAW):
-        force_X += np.outer(problem.contacts.Wn[:, k], _normal(system, int(k), X)[1])
+        force_X += np.outer(problem.contacts.Wn[:, k], normal_at(problem.contacts, int(k), X)[1])
     K = -force_X[:, 1 : 1 + n]
     return 0.5 * (K + K.T)
 
@@ -154,8 +156,8 @@ def slopes_of(table: Templates, k: int, n_X: int) -> Floats:
     return slopes
 
 
-def _add_elements(system: System, X: Floats, force: Floats, force_X: Floats) -> None:
-    elements = system.problem.elements
+def add_elements(elements: Elements, X: Floats, force: Floats, force_X: Floats) -> None:
+    """Add forces of nonlinear elements (n,) and their derivatives (n, n_X)."""
     table = elements.table
     for k in range(len(table.address)):
         first, last = int(elements.f_start[k]), int(elements.f_start[k + 1])
@@ -170,9 +172,8 @@ def _add_elements(system: System, X: Floats, force: Floats, force_X: Floats) -> 
                 force_X[i] += c * local_X[b]
 
 
-def _normal(system: System, k: int, X: Floats) -> tuple[float, Floats]:
+def normal_at(contacts: Contacts, k: int, X: Floats) -> tuple[float, Floats]:
     """Normal force and its derivative by X; both 0 where the contact is open."""
-    contacts = system.problem.contacts
     if contacts.normal[k] == NORMAL_CONSTANT:
         return float(contacts.N[k]), np.zeros(X.size)
     table = contacts.normal_table

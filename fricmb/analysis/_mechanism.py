@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from fricmb.analysis._errors import Floats
-from fricmb.analysis._linearise import friction_at, slopes_of
+from fricmb.analysis._linearise import add_elements, friction_at, normal_at, slopes_of
 from fricmb.integrate.mechanism import Mechanism, loads_of
 from fricmb.integrate.model.table_values import arguments, evaluate
-from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, NORMAL_REACTION, Templates
+from fricmb.integrate.problem import NORMAL_LAW, NORMAL_REACTION, Templates
 from fricmb.system import MechanismSystem
 
 
@@ -61,7 +61,7 @@ class _Extended:
         self.g, self.g_X = np.zeros(n_p), np.zeros((n_p, X.size))
         self.N, self.N_X, self.N_lam = np.zeros(n_c), np.zeros((n_c, X.size)), np.zeros((n_c, lam.size))
         self._structure()
-        self._elements()
+        add_elements(problem.elements, X, self.force, self.force_X)
         for j in range(len(m.joints.port)):
             self._joint(j)
         for c in range(n_c):
@@ -81,25 +81,6 @@ class _Extended:
                     self.force_X[i, columns[j]] -= value
         for i, j, value in zip(m.B.row, m.B.column, m.B.value, strict=True):
             self.force[i] += value * self.X[u[0, j]]
-
-    def _elements(self) -> None:
-        elements = self.system.problem.elements
-        for k in range(len(elements.table.address)):
-            first, last = int(elements.f_start[k]), int(elements.f_start[k + 1])
-            out, slopes = self._evaluated(elements.table, k, lambda n_x, n=last - first: n * (1 + n_x) + 3)
-            n_f = last - first
-            local_X = out[n_f : n_f * (1 + len(slopes))].reshape(n_f, -1) @ slopes
-            for b in range(n_f):
-                spread = slice(int(elements.spread_start[first + b]), int(elements.spread_start[first + b + 1]))
-                for i, c in zip(elements.spread_dof[spread], elements.spread_coefficient[spread], strict=True):
-                    self.force[i] += c * out[b]
-                    self.force_X[i] += c * local_X[b]
-
-    def _evaluated(self, table: Templates, k: int, size: object) -> tuple[Floats, Floats]:
-        """Outputs of function k at X, and the slopes (n_x, n_X) of its arguments."""
-        slopes = slopes_of(table, k, self.X.size)
-        n_out = size(len(slopes))  # type: ignore[operator]
-        return evaluate(table, k, arguments(table, k, self.X[:, None]), n_out)[:, 0], slopes
 
     def _scatter(self, table: Templates, a: int) -> Floats:
         """What a unit force on form a is on y (n_y,)."""
@@ -159,14 +140,8 @@ class _Extended:
             share = self._scatter(slip, int(slip.x_start[c]) + 2 * i)
             self.force += share * self.F[a]
             self.force_F[:, a] += share
-        if contacts.normal[c] == NORMAL_CONSTANT:
-            self.N[c] = contacts.N[c]
-            return
-        law = contacts.normal[c] == NORMAL_LAW
-        out, by = self._evaluated(contacts.normal_table, c, lambda n_x: 1 + n_x + (2 if law else 0))
-        if out[0] > 0.0:
-            self.N[c], self.N_X[c] = out[0], out[1 : 1 + len(by)] @ by
-        if law:
+        self.N[c], self.N_X[c] = normal_at(contacts, c, self.X)
+        if contacts.normal[c] == NORMAL_LAW:
             share = self._scatter(contacts.normal_table, int(contacts.normal_table.x_start[c]))
             self.force += share * (self.N[c] - contacts.N0[c])
             self.force_X += np.outer(share, self.N_X[c])

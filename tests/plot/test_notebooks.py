@@ -25,6 +25,9 @@ CELLS = {
     "fm.plot.show(sol.plot.velocities())": 1,
     "import matplotlib.pyplot as plt\nfig, ax = plt.subplots()\nlines = ax.plot([1, 2])": 1,
     "fig, ax = plt.subplots()\nsol.plot.phase('mass.x', ax=ax)\nprint(plt.get_fignums())": 1,
+    # pyplot shows its figure at the end of the cell; the semicolon keeps the notebook from showing the value, too
+    "fig, ax = plt.subplots()\nsol.plot.phase('mass.x', ax=ax);": 1,
+    "fig, ax = plt.subplots()\npicture = sol.plot.phase('mass.x', ax=ax)": 1,
     "sol.plot.transitions().get_size_inches()": 1,
     "assert not plt.get_fignums()": 0,
 }
