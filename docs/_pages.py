@@ -6,6 +6,7 @@ import inspect
 import re
 from collections import Counter
 
+from _pictures import STORIES
 from numpydoc.docscrape import NumpyDocString
 
 import fricmb as fm
@@ -146,7 +147,8 @@ def model_pages(pictures) -> str:
         lines += [
             f"## {model.name}", "",
             model.summary + f" Standard run: to t = {model.t_end:g}"
-            + (" s" if model.units.time == "s" else "") + f". {{func}}`API <fricmb.models.{model.name}>`", "",
+            + (" s" if model.units.time == "s" else "") + f".{_story(model)}"
+            + f" {{func}}`API <fricmb.models.{model.name}>`", "",
             f"```{{image}} {scheme}", f":alt: Scheme of {model.name}: bodies, springs, contacts or joints",
             ":class: half", "```",
             f"```{{image}} {run}", f":alt: Velocities in the standard run of {model.name} over time",
@@ -154,6 +156,14 @@ def model_pages(pictures) -> str:
             f"`fricmb run {model.name}`, arguments by `--set`: {{ref}}`table <parameters-{model.name}>`", "",
         ]  # fmt: skip
     return "\n".join(lines)
+
+
+def _story(model) -> str:
+    """What the picture of a run shows where it is no standard run."""
+    if model.name not in STORIES:
+        return ""
+    t_end, arguments = STORIES[model.name]
+    return f" The picture: {', '.join(f'{k}={v:g}' for k, v in arguments.items())}, to t = {t_end:g} s."
 
 
 def model_parameters() -> str:
