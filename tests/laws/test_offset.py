@@ -207,8 +207,7 @@ def test_pictures_show_the_limits_of_both_senses():
     import matplotlib.pyplot as plt
 
     sol = fm.simulate(block(BY_SENSE, 8 * sympy.sin(fm.t)), t_end=12.0)
-    ax = sol.plot.force("feet")
-    ax = ax if hasattr(ax, "lines") else ax.axes[0]
+    (ax,) = sol.plot.force("feet").axes
     limits = sorted({round(float(line.get_ydata()[0]), 9) for line in ax.lines if np.ptp(line.get_ydata()) < 1e-9})
     assert limits == pytest.approx([-2.0, 6.0])
     plt.close("all")
