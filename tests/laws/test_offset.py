@@ -211,3 +211,47 @@ def test_pictures_show_the_limits_of_both_senses():
     limits = sorted({round(float(line.get_ydata()[0]), 9) for line in ax.lines if np.ptp(line.get_ydata()) < 1e-9})
     assert limits == pytest.approx([-2.0, 6.0])
     plt.close("all")
+
+
+def row(n, tied, by_hand):
+    """Blocks in a row; by hand the offset is a force."""
+    parts = []
+    for i in range(n):
+        body = fm.Body(f"b{i}", mass=1.0, velocity={"x": 0.3 * (-1) ** i})
+        law = fm.laws.Coulomb(mu_s=0.4) if by_hand else fm.laws.Offset.by_sense(mu_s=(0.2, 0.6))
+        held = parts[-1][0] if tied and parts else fm.GROUND
+        parts.append((
+            body, fm.Spring(f"k{i}", body, held, axis="x", stiffness=20.0),
+            fm.Contact(f"c{i}", body, law=law, normal_force=1.0),
+            *([fm.Force(f"o{i}", body, axis="x", value=0.2)] if by_hand else []),
+        ))  # fmt: skip
+    push = fm.Force("f", parts[-1][0], axis="x", value=1.2 * sympy.sin(2 * fm.t))
+    return fm.Scene("row", [*(part for own in parts for part in own), push])
+
+
+@pytest.mark.parametrize(("n", "tied"), [(5, True), (5, False), (100, True)])
+def test_it_is_coulombs_law_beside_a_force(n, tied):
+    """By islands, in bulk, and in part; the same to round-off."""
+    law, hand = (fm.simulate(row(n, tied, by_hand), t_end=3.0, rtol=1e-8) for by_hand in (False, True))
+    assert len(law.events) == len(hand.events) > 5
+    for i in range(n):
+        assert law[f"b{i}.x"][-1] == pytest.approx(hand[f"b{i}.x"][-1], abs=1e-13)
+    assert law.force("c0")[0, -1] == pytest.approx(hand.force("c0")[0, -1] + 0.2, abs=1e-9)
+    assert np.abs(law.energy.residual).max() < 1e-9
+    if not tied:
+        part = fm.simulate(row(n, tied, False), t_end=3.0, rtol=1e-8, observe=["b4.x"])
+        assert part.names.dofs == ("b4.x",)
+        assert part.force("c4")[0, -1] == pytest.approx(law.force("c4")[0, -1], abs=1e-7)
+
+
+def test_a_mass_on_a_belt_swings_about_what_slip_takes():
+    """A limit cycle: the offset moves it along and leaves its period, 2 (pi - atan(D w/v))/w + 2 D/v."""
+    body, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.2})
+    scene = fm.Scene("belt", [
+        body, belt, fm.Spring("k", body, axis="x", stiffness=1.0),
+        fm.Contact("c", body, belt, law=BY_SENSE, normal_force=1.0),
+    ])  # fmt: skip
+    assert fm.analysis.steady_sliding(scene).position("m.x") == pytest.approx(0.5, rel=1e-12)
+    cycle = fm.analysis.limit_cycle(scene, start=fm.simulate(scene, t_end=40.0, rtol=1e-9))
+    D = 0.1
+    assert cycle.period == pytest.approx(2 * (np.pi - np.arctan(D / 0.2)) + 2 * D / 0.2, rel=1e-9)
