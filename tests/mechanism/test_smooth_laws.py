@@ -109,3 +109,26 @@ def test_states_that_move_nothing_cost_no_steps_beside_an_idle_body(name):
     times = np.linspace(0.1, 12.0, 60)
     apart = np.abs(alone.at(times)["mass.x"] - other.at(times)["mass.x"]).max()
     assert apart < 2e-6 * np.abs(alone.at(times)["mass.x"]).max()
+
+
+def test_speed_of_a_plate_is_no_round_off_of_rest():
+    """A fault creeps at 1.2 nm/s under stresses of MPa; v' = 0 where load and friction balance, for 10^6 s almost."""
+    a, b, L, f_0, sigma, start = 0.01, 0.015, 8e-3, 0.6, 5e7, 1.2e-9
+    psi = np.log(1e-6 / start)
+    law = fm.laws.RateAndState(mu_0=f_0, a=a, b=b, L=L, v_0=1e-6, v_rest=1e-14)
+    k = 0.3 * sigma * (b - a) / L
+    held = sigma * (f_0 + a * np.log(start / 1e-6) + b * psi)
+    fault = fm.Body("fault", mass=1e4, velocity={"x": start})
+    plate = fm.Driven("plate", velocity={"x": 1e-9}, position={"x": held / k})
+    still = fm.RigidBody("still", mass=1.0, inertia=1.0)
+    spring = fm.Spring("k", fault, plate, axis="x", stiffness=k)
+    rubs = fm.Contact("c", fault, law=law, normal_force=sigma)
+    scene = fm.Scene("fault", [fault, plate, still, fm.Fixed("fixed", still), spring, rubs])
+    sol = fm.simulate(scene, t_end=1e6, rtol=1e-6, method="radau", initial={"state": {"c": [psi]}})
+    # quasi-static: a v'/v + b psi' = -k (v - V)/sigma, with psi' of the aging law
+    rates = lambda t, y: [  # noqa: E731
+        y[0] / a * (-k * (y[0] - 1e-9) / sigma - b * (1e-6 * np.exp(-y[1]) - y[0]) / L),
+        (1e-6 * np.exp(-y[1]) - y[0]) / L,
+    ]
+    want = solve_ivp(rates, (0.0, 1e6), [start, psi], method="LSODA", rtol=1e-10, atol=[1e-20, 1e-12]).y[0, -1]
+    assert sol.velocity("fault.x")[-1] == pytest.approx(want, rel=1e-5)

@@ -138,3 +138,16 @@ def test_play_whose_damping_sets_in_at_once(method, rtol):
     np.testing.assert_allclose([sol["m.x"][-1], sol["l.x"][-1]], exact, atol=4.0 * rtol + 1e-8)
     assert [e.kind for e in sol.events] == told
     assert sol.audit().ok, sol.audit()
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_run_that_ends_on_its_way_into_rest_goes_on_at_rest(method):
+    """Slip that a located transition leaves off 0 by round-off, to either side, once turned round before it stuck."""
+    scene = fm.models.band_brake()
+    whole = fm.simulate(scene, t_end=1.6, rtol=1e-6, method=method)
+    for event in (e for e in whole.events if e.kind == "stick"):
+        for off in (-1e-12, 0.0, 1e-12):
+            first = fm.simulate(scene, t_end=event.t + off, rtol=1e-6, method=method)
+            then = fm.simulate(scene, t_end=1.6, rtol=1e-6, method=method, initial=first)
+            told = [e.kind for sol in (first, then) for e in sol.events]
+            assert told == [e.kind for e in whole.events]

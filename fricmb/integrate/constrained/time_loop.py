@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
 from fricmb.integrate.constrained.mode_decision import decide, mark_rest
 from fricmb.integrate.constrained.mode_enumeration import FOUND, SEVERAL
-from fricmb.integrate.constrained.mode_trial import SLIPS_ON, most_light
+from fricmb.integrate.constrained.mode_trial import most_light
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
@@ -22,11 +22,11 @@ from fricmb.integrate.constrained.recorder import Record, crowded
 from fricmb.integrate.constrained.singular_position import start_watch, starts_dependent
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.constrained.transition import let_go
+from fricmb.integrate.constrained.transition import let_go, take_given
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
-from fricmb.integrate.problem import SLIP, Codes, Floats
+from fricmb.integrate.problem import Codes, Floats
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
 from fricmb.integrate.run.outcomes import (
     ACCEPTED,
@@ -69,9 +69,7 @@ def begin(
         return FAIL_SINGULAR
     mark_rest(mech, y, small, part)
     if given:
-        for i in range(part.shape[0]):
-            if y.mode[i] == SLIP:
-                part[i] = SLIPS_ON
+        take_given(mech, k, w, y, c.span[1] - c.span[0], part)
     code = decide(mech, k, w, y, part, -1)
     if code != FOUND:
         if margins(mech, k, w, y, out, True) <= 0.0:

@@ -124,6 +124,25 @@ def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> b
     return bool(done)
 
 
+#: Part of the run within which slip that is given comes to rest, or has just passed it: it is at rest.
+AT_ONCE = 1e-11
+
+
+@kernel
+def take_given(mech: Mech, k: Moving, w: Instant, y: State, span: float, part: Codes) -> None:
+    """Keep slip that is given, but where the run before has ended on its way into rest.
+
+    Where a transition was located there, slip is off 0 by round-off to either side, and slows down.
+    """
+    known = react(mech, k, w, y, False)
+    for c in range(part.shape[0]):
+        if y.mode[c] != SLIP:
+            continue
+        a = mech.port.row[c]
+        slows = known and not plane(mech, c) and mech.port.law[c] != LAW_SMOOTH and y.n[a] * y.ga[a] < 0.0
+        part[c] = ARRIVES if slows and abs(y.g[a]) <= AT_ONCE * span * abs(y.ga[a]) else SLIPS_ON
+
+
 @block
 def change_modes(
     mech: Mech,
