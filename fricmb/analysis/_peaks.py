@@ -73,7 +73,7 @@ class Peaks:
         return "\n".join(rows)
 
     def near(self, omega: float) -> int:
-        """Number of the peak nearest to a frequency; AnalysisError if there is none at all."""
+        """Index of the peak nearest to a frequency; AnalysisError if no peak was found."""
         if not len(self):
             raise AnalysisError(f"{_WHO}: there are no peaks")
         return int(np.argmin(np.abs(self.omega - omega)))

@@ -215,7 +215,7 @@ class FEModel:
         return found
 
     def nodes(self, name: str | None = None, *, where: Callable[[Floats], Any] | None = None, near: Any = None) -> Ints:
-        """Numbers of nodes.
+        """Find nodes by the name of a set, by their coordinates, or all of them.
 
         Parameters
         ----------
@@ -316,7 +316,7 @@ class FEModel:
         return replace(self, K=symmetric_part(self.K), parts={**self.parts, name: rest}, triangles={name: "full"})
 
     def in_units(self, units: str = "SI") -> FEModel:
-        """The same in other units.
+        """Convert to other units.
 
         Raises
         ------

@@ -180,7 +180,7 @@ class FrictionLaw(Regimes, Declaration):
         return ()
 
     def remark(self) -> str:
-        """What a run with it says in its notes; "" where there is nothing to say."""
+        """Sentence that the notes of a run with this law contain; "" for none."""
         return ""
 
     @property

@@ -170,7 +170,7 @@ class Modes:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measured:
-    """What was in a file.
+    """Contents of a file of measurements.
 
     Attributes
     ----------
@@ -195,7 +195,7 @@ class Measured:
     notes: tuple[str, ...] = ()
 
     def in_units(self, units: str = "SI") -> Measured:
-        """The same in other units, by the factors that a universal file states (dataset 164).
+        """Convert to other units, by the factors that a universal file states (dataset 164).
 
         Signals and responses are converted where the file says what they are; a note counts others.
 

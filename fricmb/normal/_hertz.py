@@ -52,8 +52,9 @@ class Hertz(NormalLaw):
         return delta, norm((delta,))
 
     def define_normal(self, e: Any, e_dot: Any) -> Any:
-        """Negative beyond the opening, so that its instant is a change of sign; damping acts on what is pressed alone.
+        """Normal force; negative beyond the opening, so that the contact opens where it changes sign.
 
+        Damping acts only while the contact is pressed.
         With ``1 - damping e'`` on both sides, bodies apart that part faster than 1/damping would push each other away.
         """
         import sympy

@@ -152,7 +152,7 @@ class SolutionPlots(SignalPlots):
     def hysteresis(
         self, name: str, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
     ) -> Figure:
-        """Force over displacement of a contact, a joint with friction or an element: the loop whose area is lost.
+        """Force over displacement of a contact, joint or element; the area of the loop is the energy lost.
 
         The force is that which resists; displacements of contacts count from the start of what is drawn.
 

@@ -390,7 +390,7 @@ class ModalBody(Part):
         return frf(self, a, b, f, kind, residual)
 
     def compare(self, test: Any, *, points: Mapping[str, int] | None = None) -> Any:
-        """How like a test the body is.
+        """Compare the body with a test: modes by frequency, damping and shape, and frequency responses.
 
         Parameters
         ----------
@@ -413,7 +413,7 @@ class ModalBody(Part):
         return compare(self, test, points)
 
     def matrix(self, name: str, *, M: Any = None, C: Any = None, K: Any = None, scale: Any = None) -> MatrixElement:
-        """One of the body's ``parts`` as an element of a scene.
+        """Make an element of a scene from one of the body's ``parts``.
 
         Parameters
         ----------

@@ -218,7 +218,7 @@ class Rope(Joint):
         return (*out, drum)
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """No more is out than there is."""
+        """Length of the rope less the length between its ends and on the drum; it must not fall below 0."""
         return (self.length - x[0] - x[1],)
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -251,7 +251,7 @@ class Scene:
         return motions
 
     def has_motion(self, name: str) -> bool:
-        """Whether there is a motion of that name."""
+        """Whether the scene has a motion of that name: a dof, a point or a driven body along an axis."""
         return isinstance(name, str) and name in self._named_motions()
 
     def motion(self, name: str) -> LinearForm:

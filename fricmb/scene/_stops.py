@@ -96,16 +96,16 @@ class _Touching(Element):
         return self.stiffness * depth * self.hunt_crossley + self.damping * share**2 * (3 - 2 * share)
 
     def define_potential(self, x: tuple[Any, ...]) -> Any:
-        """Of springs that cannot pull."""
+        """Potential energy of springs that push and cannot pull."""
         import sympy
 
         return sum(self.stiffness * sympy.Max(0, depth) ** 2 / 2 for depth, _ in self.depths(x[0], 0))
 
     def define_dissipation(self, x: tuple[Any, ...], x_dot: tuple[Any, ...]) -> Any:
-        """Of what holds against parting as well, but no more than the spring pushes.
+        """Dissipation function; damping resists separation with at most the force of the spring.
 
-        Where it parts faster the spring alone would still push, and is held back: the force is 0, and what was stored
-        is lost.
+        At faster separation the total force would pull; it is 0 instead, and the energy that the spring gives back is
+        lost.
         """
         import sympy
 
@@ -281,9 +281,9 @@ class Backlash(_Touching):
         return x if self.ratio is None else (x[0] + self.ratio * x[1],)
 
     def define_potential(self, x: tuple[Any, ...]) -> Any:
-        """Of springs that cannot pull."""
+        """Potential energy of springs that push and cannot pull."""
         return super().define_potential(self._one(x))
 
     def define_dissipation(self, x: tuple[Any, ...], x_dot: tuple[Any, ...]) -> Any:
-        """Of what holds against parting as well, but no more than the spring pushes."""
+        """Dissipation function; damping resists separation with at most the force of the spring."""
         return super().define_dissipation(self._one(x), self._one(x_dot))

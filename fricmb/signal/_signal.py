@@ -101,7 +101,7 @@ class Signal(Arithmetic):
         kind: Literal["linear", "hold", "cubic"] = "linear", outside: Literal["refuse", "hold", "zero"] = "refuse",
         step: float | None = None,
     ) -> Signal:  # fmt: skip
-        """A series from a file.
+        """Read a series from a file.
 
         Parameters
         ----------
@@ -248,7 +248,7 @@ class Signal(Arithmetic):
 
     @answers
     def resampled(self, step: float) -> Signal:
-        """At even times; what is too fast for them is filtered out first (``scipy.signal.resample_poly``)."""
+        """The series at evenly spaced times, after a filter against aliasing (``scipy.signal.resample_poly``)."""
         from fricmb.signal._filters import resampled
 
         t, y = resampled(self, step)

@@ -179,7 +179,7 @@ class Solution(Signals):
 
     @staticmethod
     def load(path: str | PathLike[str], *, laws: Any = ()) -> Solution:
-        """Read a file that :meth:`save` wrote.
+        """Load a run from a file that :meth:`save` wrote.
 
         Nothing in a file is executed: arrays, names, events and energies are numpy arrays, scene and dense output
         (``sol(t)``, ``sol.at``) are data, opened when one of them is first asked for.  What belongs to fricmb is found

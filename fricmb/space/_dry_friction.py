@@ -124,7 +124,7 @@ class DryFriction(AxisJoint):
         return float(self.friction.slip_limit())
 
     def labels(self) -> tuple[str, ...]:
-        """What is rubbed."""
+        """Names of the coordinates along which friction acts."""
         return (self.along,)
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:

@@ -95,7 +95,7 @@ class InCylinder(OneSided, SpaceJoint):
         return np.array([*triad(e), e])
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """The ball's middle from the axis, then how far its surface has turned, then how far it is off: R_c - R."""
+        """Place of the ball's centre about the axis, turn of its surface, distance R_c - R."""
         ball: Any = self.a
         start, own = (float(c) for c in value_of(self.through)), float(value_of(ball.radius))
         place = [ball.motion(c) - LinearForm((), s) for c, s in zip("xyz", start, strict=True)]

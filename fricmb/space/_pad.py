@@ -156,7 +156,7 @@ class Pad(SpaceJoint):
         return tuple(rows)
 
     def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
-        """Of the spring; below 0 the pad is off."""
+        """Normal force of the spring; below 0 the pad has lifted off."""
         return _spring(self, x)
 
     def define_load_rates(self, x: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -247,7 +247,7 @@ class Study(Grid):
 
     @answers
     def amplitudes(self, name: str, *, workers: Any = None, **options: Any) -> Floats:
-        """Half the range (n_a, n_b) of a motion in the vibration that growth ends in, at each place.
+        """Amplitude (n_a, n_b) of a motion at each place: half its range in the vibration that growth ends in.
 
         Parameters
         ----------
@@ -284,7 +284,7 @@ class Study(Grid):
         seed: int = 0,
         workers: Any = None,
     ) -> Uncertainty:
-        """Probability of growth where parameters are not known for sure.
+        """Probability that steady sliding is unstable when parameters are uncertain.
 
         Parameters
         ----------
@@ -401,7 +401,7 @@ class Study(Grid):
         return overview(self, ax)
 
     def report(self, path: str | PathLike[str]) -> Path:
-        """Write a page that a browser opens without a network: the map, thresholds, and all that was asked."""
+        """Write a page that a browser opens without a network: the map, the thresholds, and every answer so far."""
         from fricmb.squeal._report import write_report
 
         return write_report(self, Path(path))
