@@ -79,14 +79,9 @@ class _Limit:
     def terms(self, t: Floats) -> tuple[Floats, Floats, Floats]:
         """Depth, the force of parting over speed and stiffness, and the rate of the depth."""
         own = self.part.numeric()
-        ratio = getattr(own, "ratio", None)
         seen = self.sol.at(t)
         x, rate = (from_scene(seen, quantity, self.part.name) for quantity in ("elongation", "rate"))
-        if ratio is not None:
-            x, rate = (rows[0] + ratio * rows[1] for rows in (x, rate))
-        else:
-            x, rate = x[0], rate[0]
-        depth, speed = own.depths(x, rate)[self.i]
+        depth, speed = own.depths(*own.coordinate(x, rate, np))[self.i]
         share = np.clip(depth / own.damping_depth, 0.0, 1.0) if own.damping_depth is not None else 0.0 * depth
         return depth, own.grip(depth, share) / own.stiffness, speed
 

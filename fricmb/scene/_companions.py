@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from fricmb.scene._guide_friction import GuideFriction
 from fricmb.scene._joint import Joint
 from fricmb.scene._joints import Prismatic
+from fricmb.scene._resistance import Resistance
 
 
 def with_companions(parts: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -39,11 +39,11 @@ def keeps_companions(old: Any, new: Any) -> bool:
 
 
 def with_guides(parts: tuple[Any, ...], changed: dict[str, Any]) -> dict[str, Any]:
-    """Changed parts, and behind guides whose angle is another the friction along them."""
+    """Changed parts, and behind guides whose angle is another what acts along them."""
     turned = {name: part.angle for name, part in changed.items() if isinstance(part, Prismatic)}
     if not turned:
         return changed
-    along = [part for part in parts if isinstance(part, GuideFriction) and part.guide in turned]
+    along = [part for part in parts if getattr(part, "guide", None) in turned and hasattr(part, "angle")]
     follow = {part.name: replace(part, angle=turned[part.guide]) for part in along if part.name not in changed}
     return {**changed, **follow}
 
@@ -61,4 +61,4 @@ def _alike(one: Any, other: Any) -> bool:
 
 def _belongs(part: Any) -> bool:
     """Whether a part stands beside another one."""
-    return bool(getattr(part, "of", "")) and isinstance(part, Joint)
+    return isinstance(part, Resistance)

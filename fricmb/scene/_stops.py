@@ -9,12 +9,16 @@ from fricmb.errors import SceneError, shown
 from fricmb.scene._axes import check_axis, check_ends, direction
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._one_coordinate import ANGLE, one_coordinate
+from fricmb.scene._joints import Prismatic
+from fricmb.scene._one_coordinate import ANGLE, joint_ends, one_coordinate
 from fricmb.scene._part import GROUND, End
-from fricmb.scene._rigid import angle_of
+from fricmb.scene._rigid import angle_of, plane_motion
 from fricmb.scene._rigid_stops import RigidBacklash, RigidStop
 from fricmb.scene._turning import relative_angle
 from fricmb.values import value_of
+
+#: The axis of what is along a guide.
+GUIDE = "guide"
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +32,7 @@ class _Touching(Element):
 
     bends: ClassVar[bool] = True
     positive: ClassVar[tuple[str, ...]] = ("stiffness",)
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axis")
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axis", "guide")
 
     a: End
     b: End = GROUND
@@ -38,6 +42,8 @@ class _Touching(Element):
     hunt_crossley: Any = 0.0
     damping: Any = 0.0
     damping_depth: Any = None
+    guide: Any = None
+    angle: Any = None
 
     def __new__(cls, *arguments: Any, restitution: Any = None, **fields: Any) -> Any:
         """A part of this class, or with a coefficient of restitution one that does not give."""
@@ -68,9 +74,33 @@ class _Touching(Element):
 
     def _check_axis(self) -> None:
         """Refuse an axis that is not accepted, and take what a joint stands for."""
+        if isinstance(self.axis, Prismatic):
+            self._take_guide(self.axis)
+        if self.guide is not None:
+            self._set("axis", GUIDE)
+            self._set("angle", self._number("angle", self.angle))
+            return
+        if self.angle is not None:
+            self._refuse("angle", self.angle, "left out: a guide brings it")
         b, axis = one_coordinate(self, self.a, self.b, self.axis)
         self._set("b", b)
         self._set("axis", axis if axis == ANGLE else check_axis(self, "axis", axis))
+
+    def _take_guide(self, guide: Prismatic) -> None:
+        """Ends, name and angle of a guide, along whose line the coordinate is."""
+        mine, other = joint_ends(self, self.a, self.b, guide)
+        if mine is not guide.a:
+            self._refuse("a", mine.end_name, f"the end of the guide {guide.name!r} that slides, {guide.a.end_name!r}")
+        for field, value in (("a", mine), ("b", other), ("guide", guide.name), ("angle", guide.angle)):
+            self._set(field, value)
+
+    def coordinate(self, x: Any, rates: Any, functions: Any) -> tuple[Any, Any]:
+        """What is limited, and its rate, of the local coordinates; ``functions``: NumPy or SymPy."""
+        if self.guide is None:
+            return x[0], rates[0]
+        cos, sin = functions.cos(x[2] + self.angle), functions.sin(x[2] + self.angle)
+        across = x[1] * cos - x[0] * sin
+        return x[0] * cos + x[1] * sin, rates[0] * cos + rates[1] * sin + across * rates[2]
 
     def _check_limits(self) -> None:
         """Refuse limits that are not accepted."""
@@ -80,7 +110,10 @@ class _Touching(Element):
         raise NotImplementedError
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """What is limited."""
+        """What is limited; along a guide the distance of its points, and the angle of its line's body."""
+        if self.guide is not None:
+            (ax, ay), (bx, by) = plane_motion(self, "a", self.a), plane_motion(self, "b", self.b)
+            return ax - bx, ay - by, angle_of(self, "b", self.b)
         if self.axis == ANGLE:
             return (relative_angle(self, self.a, self.b),)
         return (direction(self, "axis", self.axis, self.a, self.b).form,)
@@ -99,7 +132,8 @@ class _Touching(Element):
         """Potential energy of springs that push and cannot pull."""
         import sympy
 
-        return sum(self.stiffness * sympy.Max(0, depth) ** 2 / 2 for depth, _ in self.depths(x[0], 0))
+        place, _ = self.coordinate(x, (0, 0, 0), sympy)
+        return sum(self.stiffness * sympy.Max(0, depth) ** 2 / 2 for depth, _ in self.depths(place, 0))
 
     def define_dissipation(self, x: tuple[Any, ...], x_dot: tuple[Any, ...]) -> Any:
         """Dissipation function; damping resists separation with at most the force of the spring.
@@ -110,7 +144,7 @@ class _Touching(Element):
         import sympy
 
         lost: Any = 0
-        for depth, rate in self.depths(x[0], x_dot[0]):
+        for depth, rate in self.depths(*self.coordinate(x, x_dot, sympy)):
             spring = self.stiffness * depth
             grip = self.grip(depth, 0 if self.damping_depth is None else sympy.Min(1, depth / self.damping_depth))
             pressed = sympy.Piecewise((grip * rate**2 / 2, spring + grip * rate > 0), (-spring * rate, True))
@@ -131,8 +165,9 @@ class Stop(_Touching):
         Unique in a scene, without dots.
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
-    axis : "x", "y", "z", "angle", tuple of float, or Revolute
-        The coordinate x, of a less that of b, as in :class:`DryFriction`.
+    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+        The coordinate x, of a less that of b, as in :class:`DryFriction`; along a guide that of its line, which may
+        turn (``guide`` and ``angle`` keep its name and direction; not beside restitution).
     lower, upper : float, optional
         Its limits, one of them or both, lower < upper.
     stiffness : float
@@ -212,8 +247,8 @@ class Backlash(_Touching):
         Unique in a scene, without dots.
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
-    axis : "x", "y", "z", "angle", tuple of float, or Revolute
-        The coordinate, of a less that of b, as in :class:`DryFriction`.
+    axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
+        The coordinate, of a less that of b, as in :class:`Stop`.
     ratio : float, optional
         In place of ``axis``, of two wheels in mesh: the coordinate is ``angle of a + ratio (angle of b)``, as of a
         :class:`Gear` (radius of b over that of a, not 0; < 0 for an internal gear or a shaft).
@@ -257,6 +292,8 @@ class Backlash(_Touching):
         if self.ratio is None:
             super()._check_axis()
             return
+        if self.guide is not None or self.angle is not None:
+            self._refuse("ratio", self.ratio, "left out along a guide")
         if self.axis is not None:
             self._refuse("ratio", self.ratio, "left out beside axis")
         self._set("ratio", self._number("ratio", self.ratio))
@@ -276,14 +313,8 @@ class Backlash(_Touching):
             return super().local_coordinates()
         return angle_of(self, "a", self.a), angle_of(self, "b", self.b)
 
-    def _one(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+    def coordinate(self, x: Any, rates: Any, functions: Any) -> tuple[Any, Any]:
         """The play, of wheels in mesh from both angles."""
-        return x if self.ratio is None else (x[0] + self.ratio * x[1],)
-
-    def define_potential(self, x: tuple[Any, ...]) -> Any:
-        """Potential energy of springs that push and cannot pull."""
-        return super().define_potential(self._one(x))
-
-    def define_dissipation(self, x: tuple[Any, ...], x_dot: tuple[Any, ...]) -> Any:
-        """Dissipation function; damping resists separation with at most the force of the spring."""
-        return super().define_dissipation(self._one(x), self._one(x_dot))
+        if self.ratio is None:
+            return super().coordinate(x, rates, functions)
+        return x[0] + self.ratio * x[1], rates[0] + self.ratio * rates[1]

@@ -138,3 +138,50 @@ def test_it_follows_its_guide_and_is_refused_by_name():
         fm.DryFriction("d", block, axis=scene["guide"], static=1.0, slide=1.0)
     with pytest.raises(fm.SceneError, match="static or law must be given"):
         fm.DryFriction("d", block, axis=scene["guide"])
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("angle", [0.0, 0.4])
+def test_a_stop_along_a_guide_that_spins(method, angle):
+    """s'' = w^2 s, and in the stop s'' = -W^2 (s - s_e): it touches at acosh(u/s)/w, and for 2 (pi + atan(..))/W."""
+    w, u, s, k = 2.0, 0.8, 0.3, 500.0
+    table = fm.RigidBody("table", mass=5.0, inertia=1.0, angular_velocity=w)
+    block = fm.RigidBody(
+        "block", mass=M, inertia=0.02, position=(s * np.cos(angle), s * np.sin(angle)),
+        velocity=(-s * w * np.sin(angle), s * w * np.cos(angle)), angular_velocity=w,
+    )  # fmt: skip
+    guide = fm.Prismatic("guide", block, table, angle=angle)
+    stop = fm.Stop("end", block, axis=guide, upper=u, stiffness=k)
+    drive = fm.DrivenAngle("drive", table, angle=w * fm.t)
+    scene = fm.Scene("spinning", [table, block, fm.Revolute("hub", table), drive, guide, stop])
+    sol = fm.simulate(scene, t_end=1.1, rtol=1e-9, method=method)
+    begin = np.arccosh(u / s) / w
+    fast = np.sqrt(k / M - w**2)
+    away = u - k * u / M / fast**2
+    end = begin + 2 * (np.pi + np.arctan(s * w * np.sinh(w * begin) / fast / away)) / fast
+    touches = sol.touches("end")
+    assert touches.side == ["upper"]
+    assert float(touches.begin[0]) == pytest.approx(begin, rel=1e-8)
+    assert float(touches.end[0]) == pytest.approx(end, rel=1e-8)
+    assert sol.audit().ok
+    assert scene.with_parameters({"guide.angle": 0.1})["end"].angle == 0.1
+
+
+def test_play_along_a_guide_is_that_along_its_direction():
+    """On a table that stays, the guide is a direction."""
+    def scene(axis, angle):
+        table = fm.RigidBody("table", mass=5.0, inertia=1.0)
+        block = fm.RigidBody("block", mass=M, inertia=0.02)
+        guide = fm.Prismatic("guide", block, table, angle=angle)
+        made = fm.Backlash(
+            "play", block, table, axis=guide if axis is None else axis, gap=0.1, stiffness=300.0, hunt_crossley=0.5
+        )
+        push = fm.Force("f", block, axis=(np.cos(angle), np.sin(angle)), value=5 * sympy.sin(3 * fm.t))
+        return fm.Scene("play", [table, block, fm.Fixed("weld", table), guide, made, push])
+
+    angle = 0.7
+    along, direct = (
+        fm.simulate(scene(axis, angle), t_end=3.0, rtol=1e-9) for axis in (None, (np.cos(angle), np.sin(angle)))
+    )
+    assert along["block.x"][-1] == pytest.approx(direct["block.x"][-1], abs=1e-10)
+    np.testing.assert_allclose(along.touches("play").begin, direct.touches("play").begin, atol=1e-9)

@@ -49,7 +49,8 @@ def test_what_cannot_be_is_refused_by_name():
     refused("axis must be 'x', 'y', 'z', 'angle'", lambda: stop(axis="turn"))
     refused("axis 'z' needs the axis 'z'", lambda: stop(axis="z"))
     refused("a must turn", lambda: stop(axis="angle"))
-    refused("axis must be a Revolute of the plane; along a guide", lambda: stop(WHEEL, axis=fm.Prismatic("g", WHEEL)))
+    assert stop(WHEEL, axis=fm.Prismatic("g", WHEEL)).guide == "g"
+    refused("angle must be left out: a guide brings it", lambda: stop(angle=0.1))
     play = {"gap": 0.1, "stiffness": 1.0}
     refused("gap must be a finite number >= 0", lambda: fm.Backlash("m", BLOCK, axis="x", gap=-0.1, stiffness=1.0))
     refused("ratio must be another than 0", lambda: fm.Backlash("m", WHEEL, OTHER, ratio=0.0, **play))

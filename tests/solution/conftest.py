@@ -100,6 +100,9 @@ class Mechanics:
     def delivered(self, samples):
         return None
 
+    def rubbed(self, samples):
+        return None
+
     def potential(self, samples, moving=None):
         return 0.5 * self.stiffness * samples.q[0] ** 2
 
