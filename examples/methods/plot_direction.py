@@ -51,7 +51,7 @@ for beside, style in ((1e-1, "-"), (1e-2, "--"), (1e-3, "-."), (1e-4, ":")):
     ax.plot(t, np.degrees(np.arctan2(vy, vx)), style, label=f"thrown {beside:g} beside it: least speed {least:.0e}")
     assert len(sol.events.of(kind="stick")) == 0
 ax.set(xlabel="time", ylabel="direction of slip (degrees)")
-ax.legend(loc="upper right")
+ax.legend(loc="upper right", fontsize="x-small")
 
 # %%
 # **Hit or miss.**  With a higher break-away the same throw sticks if it hits rest exactly, and turns if it misses by

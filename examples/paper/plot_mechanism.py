@@ -59,11 +59,11 @@ for (load, mass_ratio), k in kicks.items():
         markersize=4,
         markerfacecolor="none",
     )
-left.set_xlabel("time [1]")
-left.set_ylabel("impulse across in each valley [1]")
+left.set_xlabel("time")
+left.set_ylabel("impulse across in each valley")
 figure.legend(loc="outside upper center", ncols=3, fontsize="small", frameon=False)
-right.set_xlabel("least slip over load [1]")
-right.set_ylabel("impulse over the rotor's speed across [1]")
+right.set_xlabel("least slip over load")
+right.set_ylabel("impulse over the rotor's speed across")
 for ax in (left, right):
     ax.grid(True, linewidth=0.4, alpha=0.5)
 plt.show()

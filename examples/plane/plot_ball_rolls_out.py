@@ -30,7 +30,7 @@ ax.plot(sol.t, sol.velocity("ball.x"), label="speed")
 ax.plot(sol.t, r * sol.relative_velocity("cloth_spinning")[0], label="rim, about the vertical")
 for stop in stops:
     ax.axvline(stop, color="k", lw=0.6, ls="--")
-ax.set(xlabel="t in s", ylabel="m/s")
+ax.set(xlabel="time (s)", ylabel="speed (m/s)")
 ax.legend()
 plt.show()
 

@@ -27,7 +27,7 @@ ax.plot(sol.t, k * sol["pin.x"] / N)
 for mu, name in ((mu_s, "$\\mu_s$"), (mu_k, "$\\mu_k$")):
     ax.axhline(mu, color="0.6", linewidth=0.8, linestyle="--")
     ax.annotate(name, (0.0, mu + 0.008))
-ax.set(xlabel="time (s)", ylabel="force of the arm / N")
+ax.set(xlabel="time (s)", ylabel="force of the arm / N", ylim=(-0.02, 0.56))
 plt.show()
 
 loose, caught = (k * sol.at(sol.events.of(kind=kind).t)["pin.x"] / N for kind in ("slip", "stick"))
