@@ -166,7 +166,12 @@ def fast_crank(L, T):
 FAR = [(1e-9, 1.0), (1e-4, 1.0), (1e4, 1.0), (1e9, 1.0), (1.0, 1e-6), (1.0, 1e6), (1e-9, 1e-6), (1e9, 1e6)]
 
 
-@pytest.mark.parametrize("make", [dry_pin, dry_pin_beside_a_rotor, dry_links, hinge_on_a_slider, fast_crank])
+#: What units may change of the digits: of a loop pivots are others, and the error of a step, a last coefficient with
+#: seven digits of its own, then rejects one step more or less.
+DIGITS = {dry_pin: 1e-13, dry_pin_beside_a_rotor: 1e-13, dry_links: 1e-13, hinge_on_a_slider: 1e-13, fast_crank: 1e-9}
+
+
+@pytest.mark.parametrize("make", DIGITS)
 def test_lengths_and_times_of_any_size_give_the_same_digits(make):
     def run(L, T):
         scene, t_end, angle = make(L, T)
@@ -177,8 +182,8 @@ def test_lengths_and_times_of_any_size_give_the_same_digits(make):
     for units in FAR:
         found = run(*units)
         assert found[1] == kinds
-        assert found[0] == pytest.approx(angle, abs=1e-13 * max(1.0, abs(angle)))
-        np.testing.assert_allclose(found[2], times, rtol=1e-12)
+        assert found[0] == pytest.approx(angle, abs=DIGITS[make] * max(1.0, abs(angle)))
+        np.testing.assert_allclose(found[2], times, rtol=10.0 * DIGITS[make])
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
