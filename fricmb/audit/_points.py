@@ -114,6 +114,8 @@ class Points:
 
     def _joint(self, joint: Any, moment: Moment, found: Found) -> None:
         phi, rate = found.phi[joint.name], found.phi_dot[joint.name]
+        if joint.impact is not None:
+            self._rigid(joint, moment, found)
         held = np.abs(moment.lam[joint.name]) > 0.0 if joint.one_sided else np.ones(phi.shape, dtype=bool)
         for x, x_dot, row, there in zip(phi, rate, found.phi_rows[joint.name], held, strict=True):
             for values, unit in ((x, self.units.q), (x_dot, self.units.v)):
@@ -121,6 +123,14 @@ class Points:
                 self.gathered.add(
                     "constraints", np.where(there, np.abs(values) / (2.0 * size), 0.0), moment.t, joint.name
                 )
+
+    def _rigid(self, joint: Any, moment: Moment, found: Found) -> None:
+        """What is rigid is not entered, and only pushes."""
+        (phi,), (row,), (lam,) = found.phi[joint.name], found.phi_rows[joint.name], moment.lam[joint.name]
+        size = row_unit(row, self.units.q, moment.t.shape) + self._grain(row, moment)
+        self.gathered.add("rigid surfaces are not entered", np.maximum(-phi, 0.0) / (2.0 * size), moment.t, joint.name)
+        unit = self.units.rtol * np.abs(lam).max(initial=0.0) + 1e-300
+        self.gathered.add("rigid surfaces only push", np.maximum(-lam, 0.0) / unit, moment.t, joint.name)
 
     @staticmethod
     def _grain(row: Row, moment: Moment) -> Floats:

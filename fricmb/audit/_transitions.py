@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.audit._gather import Gathered
+from fricmb.audit._impacts import Impacts
 from fricmb.audit._points import row_unit
 from fricmb.audit._release import group_spare, holding
 from fricmb.audit._units import ROUND_OFF, Units
@@ -34,7 +35,8 @@ class Changes:
 
     def look(self, events: Any, rng: np.random.Generator) -> None:
         """All contacts; ``events`` are those of the run."""
-        self._jumps()
+        impacts = Impacts(self.statements, self.units, self.gathered, self.rows).look(events)
+        self._jumps(impacts)
         room = max(2, _CHANGES // max(1, len(self.statements.contacts)))
         for k, law in self.statements.contacts.items():
             mode = self.rows.mode[k]
@@ -44,18 +46,20 @@ class Changes:
                 continue
             chosen = np.sort(rng.choice(at, room, replace=False)) if at.size > room else at
             caught = chosen[(mode[chosen] == SLIP) & (mode[chosen + 1] == STICK)]
-            self._caught(k, law, caught[self.rows.t[caught] == self.rows.t[caught + 1]])
+            located = caught[self.rows.t[caught] == self.rows.t[caught + 1]]
+            self._caught(k, law, np.setdiff1d(located, impacts))
             let_go = chosen[(mode[chosen] == STICK) & (mode[chosen + 1] == SLIP)].tolist()
             for i in let_go:
                 self._released(k, law, i, i + 1, rng)
             if mode[0] == SLIP and self.rows.t.size > 1:
                 self._released(k, law, 0, 0, rng)
 
-    def _jumps(self) -> None:
-        """Positions and velocities where rows stand at one instant."""
+    def _jumps(self, impacts: Ints) -> None:
+        """Positions and velocities where rows stand at one instant; velocities jump behind the rows of ``impacts``."""
         rows = self.rows
-        twice = np.flatnonzero(np.diff(rows.t) == 0.0)
+        every = np.flatnonzero(np.diff(rows.t) == 0.0)
         for name, values, unit in (("q", rows.q, self.units.q), ("v", rows.v, self.units.v)):
+            twice = np.setdiff1d(every, impacts) if name == "v" else every
             jump = np.abs(values[:, twice + 1] - values[:, twice])
             if name == "v" and self.statements.joints:
                 jump = np.abs(self._without_impulses(values[:, twice + 1] - values[:, twice], twice))

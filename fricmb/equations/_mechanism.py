@@ -19,19 +19,28 @@ from fricmb.values import is_expression, value_of
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:
-    """One joint: its name, expressions that stay 0, and the symbols of their multipliers."""
+    """One joint: its name, expressions that stay 0, and the symbols of their multipliers.
+
+    ``rigid``: its expression is a distance, at least 0, and its multiplier pushes only where that is 0.
+    """
 
     name: str
     expressions: tuple[Any, ...]
     multipliers: tuple[Any, ...]
+    rigid: bool = False
 
     def text_rows(self) -> list[str]:
         """Lines of text."""
         pairs = zip(self.expressions, self.multipliers, strict=True)
+        if self.rigid:
+            return [f"0 <= {expression}, 0 <= {multiplier}, one of them 0" for expression, multiplier in pairs]
         return [f"{expression} = 0  ({multiplier})" for expression, multiplier in pairs]
 
     def latex_rows(self) -> list[str]:
         """Rows of an ``align*`` environment."""
+        if self.rigid:
+            pairs = zip(map(typeset, self.expressions), map(typeset, self.multipliers), strict=True)
+            return [rf"0 &\le {distance} \perp {push} \ge 0" for distance, push in pairs]
         return [f"{typeset(expression)} &= 0" for expression in self.expressions]
 
 
@@ -80,7 +89,10 @@ def add_joint(collector: Collector, joint: Joint, rhs: Any) -> tuple[Constraint,
     for i, expression in enumerate(expressions):
         for place, dof in enumerate(collector.scene.dof_names):
             rhs[place] += multipliers[i] * sympy.diff(expression, coordinate_symbols(dof)[0])
-    constraint = Constraint(name=joint.name, expressions=expressions, multipliers=multipliers[: len(math.phi)])
+    constraint = Constraint(
+        name=joint.name, expressions=expressions, multipliers=multipliers[: len(math.phi)],
+        rigid=joint.impact is not None,
+    )  # fmt: skip
     if joint.friction is None or math.slip is None:
         return constraint, None
     return constraint, _friction(collector, joint, math, replacement, rhs)

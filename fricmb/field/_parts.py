@@ -129,7 +129,7 @@ class Joins:
         self.n_slip = 0 if joint.friction is None else joint.slip_rows
         self.numbers = numbers(joint.bare())
         self.pressed = joint.loaded_by or joint.name
-        self.one_sided, self.constrains = joint.one_sided, joint.constrains
+        self.one_sided, self.constrains, self.impact = joint.one_sided, joint.constrains, joint.impact
 
     def add(self, moment: Moment, found: Found) -> None:
         """Reactions of the run; what the constraints and the slip are."""

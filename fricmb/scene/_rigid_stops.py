@@ -71,25 +71,31 @@ class _RigidLimits(Joint):
 
     def sides(self) -> tuple[Joint, ...]:
         """One joint for each limit, "lower" and "upper" behind the name where there are two."""
-        limits = [(sign, limit) for sign, limit in zip((1.0, -1.0), self.limits(), strict=True) if limit is not None]
-        two, found = len(limits) == 2, []
-        for sign, limit in limits:
-            side = RigidSide(self.name, self.a, self.b, of=self, limit=value_of(limit), sign=sign, ratio=self._scale())
-            side._set("name", f"{self.name}.{'lower' if sign > 0 else 'upper'}" if two else self.name)
-            found.append(side)
-        return tuple(found)
+        limits = zip((LowerSide, UpperSide), self.limits(), strict=True)
+        found = tuple(
+            kind(self.name, self.a, self.b, of=self, limit=value_of(limit), ratio=self._scale())
+            for kind, limit in limits
+            if limit is not None
+        )
+        if len(found) == 2:
+            for side, word in zip(found, ("lower", "upper"), strict=True):
+                side._set("name", f"{self.name}.{word}")
+        return found
 
 
 @dataclass(frozen=True, eq=False)
 class RigidSide(Joint):
-    """One limit of a coordinate, of ``of``: what it keeps at least, or (``sign`` -1) at most."""
+    """One limit of a coordinate, that of the part ``of``."""
 
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "of")
     _: KW_ONLY
     of: Any
     limit: Any
-    sign: Any
     ratio: Any
+
+    def _label(self) -> str:
+        found: str = self.of._label()
+        return found
 
     @property
     def one_sided(self) -> bool:
@@ -106,20 +112,42 @@ class RigidSide(Joint):
         """Restitution of its part; there is no slip."""
         return float(value_of(self.of.restitution)), 0.0, 0.0
 
-    @property
-    def side(self) -> int:
-        """-1 for a lower limit, 1 for an upper one."""
-        return -1 if self.sign > 0 else 1
-
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """Those of its part."""
         found: tuple[LinearForm, ...] = self.of.local_coordinates()
         return found
 
+    def limited(self, x: tuple[Any, ...]) -> Any:
+        """The coordinate."""
+        return x[0] if len(x) == 1 else x[0] + self.ratio * x[1]
+
+
+@dataclass(frozen=True, eq=False)
+class LowerSide(RigidSide):
+    """What a coordinate is at least."""
+
+    @property
+    def side(self) -> int:
+        """-1."""
+        return -1
+
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
         """Distance from the limit."""
-        value = x[0] if len(x) == 1 else x[0] + self.ratio * x[1]
-        return (self.sign * (value - self.limit),)
+        return (self.limited(x) - self.limit,)
+
+
+@dataclass(frozen=True, eq=False)
+class UpperSide(RigidSide):
+    """What a coordinate is at most."""
+
+    @property
+    def side(self) -> int:
+        """1."""
+        return 1
+
+    def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Distance from the limit."""
+        return (self.limit - self.limited(x),)
 
 
 @dataclass(frozen=True, eq=False)

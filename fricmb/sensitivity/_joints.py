@@ -24,6 +24,8 @@ class Joins:
 
     def __init__(self, joint: Joint, number: int | None, states: int, seeds: Seeds) -> None:
         self.name, self.number = joint.name, number
+        if joint.impact is not None:
+            refuse(joint, "a part with impacts")
         if joint.hands_over:
             refuse(joint, "a joint that lets go")
         if joint.loaded_by:

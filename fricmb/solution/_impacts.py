@@ -47,8 +47,10 @@ def impulses(events: Events, name: str, known: tuple[str, ...]) -> Impulses:
     )
 
 
-def with_impacts(energy: Energy, events: Events, t: Floats, *, rows: bool) -> Energy:
+def with_impacts(energy: Energy, events: Events, t: Floats, t_start: float, *, rows: bool) -> Energy:
     """The ledger with what impacts took told apart from damping; ``rows``: a time that is there twice is before first.
+
+    Impacts at the start of the run are before it.
 
     The loss of a run's damping holds that of impacts as well.
     """
@@ -62,7 +64,7 @@ def with_impacts(energy: Energy, events: Events, t: Floats, *, rows: bool) -> En
     if rows:
         first = np.append(t[:-1] == t[1:], False)
         passed = np.where(first, np.searchsorted(times, t, side="left"), passed)
-    loss = lost[passed]
+    loss = np.maximum(lost[passed] - lost[np.searchsorted(times, t_start, side="right")], 0.0)
     return Energy(
         kinetic=energy.kinetic, potential=energy.potential, friction_loss_by_contact=energy.friction_loss_by_contact,
         damping_loss=energy.damping_loss - loss, input=energy.input, contacts=energy.contacts, impact_loss=loss,

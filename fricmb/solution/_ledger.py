@@ -27,7 +27,7 @@ class Ledger(Differentiated):
         """
         energies = self.run.energies(self.record) if self._energies is None else self._energies
         found = self._ledger(energies, self.accounts, None if self.has_rows else self._reference)
-        return with_impacts(found, self.events, self.t, rows=self.has_rows)
+        return with_impacts(found, self.events, self.t, self.t_start, rows=self.has_rows)
 
     @cached_property
     def accounts(self) -> Samples:

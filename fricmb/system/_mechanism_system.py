@@ -123,7 +123,7 @@ class MechanismSystem(System):
 
     def _least_norm(self, samples: MotionSamples, lam: Floats) -> Floats:
         """Without what redundant constraints may push against one another."""
-        if not self.mechanism.joints.dropped.any():
+        if not (self.mechanism.joints.dropped == 1).any():
             return lam
         from fricmb.integrate.constrained.least_change import constraints_at, dense
         from fricmb.integrate.constrained.redundancy import RANK
@@ -131,7 +131,10 @@ class MechanismSystem(System):
         found = np.empty_like(lam)
         for i, t in enumerate(samples.t.tolist()):
             G = dense(constraints_at(self.problem, t, samples.q[:, i], samples.v[:, i]).G)
-            found[:, i] = np.linalg.lstsq(G.T, G.T @ lam[:, i], rcond=RANK)[0]
+            # what is open bears nothing; a redundant row may
+            held = (lam[:, i] != 0.0) | (self.mechanism.joints.dropped == 1)
+            found[:, i] = 0.0
+            found[held, i] = np.linalg.lstsq(G[held].T, G.T @ lam[:, i], rcond=RANK)[0]
         return found
 
 

@@ -92,7 +92,8 @@ def away(problem: Problem, start: Start) -> Codes:
 
 def distances_at(problem: Problem, start: Start) -> Constrained:
     """Constraints at a start, those of joints that are open as well."""
-    held = with_open(problem, np.zeros(len(mechanism_of(problem).joints.port), np.int8))
+    none = np.zeros(len(mechanism_of(problem).joints.port), np.int8)
+    held = once_per(problem, "all held", lambda: with_open(problem, none))
     return constraints_at(held, start.t, np.asarray(start.q, float), np.asarray(start.v, float))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import call_joint, is_open, move
+from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.load_kinks import BEFORE, BEHIND, law_side
 from fricmb.integrate.constrained.load_share import share_stages
 from fricmb.integrate.constrained.loop_mobility import may_share
@@ -41,13 +42,17 @@ def gaps(mech: Mech, k: Moving, t: float, q: Floats, v: Floats, lam: Floats, out
 
 @kernel
 def gap_noise(mech: Mech, k: Moving, j: int, n_x: int) -> float:
-    """Round-off of the distance that joint j has just been evaluated to."""
-    table, value = mech.joint.table, 0.0
+    """Round-off of the distance that joint j has just been evaluated to: of the coordinates it is made of."""
+    table, place, value = mech.joint.table, mech.place, 0.0
     for a in range(n_x):
         first = table.x_start[j] + a
         size = abs(table.form_constant[first])
         for i in range(table.form_start[first], table.form_start[first + 1]):
-            size += abs(table.form_coefficient[i] * k.s.X[table.form_index[i]])
+            e, c = table.form_index[i] - 1, abs(table.form_coefficient[i])
+            size += c * abs(k.s.X[e + 1])
+            if 0 <= e < k.ddy.shape[0]:
+                for b in range(place.y_start[e], place.y_start[e + 1]):
+                    size += c * abs(place_slope(place, k, b) * k.s.X[1 + place.y_dof[b]])
         value += abs(k.out[1 + a]) * size
     return 4.0 * EPS * value
 
@@ -56,7 +61,8 @@ def gap_noise(mech: Mech, k: Moving, j: int, n_x: int) -> float:
 def gaps_within(mech: Mech, k: Moving, y: State, end: State, st: Stages, out: Watch) -> None:
     """Distances of open joints at the start and the stages of the step from y to end, into ``out.inner``."""
     first = 2 * y.mode.shape[0]
-    out.grain[:] = 0.0
+    for j in range(out.gap.shape[0]):
+        out.grain[j] = out.least[j]
     gaps(mech, k, y.t, y.q, y.v, y.lam, out)
     for j in range(out.gap.shape[0]):
         if is_open(mech, j):

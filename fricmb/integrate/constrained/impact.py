@@ -65,9 +65,12 @@ class Impacts:
     def at_start(self) -> int:
         """Impacts at the first instant: of what touches and approaches."""
         s = self.surfaces
+        s.see_signals()
         s.look()
         hit = s.open & s.rigid & (s.gap <= 10.0 * s.noise) & (s.rates(self._workspace.y.v) < -s.still())
-        return self.go_through() if hit.any() else DONE
+        code = self.go_through() if hit.any() else DONE
+        self._workspace.y.work[:] = 0.0  # energies count from what is behind it
+        return code
 
     def go_through(self) -> int:
         """The impact at the present state; DONE, or why the run ends."""
@@ -81,18 +84,29 @@ class Impacts:
         opened = self.joints.dropped.copy()
         _copy(y, before)
         e = self.joints.restitution[members].copy()
-        code, outcome = self._apply(members, e, touched)
+        code, outcome = self._apply(members, e, touched, ())
         if code != DONE or outcome is None:
             return code
         hops = self._hops(members, touched, rate, outcome.answer, falls)
         ends = np.array([hop is not None and hop.ends for hop in hops])
-        if ends.any():
+        others = self._others(members, rate, hops)
+        if ends.any() or others:
+            members = np.append(members, [j for j in others if j not in members]).astype(np.int64)
+            hops += [None] * (len(members) - len(hops))
+            hops = [others.get(j, hop) for j, hop in zip(members.tolist(), hops, strict=True)]
+            ends = np.array([hop is not None and hop.ends for hop in hops])
+            touched[members[ends]] = True
+            e = self.joints.restitution[members].copy()
             _copy(before, y)
             self.joints.dropped[:] = opened
             e[ends] = 0.0
-            code, outcome = self._apply(members, e, touched)
+            code, outcome = self._apply(members, e, touched, tuple(others))
             if code != DONE or outcome is None:
                 return code
+        # what is left in touch by an impact may bear nothing: its round-off is that of the impulse over the run
+        span, out = self._workspace.control.span, self._workspace.out
+        push = float(np.abs(outcome.answer.impulse).max(initial=0.0)) / float(span[1] - span[0])
+        out.top_force = max(float(out.top_force), push)
         tell_changes(self._mech, y, before, self._record)
         rested = (touched & s.held)[members].tolist()
         self.log.add(float(y.t), members, rested, -rate[members], outcome, hops)
@@ -110,10 +124,12 @@ class Impacts:
         return self.failure is not None
 
     # -- velocities behind --------------------------------------------------------------------------------------
-    def _apply(self, members: Ints, e: Floats, touched: Any) -> tuple[int, Outcome | None]:
-        """Velocities, modes and reactions behind the impact with coefficients e of the members."""
+    def _apply(
+        self, members: Ints, e: Floats, touched: Any, forced: tuple[int, ...]
+    ) -> tuple[int, Outcome | None]:
+        """Velocities, modes and reactions behind the impact with coefficients e of the members; some are held."""
         s, y = self.surfaces, self._workspace.y
-        hit, push, reaction, held = self._hit(members, e)
+        hit, push, reaction, held = self._hit(members, e, forced)
         answer = solve_impact(hit)
         if answer is None:
             names = ", ".join(repr(self.joints.names[j]) for j in members)
@@ -133,10 +149,10 @@ class Impacts:
         leaves = answer.rate[: len(members)] > s.still()[members]
         for j, apart in zip(members.tolist(), leaves.tolist(), strict=True):
             s.set_open(j, apart)
-        code = self._resume([j for j in members.tolist() if touched[j]])
+        code = self._resume([j for j in members.tolist() if touched[j] or j in forced])
         return (self._hold_again(members) if code == DONE else code), outcome
 
-    def _hit(self, members: Ints, e: Floats) -> tuple[Hit, Floats, Floats, Ints]:
+    def _hit(self, members: Ints, e: Floats, forced: tuple[int, ...]) -> tuple[Hit, Floats, Floats, Ints]:
         """The problem of the impact, velocities and reactions (of rows held both ways) by its unit impulses."""
         s, y, mu = self.surfaces, self._workspace.y, self._mu(members)
         port, row = self.joints.port[members], self.problem.contacts.row
@@ -150,7 +166,7 @@ class Impacts:
         tangential[along] = len(members) + np.arange(along.size)
         hit = Hit(
             D=A @ push, rate=before, normal=np.arange(len(members)), tangential=tangential, e=e,
-            e_t=self.joints.tangential[members], mu=mu,
+            e_t=self.joints.tangential[members], mu=mu, forced=np.isin(members, forced),
         )  # fmt: skip
         return hit, push, reaction, held
 
@@ -212,6 +228,27 @@ class Impacts:
             if code != DONE:
                 return code
         return FAIL_MODES
+
+    def _others(self, members: Ints, rate: Floats, hops: list[Hop | None]) -> dict[int, Hop]:
+        """Open contacts that come to rest with those hit now, by impacts in turn: all that are near by, or none."""
+        s, y = self.surfaces, self._workspace.y
+        bounces = {j for j, hop in zip(members.tolist(), hops, strict=True) if hop is not None}
+        if any(hop is not None and not hop.ends for hop in hops):
+            return {}
+        now, pressed, reach = s.rates(y.v), s.pressed(), s.reach()
+        fastest = float(np.max(-rate[members], initial=0.0))
+        found = {}
+        for j in np.flatnonzero(s.open & s.rigid).tolist():
+            if j in bounces:
+                continue
+            leaving = Leaving(
+                joint=j, t=float(y.t), speed=float(now[j]), e=float(self.joints.restitution[j]),
+                rises=float(pressed[j]), falls=float(pressed[j]), size=float(reach[j]), noise=float(s.noise[j]),
+            )  # fmt: skip
+            hop = self._bounces.among_others(leaving, float(s.gap[j]), float(now[j]) / max(fastest, 1e-300))
+            if hop.ends:
+                found[j] = hop
+        return found
 
     def _hops(self, members: Ints, touched: Any, rate: Floats, answer: Answer, falls: Floats) -> list[Hop | None]:
         """The bounce that each member begins, where it does; ``falls``: accelerations before the impact."""

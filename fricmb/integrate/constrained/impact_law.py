@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -41,6 +42,8 @@ class Hit:
         Rows of each contact; -1: no friction.
     e, e_t, mu : (k,)
         Coefficients of restitution and friction.
+    forced : (k,) bool
+        What comes to rest with others whatever impulse that takes.
     """
 
     D: Floats
@@ -50,6 +53,7 @@ class Hit:
     e: Floats
     e_t: Floats
     mu: Floats
+    forced: Any
 
     @property
     def target(self) -> Floats:
@@ -92,7 +96,8 @@ def solve_impact(hit: Hit) -> Answer | None:
 
 def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
     """What each contact may do; first that all take an impulse and stick."""
-    return product(*((STICKS, FREE) if t < 0 else (STICKS, FORWARD, BACKWARD, FREE) for t in hit.tangential))
+    every = ((STICKS, FREE) if t < 0 else (STICKS, FORWARD, BACKWARD, FREE) for t in hit.tangential)
+    return product(*((STICKS,) if forced else may for may, forced in zip(every, hit.forced, strict=True)))
 
 
 def _try(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
@@ -148,6 +153,8 @@ def _checked(
         if what == FREE:
             if xi[a] < -small:
                 return None
+            continue
+        if hit.forced[i]:
             continue
         if impulse[a] < -force:
             return None

@@ -43,7 +43,7 @@ class ImpactLog:
         """One instant; ``rested`` (k,) what is held anew, ``approach`` (k,) speeds before."""
         answer, n_c = outcome.answer, self._problem.n_c
         impulse = answer.impulse[: len(members)]
-        hit = impulse > NOTHING * float(impulse.max(initial=0.0))
+        hit = np.abs(impulse) > NOTHING * float(impulse.max(initial=0.0))
         if answer.others:
             self._several.append(t)
         for i, rests in enumerate(rested):

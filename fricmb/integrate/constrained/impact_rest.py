@@ -69,6 +69,11 @@ class Leaving:
     noise: float
 
 
+def hop_of(gap: float, rate: float, pressed: float) -> float:
+    """Time until a contact at a distance ``gap`` that opens at a rate meets its surface, pressed by an acceleration."""
+    return float((rate + np.sqrt(max(rate * rate + 2.0 * pressed * max(gap, 0.0), 0.0))) / pressed)
+
+
 class Bounces:
     """What is known of the last impact of each of n joints in a run from ``t_start`` with a tolerance ``rtol``."""
 
@@ -77,6 +82,18 @@ class Bounces:
         self._t: Floats = np.full(n, -np.inf)
         self._falls: Floats = np.zeros(n)
         self._count = np.zeros(n, np.int64)
+
+    def among_others(self, leaving: Leaving, gap: float, ratio: float) -> Hop:
+        """The hop of a contact that others have thrown up, or that is on its way back, while these come to rest.
+
+        ``ratio``: by which speeds fall from one impact to the next.  Bounces in turn shrink with it, and end together.
+        """
+        if not leaving.rises > 0.0:
+            return Hop(ends=False)
+        T = hop_of(gap, leaving.speed, leaving.rises) / (1.0 - min(max(ratio, leaving.e), 0.99))
+        ends = SHORT * leaving.size / leaving.rises >= T
+        bound = T + self._rtol * (leaving.t - self._t_start)
+        return Hop(ends=bool(ends), left=T, bound=bound)
 
     def after(self, leaving: Leaving) -> Hop:
         """The bounce that begins."""

@@ -12,8 +12,10 @@ from fricmb.integrate.mechanism import APART, RIGID
 from fricmb.integrate.problem import OPEN, Floats, Ints, Problem
 from fricmb.integrate.run.breakpoints import EPS
 
-#: Times to contact that are the same, in roundings of the time.
-SAME = 64.0 * EPS
+#: Times to contact that are the same, in roundings of the time and parts of the span.
+SAME, SHORTEST = 64.0 * EPS, 1e-13
+#: Times of a run at which prescribed motions are looked at for their size.
+SEEN = 33
 #: Speed that is none, and acceleration, beside what velocities so far and accelerations now could bring.
 STILL, SLIGHT = 1e-12, 1e-9
 
@@ -50,6 +52,18 @@ class Surfaces:
             self._mech, self._workspace.k, self._workspace.y, np.zeros(n), self.G, self.G0, self.W, self.W0, self.gap,
             self.noise, np.zeros(m), np.zeros(m_p),
         )  # fmt: skip
+        self.noise = np.maximum(self.noise, self._workspace.out.least)
+
+    def see_signals(self) -> None:
+        """Round-off of distances over the whole run, as far as prescribed motions make it: they may start at 0."""
+        y, span, least = self._workspace.y, self._workspace.control.span, self._workspace.out.least
+        least[:] = 0.0
+        start = float(y.t)
+        for t in np.linspace(span[0], span[1], SEEN) if self.problem.n_u else ():
+            y.t = float(t)
+            self.look()
+            least[:] = np.maximum(least, self.noise)
+        y.t = start
 
     @property
     def open(self) -> Any:
@@ -78,7 +92,9 @@ class Surfaces:
     def touched(self, rate: Floats) -> Any:
         """Open joints (n_j,) that are hit now, or touch: at the same time by the time to contact, not the distance."""
         opened = self.open
-        near = 10.0 * self.noise + SAME * abs(float(self._workspace.y.t)) * np.abs(rate)
+        span = self._workspace.control.span
+        same = SAME * abs(float(self._workspace.y.t)) + SHORTEST * float(span[1] - span[0])
+        near = 10.0 * self.noise + same * np.abs(rate)
         found = opened & (self.gap <= near)
         comes = np.flatnonzero(opened & (rate < 0.0))
         if comes.size:

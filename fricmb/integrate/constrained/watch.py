@@ -26,7 +26,8 @@ class Watch(Layout):
     ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
     stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
-    of open joints, its ``rate`` and round-off ``grain``, ``opened`` how many there are; ``bends`` (n_j,), ``kinked``
+    of open joints, its ``rate`` and round-off ``grain`` (``least``: at least), ``opened`` how many there are;
+    ``bends`` (n_j,), ``kinked``
     (n_c,), ``kink``, ``side`` (m,): see ``load_kinks``; ``top_slip``, ``top_force``, ``top_position`` running maxima;
     ``missed`` (n_c,): see ``load_defect``.
     """
@@ -58,6 +59,7 @@ class Watch(Layout):
     gap: Floats
     rate: Floats
     grain: Floats
+    least: Floats
     opened: int
     bends: Ints
     kinked: Ints
@@ -82,6 +84,7 @@ def watch_of(problem: Problem, stages: int) -> Watch:
         0.0, np.zeros(m.n_rows), np.zeros(columns), np.ones(count),
         np.ones((stages + 1, count)), np.ones(count), 1.0, np.zeros(stages),
         np.zeros(stages + 1), np.zeros(len(m.joints.port)), np.zeros(len(m.joints.port)), np.zeros(len(m.joints.port)),
+        np.zeros(len(m.joints.port)),
         0, np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), 0.0, 0.0, 0.0,
         np.zeros(m.n_rows + 1), np.zeros(problem.n_c),
