@@ -286,6 +286,7 @@ def mechanics_of(
 ) -> SceneMechanics:
     """Plan a scene, or take what is kept on it."""
     by = dict(shift or {})
+    together = together or has_impacts(scene)
     key = ("mechanics", observe, tuple(sorted(by.items())), together)
     found = scene._cache.get(key)
     if not isinstance(found, SceneMechanics):
@@ -294,6 +295,11 @@ def mechanics_of(
             scene=scene, placed=placed, plan=make_plan(placed, observe), observe=observe, shift=by, together=together,
         )  # fmt: skip
     return found
+
+
+def has_impacts(scene: Scene) -> bool:
+    """Whether something in it is rigid: then all of it is run as one."""
+    return scene.is_mechanism and any(joint.is_rigid for joint in scene.joints)
 
 
 def _points(scene: Scene, dofs: tuple[str, ...]) -> dict[str, Motion]:
