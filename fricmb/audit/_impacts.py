@@ -86,7 +86,7 @@ class Impacts:
     def _law(self, hit: Any, joint: Joins, rates: list[Any], before: Moment, rests: Any, speed: float) -> None:
         """The speed behind is e times that before, or 0 where bounces end; friction is within its cone."""
         a, b, _ = rates[0]
-        e, e_t, mu = joint.impact
+        e, e_t, mu = joint.impact or (0.0, 0.0, 0.0)
         t = float(before.t[0])
         ends = any(abs(rest - t) <= ROUND_OFF * abs(t) for rest in rests.get((hit.contact, hit.side), ()))
         wanted = 0.0 if ends else -e * min(a, 0.0)
@@ -95,7 +95,7 @@ class Impacts:
         if len(rates) == 1 or ends:
             return
         slip_before, slip, along = rates[1]
-        if np.isnan(mu):
+        if np.isnan(mu) and joint.contact is not None:
             mu = float(self.statements.contacts[joint.contact].law.numeric().slip_limit())
         over = max(abs(along) - mu * hit.impulse, 0.0) / (LAW * hit.impulse)
         self.gathered.add("cone in impacts", [over], t, hit.contact)

@@ -34,7 +34,7 @@ def test_a_rocking_block_comes_to_rest_by_impacts_of_its_corners_in_turn():
         2.256450013155342, 2.457433538350902, 2.62649531873848,
     ]  # fmt: skip
     hits = [event for event in sol.events.of(kind="impact") if event.approach > 1e-9]
-    assert np.allclose([hit.t for hit in hits[:8]], times, rtol=0, atol=1e-7)
+    assert np.allclose([hit.t for hit in hits[:8]], times, rtol=0, atol=1e-9)
     assert abs(hits[0].approach - 2 * b * 0.9452665029648559) < 1e-8
     assert abs(abs(sol(hits[0].t)[5]) - 0.85 * 0.9452665029648559) < 1e-8
     rest = sol.events.of(kind="rest")[-1]
