@@ -136,8 +136,20 @@ def integrate(value: Any, t: Any) -> Any | None:
         return None
     if result.has(sympy.Integral, sympy.nan, sympy.zoo):
         return None
+    result = _in_doubles(result)
     start = result.subs(t, 0)
     return None if start.has(sympy.nan, sympy.zoo, sympy.oo) else result - start
+
+
+def _in_doubles(value: Any) -> Any:
+    """``log(cosh(u))`` and ``log(tanh(u) + 1)``, of integrals of what is engaged, as what stays finite for large u."""
+    u = sympy.Wild("u")
+
+    def soft(u: Any) -> Any:
+        return sympy.log(1 + sympy.exp(-2 * sympy.Abs(u))) - sympy.log(2)
+
+    value = value.replace(sympy.log(sympy.cosh(u)), lambda u: sympy.Abs(u) + soft(u))
+    return value.replace(sympy.log(sympy.tanh(u) + 1), lambda u: -soft(u) - sympy.Max(0, -2 * u))
 
 
 def _integral_of_series(value: Any, t: Any) -> Any | None:

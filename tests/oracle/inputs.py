@@ -52,6 +52,8 @@ class Input:
             return sympy.sin(n[0] * t + n[1])
         if self.form == "chirp":
             return sympy.sin((n[0] + n[1] * t) * t)
+        if self.form == "drift":
+            return (1 - n[3]) * sympy.sin(n[0] * t + n[1]) + n[3] * t / n[2]
         if self.form == "beats":
             return (sympy.sin(n[0] * t) + sympy.sin(1.07 * n[0] * t)) / 2
         if self.form == "bell":
@@ -104,7 +106,7 @@ class Input:
     def fastest(self, t_end: float) -> float:
         """Its highest angular frequency."""
         n = self.numbers
-        if self.form in ("fast", "slow", "beats"):
+        if self.form in ("fast", "slow", "beats", "drift"):
             return 1.07 * n[0]
         return n[0] + 2.0 * n[1] * t_end if self.form == "chirp" else 0.0
 
@@ -175,6 +177,30 @@ def shaken(rng: Generator) -> Shaken:
     return Shaken(
         body=body, law=law, place=place, input=Input(form, numbers, samples), t_end=t_end, constant=constant,
         size=round(size, 5), springs=springs, v=even(rng, 0.3, 1.0) if moving else 0.0,
+    )  # fmt: skip
+
+
+def excursion(rng: Generator) -> Shaken:
+    """Rest under a law with a cone, left for a moment alone: by a pulse, or by crests that pass the cone late."""
+    form = ("drift", "drift", "bell", "triangle", "rectangle")[rng.integers(5)]
+    body = BODIES[rng.integers(len(BODIES))]
+    law = ("Coulomb", "Stribeck", "Tabulated")[rng.integers(3)]
+    place = "load" if form != "drift" or rng.random() < 0.7 else "normal"
+    t_end = even(rng, 30.0, 70.0)
+    width = some(rng, 1e-5, 1e-2) * t_end
+    constant = even(rng, 0.3, 0.8)
+    if form == "drift":
+        numbers = [some(rng, 15.0, 40.0), even(rng, 0.0, 6.28), t_end, some(rng, 0.02, 0.3)]
+        size = (1.0 - constant + some(rng, 1e-3, 3e-2)) * (HOLD if place == "load" else -1.0)
+    else:
+        numbers = [even(rng, 0.3 * t_end, 0.8 * t_end), width]
+        size = HOLD * (1.0 + some(rng, 0.1, 1.0) / width)
+    springs = [some(rng, 0.3, 10.0)] if body not in HINGES and rng.random() < 0.3 else [0.0]
+    if body == "pair":
+        springs.append(some(rng, 0.3, 10.0))
+    return Shaken(
+        body=body, law=law, place=place, input=Input(form, numbers), t_end=t_end, constant=constant,
+        size=round(size, 5), springs=springs, kind="excursions",
     )  # fmt: skip
 
 

@@ -49,6 +49,20 @@ def test_crests_just_below_and_just_over_the_cone(over):
     assert (len(solve(numbers(spec)).events) > 0) == (over > 0.0)
 
 
+def test_crests_that_pass_the_cone_late():
+    """A drift of 0.1 brings crests of 0.9 over the cone after more than a hundred periods."""
+    t_end, omega = 60.0, 20.0
+    spec = on("drift", [omega, 0.0, t_end, 0.1], t_end=t_end, constant=0.5, size=round(0.51 * HOLD, 6))
+    period = 2.0 * np.pi / omega
+    load = lambda t: 0.5 * HOLD + spec.size * spec.input.numeric()[0](t)  # noqa: E731
+    crests = [c for c in (np.arange(191) + 0.25) * period if load(c) > HOLD]
+    found = solve(numbers(spec)).events
+    assert crests[0] > 45.0
+    expected = by_hand(spec, [(c - 0.2 * period, c, c + 0.9 * period) for c in crests])
+    assert [e.kind for e in found] == [kind for kind, _ in expected]
+    assert [e.t for e in found] == pytest.approx([t for _, t in expected], abs=1e-7)
+
+
 @pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3, 1e-4, 1e-5])
 @pytest.mark.parametrize("form", ["bell", "triangle"])
 def test_a_pulse_of_a_part_of_the_run(form, width):

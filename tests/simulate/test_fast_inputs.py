@@ -186,3 +186,16 @@ def test_no_step_is_longer_than_asked_for():
     for wrong in (0.0, -1.0, np.nan, "short"):
         with pytest.raises(fm.SceneError, match="max_step"):
             fm.simulate(scenes["radau"], t_end=1.0, max_step=wrong)
+
+
+@pytest.mark.parametrize("method", ["auto", "radau"])
+def test_ground_that_sets_in_at_once_has_a_place_before(method):
+    """Its place is an integral that SymPy gives by log(1 + tanh): -oo in doubles, long before, where it is 0."""
+    at, width, speed = 20.0, 1e-6, 0.3
+    belt = fm.Driven("belt", velocity={"x": speed * (1 + sympy.tanh((fm.t - at) / width)) / 2})
+    block = fm.Body("block", mass=1.0)
+    rubs = fm.Contact("sole", block, belt, law=fm.laws.Coulomb(mu_s=0.5), normal_force=1.0)
+    sol = fm.simulate(fm.Scene("engaged", [belt, block, rubs]), t_end=22.0, rtol=1e-6, method=method)
+    # 0.5 m/s^2 from the jump on, until it goes with the belt
+    assert sol["block.x"][-1] == pytest.approx(speed * (2.0 - 0.5 * speed / 0.5), abs=1e-5)
+    assert sol.events[-1].kind == "stick"
