@@ -14,6 +14,10 @@ from fricmb.laws.vector._shaped import Shaped
 from fricmb.values import value_of
 
 
+#: Slip speed below which numbers of a law go to 0, so that nothing overflows.
+_SLOW = 1e-100
+
+
 @dataclass(frozen=True, kw_only=True)
 class Offset(Shaped):
     """Friction of ``law`` about a centre that is not 0: ``F + offset N`` is within its cone, and opposes slip on it.
@@ -85,9 +89,11 @@ class Offset(Shaped):
         if (len(found) if found.ndim else 1) not in self.dimensions:
             self._refuse("v_rel", v_rel, f"of {self.dimensions[0]} direction(s)")
         shift = np.array([value_of(c) for c in self.offsets()], dtype=float)
-        slips = np.abs(found).max(axis=0) > 0.0 if found.ndim else found != 0.0
+        r = np.abs(np.asarray(v_rel, dtype=float))
+        r = r.max(axis=0) if found.ndim else r
+        share = r / np.maximum(r, _SLOW)
         shift = shift.reshape(-1, *(1,) * (found.ndim - 1)) if found.ndim else shift[0]
-        whole = found - shift * np.asarray(normal_force, dtype=float) * slips
+        whole = found - shift * np.asarray(normal_force, dtype=float) * share
         return whole if whole.ndim else float(whole)
 
     def validate(self) -> None:
