@@ -13,7 +13,6 @@ from fricmb.laws._base import FrictionLaw
 from fricmb.laws.vector._shaped import Shaped
 from fricmb.values import value_of
 
-
 #: Slip speed below which numbers of a law go to 0, so that nothing overflows.
 _SLOW = 1e-100
 
