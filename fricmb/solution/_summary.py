@@ -38,6 +38,7 @@ def summarise(sol: Solution) -> str:
         lines.append(
             f"energy       {number(energy.reference.start)} at the start, {number(energy.total[-1])} at the end; "
             f"friction {number(energy.friction_loss[-1])}, damping {number(energy.damping_loss[-1])}, "
+            f"{f'impacts {number(energy.impact_loss[-1])}, ' if energy.impact_loss[-1] else ''}"
             f"input {number(energy.input[-1])}{_unit(sol)}; ledger residual {np.abs(energy.residual).max():.1e}"
         )
     lines.append(
