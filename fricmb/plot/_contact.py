@@ -83,7 +83,7 @@ def draw_force_history(
     ax.plot(sol.t, shown, color=paint().stick, linewidth=THIN, label="friction force")
     centre = static_centre(sol, contact) if limit is not None else np.zeros((1, 1))
     if limit is not None and not (planar and centre.any()):
-        bound = {"color": paint().slip, "linestyle": "--", "linewidth": THIN}
+        bound: dict[str, Any] = {"color": paint().slip, "linestyle": "--", "linewidth": THIN}
         ax.plot(sol.t, limit + centre[0], label="break-away force", **bound)
         if not planar:
             ax.plot(sol.t, centre[0] - limit, **bound)
