@@ -171,13 +171,22 @@ def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) 
         fy[i] = linear.f[i]
     for i in range(n_u):
         fu[i] = linear.f[n_y + i]
+    tied = linear.tie.shape[0] > 0
     for e in range(linear.K.shape[0]):
         i, j = linear.Ki[e], linear.Kj[e]
-        value = linear.K[e] * X[1 + j + (n_y if j >= n_y else 0)]
+        x = X[1 + j + (n_y if j >= n_y else 0)]
+        if tied:
+            # stiff springs by the difference of their ends: what they do to both is equal to the last digit
+            x -= linear.tie[e] * X[1 + i + (n_y if i >= n_y else 0)]
         if i < n_y:
-            fy[i] -= value
+            fy[i] -= linear.K[e] * x
         else:
-            fu[i - n_y] -= value
+            fu[i - n_y] -= linear.K[e] * x
+    for i in range(linear.alone.shape[0]):
+        if i < n_y:
+            fy[i] -= linear.alone[i] * X[1 + i]
+        else:
+            fu[i - n_y] -= linear.alone[i] * X[1 + i + n_y]
     for e in range(linear.C.shape[0]):
         i, j = linear.Ci[e], linear.Cj[e]
         value = linear.C[e] * X[1 + n_y + j + (n_u if j >= n_y else 0)]

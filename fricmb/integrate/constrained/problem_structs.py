@@ -16,12 +16,16 @@ from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism, loads_of
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.model.problem_structs import Spread, Table, knot_starts, spread_of, table_of
+from fricmb.integrate.model.structure import ties
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
 
 
 class Linear(Layout):
-    """Entries of mass, stiffness, damping and input; constant force over [y, u]."""
+    """Entries of mass, stiffness, damping and input; constant force over [y, u].
+
+    ``tie`` for each entry of K, ``alone`` for each row: see :func:`ties`; empty for soft structures.
+    """
 
     Mi: Ints
     Mj: Ints
@@ -36,6 +40,8 @@ class Linear(Layout):
     Bj: Ints
     B: Floats
     f: Floats
+    tie: Floats
+    alone: Floats
 
 
 class Place(Layout):
@@ -142,8 +148,9 @@ def _pack(problem: Problem) -> Mech:
     m, contacts = mechanism_of(problem), problem.contacts
     M, K, C, B = m.M, m.K, m.C, m.B
     linear = Linear(
-        M.row, M.column, M.value, K.row, K.column, K.value, C.row, C.column, C.value, B.row, B.column, B.value, m.f
-    )
+        M.row, M.column, M.value, K.row, K.column, K.value, C.row, C.column, C.value, B.row, B.column, B.value, m.f,
+        *_ties(problem),
+    )  # fmt: skip
     table = table_of(m.joints.table)
     rows = np.diff(m.joints.row)
     n_x = np.diff(table.x_start) // 2
@@ -179,6 +186,15 @@ def _pack(problem: Problem) -> Mech:
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), table_of(problem.bends.table),
         solid(problem.bends.start, np.int64), found.group,
     ))  # fmt: skip
+
+
+def _ties(problem: Problem) -> tuple[Floats, Floats]:
+    """Which entries of K are springs between two coordinates, and what of each row is none."""
+    if problem.mechanism is not None:
+        return np.zeros(0), np.zeros(0)
+    K = problem.linear.csr("Kx")
+    tie, alone = ties(K, np.asarray(problem.omega, float))
+    return tie[K.value != 0.0] if tie.size else tie, alone
 
 
 def _softness(problem: Problem, m: Mechanism, port_joint: Ints) -> Floats:
