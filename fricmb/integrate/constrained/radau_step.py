@@ -101,9 +101,10 @@ def measure(mech: Mech, c: Control, y: State, h: float, scale: Floats) -> None:
     linear = mech.linear
     for e in range(linear.K.shape[0]):
         i, j = linear.Ki[e], linear.Kj[e]
-        if i < scale.shape[0] and j < scale.shape[0] and h * h * abs(linear.K[e]) > c.mass[i]:
+        if i < scale.shape[0] and j < scale.shape[0]:
             # a stiff spring turns the round-off of positions into velocities, which is no error of a step
-            scale[i] = max(scale[i], ROUND_OFF * np.sqrt(abs(linear.K[e]) / c.mass[i]) * c.q[j] / asked(c))
+            rate = np.sqrt(abs(linear.K[e]) / c.mass[i])
+            scale[i] = max(scale[i], ROUND_OFF * rate * min(rate * h, 1.0) * c.q[j] / asked(c))
 
 
 @kernel
