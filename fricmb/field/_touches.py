@@ -13,6 +13,7 @@ from fricmb.errors import SceneError
 from fricmb.field._signals import from_scene
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Backlash, Scene, Stop
+from fricmb.scene._rigid_stops import RigidBacklash, RigidStop
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
@@ -50,6 +51,8 @@ class Touches:
 def touches(sol: Solution, name: str) -> Touches:
     """See :meth:`fricmb.Solution.touches`."""
     part = sol.scene[name] if isinstance(sol.scene, Scene) else None
+    if isinstance(part, RigidStop | RigidBacklash):
+        raise SceneError(f"touches: {name!r} is rigid, with restitution; sol.impulse({name!r}) has its impacts")
     if not isinstance(part, Stop | Backlash):
         raise SceneError(f"touches: {name!r} must be a Stop or a Backlash")
     sides = [side for side, limit in zip(("lower", "upper"), part.limits(), strict=True) if limit is not None]

@@ -131,7 +131,7 @@ class Solution(Signals):
         Raises
         ------
         SceneError
-            For the name of another part.
+            For the name of another part; for one with restitution, of which :meth:`impulse` tells.
         """
 
     @answers

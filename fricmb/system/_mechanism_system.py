@@ -64,11 +64,16 @@ class MechanismSystem(System):
         return replace(samples, q=np.concatenate([samples.q, p]), v=np.concatenate([samples.v, rate]))
 
     def freedom(self, samples: MotionSamples) -> int:
-        """Degrees of freedom as mechanics counts them: coordinates less independent constraints, at the first time."""
+        """Degrees of freedom as mechanics counts them: coordinates less independent constraints, at the first time.
+
+        What only pushes and may let go takes none away.
+        """
         from fricmb.integrate.constrained.least_change import constraints_at, dense
         from fricmb.integrate.constrained.redundancy import RANK
 
-        G = dense(constraints_at(self.problem, float(samples.t[0]), samples.q[:, 0], samples.v[:, 0]).G)
+        joints = self.mechanism.joints
+        stays = np.repeat(joints.hands_over == 0, np.diff(joints.row))
+        G = dense(constraints_at(self.problem, float(samples.t[0]), samples.q[:, 0], samples.v[:, 0]).G)[stays]
         length = np.linalg.norm(G, axis=1, keepdims=True)
         rank = int(np.linalg.matrix_rank(G / np.where(length > 0.0, length, 1.0), tol=RANK)) if G.size else 0
         return len(samples.q) - rank

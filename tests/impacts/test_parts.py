@@ -128,3 +128,18 @@ def test_the_audit_sees_another_coefficient():
         assert "law of impact" in [failed.name for failed in sol.audit().failed]
     finally:
         object.__setattr__(other, "restitution", 0.6)
+
+
+def test_touches_of_what_is_rigid_points_to_its_impulses():
+    with pytest.raises(fm.SceneError, match=r"touches: 'ends' is rigid, with restitution; sol.impulse\('ends'\)"):
+        fm.simulate(scene(), t_end=1.0).touches("ends")
+
+
+@pytest.mark.parametrize("restitution", [None, 0.6])
+def test_what_only_pushes_takes_no_degree_of_freedom(restitution):
+    assert "1 degree of freedom (1 coordinate)" in repr(fm.simulate(scene(), t_end=1.0))
+    ball = fm.RigidBody("ball", mass=1.0, inertia=1.0)
+    lets_go = {"when_lost": "open"} if restitution is None else {"restitution": restitution}
+    parts = [ball, fm.RollerOnLine("floor", ball, push_only=True, **lets_go), fm.DrivenAngle("turn", ball, angle=0.0)]
+    sol = fm.simulate(fm.Scene("ball", [*parts, fm.Gravity("g")]), t_end=0.1)
+    assert "2 degrees of freedom (3 coordinates)" in sol.summary()
