@@ -20,12 +20,13 @@ DIMENSIONS = {
     "arm": "length", "half_gauge": "length", "cylinder_radius": "length", "rise": "length/time",
     "yaw_stiffness": "force length/rad", "f11": "force", "f22": "force",
     "tip_radius": "length", "length": "length", "radius": "length", "crank": "length", "rod": "length",
-    "coupler": "length", "rocker": "length", "half": "length", "pin": "length", "bump": "length", "eps": "length",
+    "coupler": "length", "rocker": "length", "half": "length", "half_width": "length", "half_height": "length",
+    "height": "length", "pin": "length", "bump": "length", "eps": "length",
     "x0": "length", "position": "length", "kick": "length", "angle": "rad", "angles": "rad",
     "stiffness": "force/length", "coupling": "force/length", "ground": "force/length", "k1": "force/length",
     "k2": "force/length", "k3": "force/length", "pad_stiffness": "force/length",
     "damping": "force time/length", "gravity": "length/time^2", "normal_force": "force", "friction": "force",
-    "amplitude": "force", "preload": "force", "load": "force", "pull": "force", "pretension": "force",
+    "amplitude": "force", "preload": "force", "gap": "rad", "load": "force", "pull": "force", "pretension": "force",
     "torque": "force length",
     "mu_k_N": "force", "mu_s_N": "force", "speed": "length/time", "belt": "length/time", "velocity": "length/time",
     "v0": "length/time", "u0": "length/time", "table": "length/time", "rotor_velocity": "modal",
@@ -37,6 +38,7 @@ NUMBERS = [
     "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",
     "damping_ratio", "split", "modal_mass", "case", "n", "n_pad_modes", "n_rotor_modes", "n_contacts",
     "nodal_diameters", "law", "laws", "pressure", "modes", "conicity", "slope",
+    "restitution",
 ]  # fmt: skip
 DIMENSIONS |= dict.fromkeys(NUMBERS, "")
 # Where a model means something else by a name.
@@ -51,6 +53,7 @@ OTHERWISE = {
     ("belt_drive", "speed"): "rad/time",
     ("belt_drive", "load"): "force length",
     ("drive_train", "speed"): "rad/time",
+    ("gear_rattle", "amplitude"): "rad",
     ("drive_train", "stiffness"): "force length/rad",
     ("drive_train", "damping"): "force length time/rad",
     ("sprag_slip", "stiffness"): "force length/rad",

@@ -14,6 +14,7 @@ from fricmb.models.belt_drive import belt_drive
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
+from fricmb.models.bouncing_ball import bouncing_ball
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
 from fricmb.models.drive_train import drive_train
@@ -21,6 +22,7 @@ from fricmb.models.dry_ball_joint import dry_ball_joint
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
+from fricmb.models.gear_rattle import gear_rattle
 from fricmb.models.heavy_top import heavy_top
 from fricmb.models.minimal_flutter import minimal_flutter
 from fricmb.models.pad_rotor import pad_rotor
@@ -28,6 +30,7 @@ from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
 from fricmb.models.rising_top import rising_top
+from fricmb.models.rocking_block import rocking_block
 from fricmb.models.rolling_coin import rolling_coin
 from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.slider_crank import slider_crank
@@ -47,6 +50,7 @@ __all__ = [
     "belt_oscillator",
     "billiard",
     "block_stack",
+    "bouncing_ball",
     "brake4dof",
     "car_axis",
     "catalogue",
@@ -55,6 +59,7 @@ __all__ = [
     "dry_pendulum",
     "four_bar",
     "friction_oscillator",
+    "gear_rattle",
     "heavy_top",
     "minimal_flutter",
     "pad_rotor",
@@ -62,6 +67,7 @@ __all__ = [
     "planar_oscillator",
     "puck_on_belt",
     "rising_top",
+    "rocking_block",
     "rolling_coin",
     "rotor_doublet",
     "slider_crank",

@@ -15,6 +15,7 @@ from fricmb.models.belt_drive import belt_drive
 from fricmb.models.belt_oscillator import belt_oscillator
 from fricmb.models.billiard import billiard
 from fricmb.models.block_stack import block_stack
+from fricmb.models.bouncing_ball import bouncing_ball
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
 from fricmb.models.drive_train import drive_train
@@ -22,6 +23,7 @@ from fricmb.models.dry_ball_joint import dry_ball_joint
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
+from fricmb.models.gear_rattle import gear_rattle
 from fricmb.models.heavy_top import heavy_top
 from fricmb.models.minimal_flutter import minimal_flutter
 from fricmb.models.pad_rotor import pad_rotor
@@ -29,6 +31,7 @@ from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
 from fricmb.models.puck_on_belt import puck_on_belt
 from fricmb.models.rising_top import rising_top
+from fricmb.models.rocking_block import rocking_block
 from fricmb.models.rolling_coin import rolling_coin
 from fricmb.models.rotor_doublet import rotor_doublet
 from fricmb.models.slider_crank import slider_crank
@@ -92,6 +95,9 @@ _MODELS = (
     Model(build=painleve_rod, t_end=0.2, units=SI),
     Model(build=four_bar, t_end=2.0, units=SI),
     Model(build=drive_train, t_end=20.0, units=SI),
+    Model(build=bouncing_ball, t_end=3.0, units=SI),
+    Model(build=rocking_block, t_end=4.0, units=SI),
+    Model(build=gear_rattle, t_end=0.2, units=SI),
     Model(build=heavy_top, t_end=1.0, units=SI),
     Model(build=rising_top, t_end=6.0, units=SI),
     Model(build=billiard, t_end=1.0, units=SI),

@@ -130,8 +130,8 @@ class Points:
         size = row_unit(row, self.units.q, moment.t.shape) + self._grain(row, moment)
         self.gathered.add("rigid surfaces are not entered", np.maximum(-phi, 0.0) / (2.0 * size), moment.t, joint.name)
         # where it lets go its force is what others leave of each other: their sizes count, not its own alone
-        others = max((np.abs(found.force[i]).max(initial=0.0) / max(np.abs(c).max(), 1e-300) for i, c in row), default=0.0)
-        unit = self.units.rtol * max(np.abs(lam).max(initial=0.0), others) + 1e-300
+        sizes = [np.abs(found.force[i]).max(initial=0.0) / (np.abs(c).max() + 1e-300) for i, c in row]
+        unit = self.units.rtol * max(np.abs(lam).max(initial=0.0), *sizes) + 1e-300
         self.gathered.add("rigid surfaces only push", np.maximum(-lam, 0.0) / unit, moment.t, joint.name)
 
     @staticmethod
