@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -149,7 +150,12 @@ def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: floa
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
         out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
     weight = np.sqrt(c.mass)
-    c.h = first_step(weight * y.v, weight * y.a, t_end - start.t, PART)
+    omega = float(np.max(problem.omega, initial=0.0))
+    c.h = first_step(weight * y.v, weight * y.a, t_end - start.t, PART, omega)
+    place, rate = (weight * c.q).max(initial=0.0), (weight * np.abs(y.a)).max(initial=0.0)
+    if place > 0.0 and rate > 0.0 and not np.any(y.v):
+        # from rest a step that is long beside all frequencies would be damped to nothing, and look right
+        c.h = max(min(c.h, PART * math.sqrt(place / rate)), 1e-12 * (t_end - start.t))
 
 
 def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
