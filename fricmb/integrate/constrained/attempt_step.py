@@ -17,7 +17,6 @@ from fricmb.integrate.constrained.between_stages import (
 from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
-from fricmb.integrate.constrained.held_force import unseen_force
 from fricmb.integrate.constrained.load_defect import load_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
@@ -48,16 +47,7 @@ from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, Codes
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.run.outcomes import (
-    ACCEPTED,
-    CHANGED,
-    DONE,
-    FAIL_CREEP,
-    FAIL_MARGIN,
-    FAIL_SINGULAR,
-    FAIL_STEP,
-    REJECTED,
-)
+from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
 from fricmb.integrate.step.knots import NOWHERE, SLIGHT
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, next_step, step_factor
@@ -161,20 +151,6 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     return far
 
 
-#: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.
-VAIN, VAIN_PART = 200, 0.25
-
-
-@kernel
-def creeps(c: Control, y: State) -> bool:
-    """Whether a scene without joints is to be left to steps that are condensed to the contacts.
-
-    Those solve with the slopes of laws at every stage: of a law that is steep as a logarithm near rest there is no one
-    slope for a whole step.
-    """
-    return bool(not has_joints(y) and c.counts[5] > VAIN and c.counts[5] > VAIN_PART * c.counts[0])
-
-
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
@@ -204,8 +180,7 @@ def radau_step(
     if not solved:
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
-        c.counts[5] += 1
-        return FAIL_CREEP if creeps(c, y) else reject(c, 0.4 * h)
+        return reject(c, 0.4 * h)
     bring_up_to_date(mech, k, y, st, h)
     find_kinks(mech, k, y, st, out)
     weigh_ports(mech, k, y, st, c, h)
@@ -217,7 +192,7 @@ def radau_step(
     if mech.bends.address.shape[0] > 0:
         knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
     error = max(error_of(c, y, st, h), between / asked(c))
-    error = max(error, too_long(growth_of_slip(mech, k, y, st, h), order), unseen_force(mech, k, y, st, c, h))
+    error = max(error, too_long(growth_of_slip(mech, k, y, st, h), order))
     if not error < 1e300:
         return reject(c, 0.4 * h)
     factor = step_factor(error, order, ONE_STEP_SAFETY)

@@ -15,14 +15,13 @@ from fricmb.integrate.constrained.slip_rows import lack, plane, slip_speed, spar
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import first_below
 
-#: Forces at the stages are of lower order than velocities: this part of their size, between them, is no sign.
-ROUGH = 5e-7
+#: Forces at the stages are of lower order than velocities: this part of the largest one, between them, is no sign.
+ROUGH = 1e-6
 
 
 @kernel
@@ -198,15 +197,6 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
 
 
 @kernel
-def size_of_force(mech: Mech, k: Moving, out: Watch, j: int, y: State) -> float:
-    """What the force of trigger j is measured by: the limit of a port that sticks, else the largest force."""
-    c = j // 2
-    if j < 2 * y.mode.shape[0] and j % 2 == 0:
-        return stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
-    return float(out.top_force)
-
-
-@kernel
 def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, shared: bool) -> int:
     """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then.
 
@@ -218,7 +208,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
         fine = is_slip(j, y) or is_open(mech, j - 2 * y.mode.shape[0])
-        hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * size_of_force(mech, k, out, j, y)
+        hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * out.top_force
         for i in range(st.tab.c.shape[0]):
             out.values[i] = out.inner[i + 1, j] + hair
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment

@@ -14,23 +14,13 @@ from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
 
-#: Rows of contacts (slip, normal forces that vary) below which steps of BDF are condensed to them.
+#: Rows of contacts (slip, normal forces that vary) below which steps are condensed to them.  States of laws
+#: count beside them alone: a heavy plate on one joint of twenty sliders, which hardly moves, stops in a band.
 FEW = 16
 
 
 def in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``radau`` solves steps for all unknowns in a band.
-
-    Not those of an even number of stages; nor, with few contacts, of scenes with nonlinear elements: that the ends of a
-    spring meet, or that forces jump where elements bend and what rests lets go, is known to condensed steps alone.
-    """
-    if problem.mechanism is None and stages is not None and stages % 2 == 0:
-        return False
-    return not problem.elements.table.address.size or bdf_in_a_band(problem, stages)
-
-
-def bdf_in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``bdf`` does: with joints or bodies that turn, and with many contacts."""
+    """Whether steps are solved for all unknowns in a band: with joints or bodies that turn, and with many contacts."""
     if problem.mechanism is not None:
         return True
     if problem.m + problem.n_v < FEW or (stages is not None and stages % 2 == 0):
