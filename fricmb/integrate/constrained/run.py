@@ -151,9 +151,13 @@ def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: floa
     omega = float(np.max(problem.omega, initial=0.0))
     c.h = first_step(weight * y.v, weight * y.a, t_end - start.t, PART, omega)
     place, rate = (weight * c.q).max(initial=0.0), (weight * np.abs(y.a)).max(initial=0.0)
-    if place > 0.0 and rate > 0.0 and not np.any(y.v):
-        # from rest a step that is long beside all frequencies would be damped to nothing, and look right
-        c.h = max(min(c.h, PART * math.sqrt(place / rate)), 1e-12 * (t_end - start.t))
+    if rate > 0.0 and not np.any(y.v) and c.h > FAR * math.sqrt(place / rate) > 0.0:
+        # a step from rest that is long beside all that swings would be damped to nothing, and look right
+        c.h = max(PART * math.sqrt(place / rate), 1e-12 * (t_end - start.t))
+
+
+#: A first step from rest is this much longer than motion takes to change places: only in runs of very many swings.
+FAR = 30.0
 
 
 def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
