@@ -12,14 +12,13 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.between_stages import bring_up_to_date
 from fricmb.integrate.constrained.forces import call_joint, directions, friction_at, load_place, move
 from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.radau_step import Control, asked
 from fricmb.integrate.constrained.slip_rows import friction_coefficient, lightness
-from fricmb.integrate.constrained.stages import Stages
+from fricmb.integrate.constrained.stages import Stages, bring_up_to_date
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.law_values import magnitude
