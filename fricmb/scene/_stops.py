@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fricmb.errors import SceneError, shown
 from fricmb.scene._axes import check_axis, check_ends, direction
@@ -221,6 +221,15 @@ class Stop(_Touching):
     lower: Any = None
     upper: Any = None
 
+    if TYPE_CHECKING:  # what `__new__` takes as well
+
+        def __init__(
+            self, name: str, a: End, b: End = GROUND, *, axis: Any = None, stiffness: Any = None,
+            hunt_crossley: Any = 0.0, damping: Any = 0.0, damping_depth: Any = None, guide: Any = None,
+            angle: Any = None, lower: Any = None,
+            upper: Any = None, restitution: Any = None,
+        ) -> None: ...  # fmt: skip
+
     def _check_limits(self) -> None:
         if self.lower is None and self.upper is None:
             raise SceneError(f"{self._label()}: lower or upper must be given")
@@ -287,6 +296,15 @@ class Backlash(_Touching):
     _: KW_ONLY
     gap: Any
     ratio: Any = None
+
+    if TYPE_CHECKING:  # what `__new__` takes as well
+
+        def __init__(
+            self, name: str, a: End, b: End = GROUND, *, axis: Any = None, stiffness: Any = None,
+            hunt_crossley: Any = 0.0, damping: Any = 0.0, damping_depth: Any = None, guide: Any = None,
+            angle: Any = None, gap: Any,
+            ratio: Any = None, restitution: Any = None,
+        ) -> None: ...  # fmt: skip
 
     def _check_axis(self) -> None:
         if self.ratio is None:
