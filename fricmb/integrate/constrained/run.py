@@ -151,7 +151,7 @@ def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: floa
     omega = float(np.max(problem.omega, initial=0.0))
     c.h = first_step(weight * y.v, weight * y.a, t_end - start.t, PART, omega)
     place, rate = (weight * c.q).max(initial=0.0), (weight * np.abs(y.a)).max(initial=0.0)
-    if rate > 0.0 and not np.any(y.v) and c.h > FAR * math.sqrt(place / rate) > 0.0:
+    if not np.any(y.v) and c.h * c.h * rate > FAR * FAR * place > 0.0:
         # a step from rest that is long beside all that swings would be damped to nothing, and look right
         c.h = max(PART * math.sqrt(place / rate), 1e-12 * (t_end - start.t))
 
