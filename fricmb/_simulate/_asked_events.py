@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fricmb._simulate._arguments import Span
 from fricmb._simulate._mechanics import SceneMechanics
 from fricmb.errors import IntegrationError, SceneError, shown, unknown_name
-from fricmb.field import AskedEvent
 from fricmb.integrate import Integrator, Problem, Start, Trajectory
 from fricmb.scene import check_expression, expression_uses
 from fricmb.solution import Event, LooksFor, Names, Solution, owner_of
 from fricmb.values import Declaration, as_float, has_entries, is_plain, substitute
+
+if TYPE_CHECKING:
+    from fricmb.field import AskedEvent
 
 #: Makes a solution of a trajectory and the times of a run, with what is looked for in it.
 Finish = Callable[[Trajectory, Span, LooksFor | None], Solution]
@@ -75,8 +77,8 @@ class UpTo:
 
     def found(self, sol: Solution) -> list[Event]:
         """Events along a run: the last one is known, since round-off may have moved it beyond the end."""
-        others = [event for event in self.asked.found(sol) if event.name not in self.asked.terminal]
-        return [*others, self.end] if sol.t_end >= self.end.t else others
+        found = [event for one in self.events if one.name not in self.asked.terminal for event in one.events(sol)]
+        return [*found, self.end] if sol.t_end >= self.end.t else found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,8 +109,7 @@ def check_events(mechanics: SceneMechanics, events: Any, terminal: Any) -> Asked
         events = {}
     if not isinstance(events, Mapping) or not all(isinstance(name, str) and name for name in events):
         raise SceneError(f"events: got {shown(events)}; expected {accepted}")
-    values = {name: value for name, value in mechanics.scene.parameters.items() if is_plain(value)}
-    asked = tuple(AskedEvent(name, _expression(name, value, values)) for name, value in events.items())
+    asked = _asked(mechanics, events) if events else ()
     taken = (terminal,) if isinstance(terminal, str) else terminal
     if not isinstance(taken, tuple | list | set | frozenset) or not all(isinstance(name, str) for name in taken):
         raise SceneError(f"terminal: got {shown(terminal)}; expected names out of events=")
@@ -116,8 +117,17 @@ def check_events(mechanics: SceneMechanics, events: Any, terminal: Any) -> Asked
         if name not in events:
             raise unknown_name("terminal event", name, list(events))
     found = Asked(events=asked, terminal=tuple(taken))
-    found.check(mechanics.names)
+    if asked:
+        found.check(mechanics.names)
     return found
+
+
+def _asked(mechanics: SceneMechanics, events: Mapping[str, Any]) -> tuple[AskedEvent, ...]:
+    """What is located; a scene for which nobody asks pays nothing: large ones have many parameters."""
+    from fricmb.field import AskedEvent
+
+    values = {name: value for name, value in mechanics.scene.parameters.items() if is_plain(value)}
+    return tuple(AskedEvent(name, _expression(name, value, values)) for name, value in events.items())
 
 
 def _expression(name: str, value: Any, parameters: dict[str, Any]) -> Any:
@@ -128,27 +138,29 @@ def _expression(name: str, value: Any, parameters: dict[str, Any]) -> Any:
             accepted = 'a signal and a number, ("sole.force", 2.0)'
             raise SceneError(f"events: {name!r}: got {shown(value)}; expected {accepted}")
         return value[0], level
-    if getattr(value, "is_Relational", False):
-        value = value.lhs - value.rhs
-    stated = substitute(_Stated(name=name, value=value).value, parameters)
-    uses = expression_uses(stated)
-    if uses.constant:
+    stated = substitute(_Stated(name=name, value=_difference(value)).value, parameters)
+    if expression_uses(stated).constant:
         raise SceneError(
             f"events: {name!r}: got {shown(value)}, which does not change; expected an expression of motion or time"
         )
     return stated
 
 
+def _difference(value: Any) -> Any:
+    """Of a relation what is on its left less what is on its right; anything else as it is."""
+    return value.lhs - value.rhs if getattr(value, "is_Relational", False) else value
+
+
 def with_observed(observe: Any, events: Any) -> Any:
     """What is observed, and what events read: a part that only an event needs is not left out."""
     if observe is None or isinstance(observe, str) or not has_entries(observe) or not isinstance(events, Mapping):
         return observe
-    read = []
+    read: list[str] = []
     for value in events.values():
-        if isinstance(value, tuple | list) and value and isinstance(value[0], str):
-            read.append(owner_of(value[0]) or value[0])
-        elif hasattr(value, "free_symbols"):
-            read += [s.motion for s in value.free_symbols if hasattr(s, "motion")]
+        if isinstance(value, tuple | list):
+            read += [owner_of(name) or name for name in value[:1] if isinstance(name, str)]
+        else:
+            read += expression_uses(_difference(value)).motions
     return [*observe, *(name for name in sorted(set(read)) if name not in observe)]
 
 

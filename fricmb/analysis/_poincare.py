@@ -128,11 +128,8 @@ def _check(who: str, section: Any, period: Any, discard: Any) -> None:
 
 def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool | None) -> Floats:
     found = [np.zeros(0)]
-    for t, sign in AskedEvent("section", (name, level)).changes(sol):
-        chosen = t >= begin
-        if rising is not None:
-            chosen &= sign == (1.0 if rising else -1.0)
-        found.append(t[chosen])
+    for t, sign in AskedEvent("section", (name, level)).changes(sol, begin):
+        found.append(t if rising is None else t[sign == (1.0 if rising else -1.0)])
     return np.concatenate(found)
 
 

@@ -78,12 +78,13 @@ class AskedEvent:
     def _steps(self, sol: Solution) -> Floats:
         return np.unique(np.concatenate([[sol.t_start], sol.run.row_motion().samples.t, [sol.t_end]]))
 
-    def changes(self, sol: Solution) -> Iterator[tuple[Floats, Floats]]:
-        """Times of its changes of sign along a run, and the sign from each on, some at a time in rising order."""
+    def changes(self, sol: Solution, begin: float = -np.inf) -> Iterator[tuple[Floats, Floats]]:
+        """Times of its changes of sign from ``begin`` on, and the sign from each on, some at a time in rising order."""
         value = self.along(sol)
         band = _TOUCH * (sol.stats.rtol or _FIXED) * self.greatest(sol)
         width = 2 * len(sol.names.dofs) + 3 * len(sol.names.contacts) + 1
-        return sign_changes(value, self._steps(sol), band, width=width)
+        steps = self._steps(sol)
+        return sign_changes(value, np.append(max(begin, steps[0]), steps[steps > begin]), band, width=width)
 
 
 class Seen:
