@@ -115,6 +115,10 @@ class Joints:
     names: tuple[str, ...] = ()
     dropped: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
 
+    def owners(self, rows: Ints) -> Ints:
+        """Joint that each of some rows belongs to."""
+        return np.asarray(np.searchsorted(self.row, rows, side="right") - 1, dtype=np.int64)
+
 
 def loads_of(joints: Joints) -> Ints:
     """``load_of`` of every joint."""

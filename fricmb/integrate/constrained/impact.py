@@ -14,7 +14,7 @@ import numpy as np
 from fricmb.integrate.constrained.impact_law import Answer, Hit, solve_impact
 from fricmb.integrate.constrained.impact_log import ImpactLog, Outcome
 from fricmb.integrate.constrained.impact_rest import Bounces, Hop, Leaving
-from fricmb.integrate.constrained.impact_resume import resume, tell_changes
+from fricmb.integrate.constrained.impact_resume import put_state, resume, tell_changes
 from fricmb.integrate.constrained.impact_surfaces import Surfaces
 from fricmb.integrate.constrained.impulse_matrix import ImpulseMatrix
 from fricmb.integrate.mechanism import APART
@@ -82,22 +82,22 @@ class Impacts:
             return FAIL_HIT
         members, falls = np.flatnonzero(touched | s.held), s.pressed()
         opened = self.joints.dropped.copy()
-        _copy(y, before)
+        put_state(y, before)
         e = self.joints.restitution[members].copy()
         code, outcome = self._apply(members, e, touched, ())
         if code != DONE or outcome is None:
             return code
         hops = self._hops(members, touched, rate, outcome.answer, falls)
-        ends = np.array([hop is not None and hop.ends for hop in hops])
+        ends = _ending(hops)
         others = self._others(members, rate, hops)
         if ends.any() or others:
             members = np.append(members, [j for j in others if j not in members]).astype(np.int64)
             hops += [None] * (len(members) - len(hops))
             hops = [others.get(j, hop) for j, hop in zip(members.tolist(), hops, strict=True)]
-            ends = np.array([hop is not None and hop.ends for hop in hops])
+            ends = _ending(hops)
             touched[members[ends]] = True
             e = self.joints.restitution[members].copy()
-            _copy(before, y)
+            put_state(before, y)
             self.joints.dropped[:] = opened
             e[ends] = 0.0
             code, outcome = self._apply(members, e, touched, tuple(others))
@@ -180,7 +180,7 @@ class Impacts:
 
     def _held_both_ways(self) -> Ints:
         """Rows that hold in an impact both ways: of joints that are there and not rigid."""
-        owner = np.searchsorted(self.joints.row, np.arange(len(self.joints.dropped)), side="right") - 1
+        owner = self.joints.owners(np.arange(len(self.joints.dropped)))
         found: Ints = np.flatnonzero((self.joints.dropped == 0) & ~self.surfaces.rigid[owner])
         return found
 
@@ -194,7 +194,7 @@ class Impacts:
                 " impact does with this friction; with tangential_restitution equal to restitution it never does"
             )
             return False
-        owner = np.searchsorted(self.joints.row, held, side="right") - 1
+        owner = self.joints.owners(held)
         impulse = reaction @ outcome.answer.impulse
         wrong = (self.joints.one_sided[owner] != 0) & (impulse < -1e-9 * np.abs(impulse).max(initial=0.0))
         if wrong.any():
@@ -269,8 +269,6 @@ class Impacts:
         return hops
 
 
-def _copy(source: Any, target: Any) -> None:
-    """Put one state into another."""
-    target.t = source.t
-    for name in ("q", "v", "a", "z", "lam", "F", "N", "g", "ga", "n", "zd", "mode", "work", "rate"):
-        getattr(target, name)[...] = getattr(source, name)
+def _ending(hops: list[Hop | None]) -> Any:
+    """Whether bounces end with each of these hops."""
+    return np.array([hop is not None and hop.ends for hop in hops])

@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
 from fricmb.integrate.constrained.radau_step import Control
-from fricmb.integrate.constrained.recorder import Record
+from fricmb.integrate.constrained.recorder import Record, copy_state
 from fricmb.integrate.constrained.singular_position import start_watch
 from fricmb.integrate.constrained.slip_rows import plane
 from fricmb.integrate.constrained.state import Instant, State
@@ -93,6 +93,12 @@ def resume(
     c.made = 0.0
     c.growth = 1e300
     return FAIL_MARGIN if margins(mech, k, w, y, out, True) <= 0.0 else DONE
+
+
+@entry
+def put_state(source: State, target: State) -> None:
+    """Put one state into another."""
+    copy_state(source, target)
 
 
 @entry

@@ -76,7 +76,7 @@ def _entries(mech: Any, m: Mechanism) -> int:
 
 def names_of_rows(m: Mechanism, rows: Ints) -> list[str]:
     """Joints that own the rows, each once; what ties one body together only where there is nothing else."""
-    owner = np.searchsorted(m.joints.row, rows, side="right") - 1
+    owner = m.joints.owners(rows)
     joints = owner[m.joints.inner[owner] == 0]
     return list(dict.fromkeys(m.joints.names[i] for i in (joints if joints.size else owner)))
 

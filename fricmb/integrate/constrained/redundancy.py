@@ -93,7 +93,7 @@ def _rows_of(m: Mechanism, groups: Sequence[Sequence[str]]) -> list[Ints]:
 
 def _first(m: Mechanism, rows: Ints) -> Floats:
     """Weights (n_rows,) by which pivoting takes the inner constraints of bodies before those of joints."""
-    owner = np.searchsorted(m.joints.row, rows, side="right") - 1
+    owner = m.joints.owners(rows)
     weights: Floats = np.where(m.joints.inner[owner] != 0, 1.0 / RANK, 1.0)
     return weights
 
