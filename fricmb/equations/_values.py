@@ -62,8 +62,8 @@ def numbers(declaration: Declaration) -> tuple[float, ...]:
     found: list[float] = []
     kind: Any = type(declaration)
     values = slot_values(kind)(declaration)
-    if _NUMBERS.issuperset(map(type, values)):
-        return tuple([value for value in values if value is not None])
+    if _PLAIN.issuperset(map(type, values)):
+        return tuple([value for value in values if type(value) is float])
     for _, value in _symbolic_slots(declaration):
         if isinstance(value, tuple):
             found.extend(float(value_of(entry)) for entry in value)
@@ -80,18 +80,20 @@ def structure(declaration: Declaration) -> tuple[Any, ...]:
     kind: Any = type(declaration)
     if not _is_ours(kind):
         return _structure(declaration)
-    key = (kind, *map(type, slot_values(kind)(declaration)))
+    values = slot_values(kind)(declaration)
+    types = tuple(map(type, values))
+    key = (kind, types, tuple([value for value in values if type(value) is bool])) if bool in types else (kind, types)
     found = _plain_structures.get(key)
     if found is None:
         found = _structure(declaration)
-        if _NUMBERS.issuperset(key[1:]):
+        if _PLAIN.issuperset(types):
             _plain_structures[key] = found
     return found
 
 
-#: Of types of this package that hold floats, and None in some fields: always the same.
+#: Of types of this package that hold floats, flags, and None in some fields: by the flags always the same.
 _plain_structures: dict[tuple[Any, ...], tuple[Any, ...]] = {}
-_NUMBERS = frozenset((float, type(None)))
+_PLAIN = frozenset((float, bool, type(None)))
 
 
 def _structure(declaration: Declaration) -> tuple[Any, ...]:
