@@ -92,18 +92,22 @@ def test_it_holds_along_a_guide_that_leans_in_its_table(method):
     np.testing.assert_allclose(sol.force("dry")[0], M * (G * np.sin(tilt + angle) - 0.5 * rate**2), atol=1e-6)
 
 
-@pytest.mark.parametrize("method", ["radau", "bdf"])
-def test_a_block_on_a_tilting_table_under_its_own_load(method):
-    """Two guides that move on each other: friction of the guide itself, by the force across."""
-    mu_s, mu_k = 0.35, 0.3
+def under_its_own_load(*, mu_s, mu_k):
+    """The block on the table by an own program, its friction by the force across the guide."""
 
     def across(t, s, speed):
         angle, rate, acceleration = swing(t)
         return abs(M * (G * np.cos(angle) + s * acceleration + 2 * rate * speed))
 
-    own, events = own_run(lambda t, y: mu_k * across(t, *y), lambda t, s: mu_s * across(t, s, 0.0), 4.0)
+    return own_run(lambda t, y: mu_k * across(t, *y), lambda t, s: mu_s * across(t, s, 0.0), 4.0)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_block_on_a_tilting_table_under_its_own_load(method):
+    """Two guides that move on each other: friction of the guide itself, by the force across."""
+    own, events = under_its_own_load(mu_s=0.35, mu_k=0.3)
     assert len(events) > 3
-    scene = tilting(lambda block, guide: [], friction=fm.laws.Coulomb(mu_s=mu_s, mu_k=mu_k))
+    scene = tilting(lambda block, guide: [], friction=fm.laws.Coulomb(mu_s=0.35, mu_k=0.3))
     compare(scene, "guide", own, events, method)
 
 
@@ -111,12 +115,7 @@ def test_a_block_on_a_tilting_table_under_its_own_load(method):
 def test_a_point_on_a_moving_line(method):
     """The same without the guide holding the block's angle: a point that slides on a line fixed in the table."""
     mu_s, mu_k = 0.35, 0.3
-
-    def across(t, s, speed):
-        angle, rate, acceleration = swing(t)
-        return abs(M * (G * np.cos(angle) + s * acceleration + 2 * rate * speed))
-
-    own, events = own_run(lambda t, y: mu_k * across(t, *y), lambda t, s: mu_s * across(t, s, 0.0), 4.0)
+    own, events = under_its_own_load(mu_s=mu_s, mu_k=mu_k)
     table = fm.RigidBody("table", mass=5.0, inertia=1.0)
     block = fm.Body("block", mass=M, axes="xy", position={"x": 0.5})
     scene = fm.Scene("line", [
