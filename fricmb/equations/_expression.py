@@ -184,7 +184,7 @@ def _step(argument: Any, *_: Any) -> Any:
     return sympy.Piecewise((1, argument >= 0), (0, True))
 
 
-def time_switches(value: Any, parameters: Sequence[Any]) -> list[dict[str, str | None]]:
+def time_switches(value: Any, parameters: Sequence[Any]) -> list[dict[str, Any]]:
     """:func:`switches` in the canonical symbol of time."""
     return switches(value, sympy.Symbol("t", real=True), parameters)
 
@@ -206,16 +206,18 @@ def switching_functions(value: Any) -> list[Any]:
     return list(dict.fromkeys(functions))
 
 
-def switches(value: Any, t: Any, parameters: Sequence[Any]) -> list[dict[str, str | None]]:
-    """Where an expression of time switches: the function that changes sign and, where it is known, the instant."""
-    found: list[dict[str, str | None]] = []
+def switches(value: Any, t: Any, parameters: Sequence[Any]) -> list[dict[str, Any]]:
+    """Where an expression of time switches: the function that changes sign, and the instant or a tape to search by."""
+    found: list[dict[str, Any]] = []
     for function in switching_functions(value):
         if t not in function.free_symbols or function.free_symbols - {t, *parameters}:
             continue
-        entry = {"function": parameter_source(function, parameters, (t,)), "instant": None}
+        entry: dict[str, Any] = {"function": parameter_source(function, parameters, (t,)), "instant": None}
         slopes, constant = affine(function, [t]) if function.is_polynomial(t) else ([t], 0)
         if t not in sympy.sympify(slopes[0]).free_symbols:
             entry["instant"] = parameter_source(-constant / slopes[0], parameters)
+        else:
+            entry["tape"] = whole_tape(without_mod(function), t, parameters)
         if entry not in found:
             found.append(entry)
     return found

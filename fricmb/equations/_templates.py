@@ -10,6 +10,7 @@ from typing import Any
 
 from fricmb.equations import _store
 from fricmb.equations._values import fingerprint, source_fingerprint, structure
+from fricmb.integrate.signals.jets import Entry
 from fricmb.integrate.signals.pieces import series_value
 
 _NAMES = {name: getattr(math, name) for name in dir(math) if not name.startswith("_")} | {"series": series_value}
@@ -128,13 +129,17 @@ class Template:
         return lambda p: all(v == 0.0 for v in every(p)) or any(v == 0.0 for v in single(p))
 
     @cached_property
-    def instants(self) -> list[tuple[Callable[..., float] | None, Callable[..., float]]]:
-        """Of a signal: instants of its switches (None where they have to be searched) and the switching functions.
+    def instants(self) -> list[tuple[Callable[..., float] | None, Callable[..., float], tuple[Entry, ...] | None]]:
+        """Of a signal: instants of its switches (None where they have to be searched), what switches, its bounds.
 
         Of a coefficient: the same, of slip speed in place of time.
         """
         return [
-            (None if s["instant"] is None else formula(s["instant"]), formula(s["function"]))
+            (
+                None if s["instant"] is None else formula(s["instant"]),
+                formula(s["function"]),
+                None if s.get("tape") is None else tuple(map(tuple, s["tape"])),
+            )
             for s in self.facts.get("switches", [])
         ]
 

@@ -10,8 +10,10 @@ import numpy as np
 
 from fricmb.equations import Template
 from fricmb.integrate.problem import Floats
+from fricmb.integrate.signals.jets import Entry
+from fricmb.integrate.signals.sign_changes import stretches
 
-#: A search looks at this many points at first, and at twice as many until it finds no more sign changes.
+#: A search without bounds looks at this many points at first, and at twice as many until it finds no more sign changes.
 _FIRST, _MOST = 512, 2**18
 #: It goes beyond the ends of a run by this part of it: what switches at an end does so as exactly as elsewhere.
 #: Round-off of a time, relative to the ends.
@@ -25,6 +27,7 @@ class Switch:
 
     function: Callable[[Sequence[float]], float]
     parameters: tuple[float, ...]
+    tape: tuple[Entry, ...] | None = None
 
     def value(self, t: float) -> float:
         """The function; 0 where it cannot be evaluated."""
@@ -37,6 +40,8 @@ class Switch:
         """Sign changes from one time to another, both included, rising; ``bends``: times at which series bend."""
         count, found = _FIRST, np.zeros(0)
         beyond = _BEYOND * (t_end - t_start)
+        if self.tape is not None:
+            bends = np.union1d(bends, stretches(self.tape, self.parameters, t_start - beyond, t_end + beyond))
         while count <= _MOST:
             grid = np.linspace(t_start - beyond, t_end + beyond, count + 1)
             brackets = self.brackets(np.union1d(grid, bends) if bends.size else grid)
@@ -79,9 +84,9 @@ def switches_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Fl
     known: set[float] = set()
     searched = []
     for template, parameters in timed:
-        for instant, function in template.instants:
+        for instant, function, tape in template.instants:
             if instant is None:
-                searched.append(Switch(function, parameters))
+                searched.append(Switch(function, parameters, tape))
                 continue
             try:
                 time = float(instant(parameters))

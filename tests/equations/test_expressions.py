@@ -35,7 +35,7 @@ def test_signal_by_value_has_both_derivatives():
 )
 def test_position_is_the_integral_of_a_velocity(velocity, switch):
     signal = signal_expression(velocity, "rate", 2.0, "test")
-    assert sorted(instant(signal.parameters) for instant, _ in signal.template.instants) == switch
+    assert sorted(instant(signal.parameters) for instant, *_ in signal.template.instants) == switch
     number = sympy.lambdify(fm.t, velocity, "math")
     if velocity.has(sympy.Heaviside):
         number = lambda t: 1.5 * (t >= 1) - 0.5 * (t >= 2.5)  # noqa: E731
@@ -50,7 +50,7 @@ def test_position_is_the_integral_of_a_velocity(velocity, switch):
 def test_a_breakpoint_follows_its_parameter():
     t0 = fm.parameter("t0", 1.25)
     signal = signal_expression(sympy.Heaviside(2 * fm.t - t0), "value", 0.0, "test")
-    ((instant, _),) = signal.template.instants
+    ((instant, *_),) = signal.template.instants
     assert instant(signal.parameters) == pytest.approx(0.625)
 
 

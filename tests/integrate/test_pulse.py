@@ -61,3 +61,41 @@ def test_a_slide_that_rests_on_its_guide_is_pushed(method):
     lets_go, turns, way = first_slide(1.0, lambda t, x: pulse(t) - x, 1.0, 0.8, 0.0)
     assert [e.t for e in sol.events][:2] == pytest.approx([lets_go, turns], abs=1e-5)
     assert sol.at([turns]).q[sol.dof_names.index("block.x"), 0] == pytest.approx(way, rel=1e-5)
+
+
+#: Half the width of a triangle, its peak, and how far it pushes a unit mass that 1 holds and 0.8 rubs.
+HALF, TOP = 5e-4, 4000.0
+
+
+def pushed_by_triangle():
+    """Instants of letting go and coming to rest, and the way between, in closed form: the force is linear by pieces."""
+    rise = TOP / HALF
+    tau = HALF - 1.0 / rise  # from letting go to the peak
+    v = (1.0 - 0.8) * tau + 0.5 * rise * tau**2
+    x = 0.5 * (1.0 - 0.8) * tau**2 + rise * tau**3 / 6.0
+    x += v * HALF + 0.5 * (TOP - 0.8) * HALF**2 - rise * HALF**3 / 6.0
+    v += (TOP - 0.8) * HALF - 0.5 * rise * HALF**2
+    return AT - tau, AT + HALF + v / 0.8, x + 0.5 * v**2 / 0.8
+
+
+@pytest.mark.parametrize(("joint", "method"), [
+    (False, "auto"), (False, "radau"), (False, "bdf"), (False, "taylor"), (True, "radau"), (True, "bdf"),
+])  # fmt: skip
+def test_a_triangle_of_a_ten_thousandth_of_the_run(joint, method):
+    """Where it begins and ends was searched for on a grid of the run: what lay between two times was missed."""
+    value = TOP * sympy.Max(0, 1 - sympy.Abs(fm.t - AT) / HALF)
+    law = fm.laws.Coulomb(mu_s=1.0, mu_k=0.8)
+    if joint:
+        body = fm.RigidBody("block", mass=1.0, inertia=1.0)
+        rest = [
+            fm.Prismatic("guide", body, fm.ground_point(0.0, 0.0), friction=law),
+            fm.Gravity("gravity", acceleration={"y": -1.0}),
+        ]
+    else:
+        body = fm.Body("block", mass=1.0)
+        rest = [fm.Contact("guide", body, law=law, normal_force=1.0)]
+    scene = fm.Scene("pushed", [body, *rest, fm.Force("pulse", body, axis="x", value=value)])
+    sol = fm.simulate(scene, t_end=END, rtol=1e-6, method=method)
+    lets_go, stops, way = pushed_by_triangle()
+    assert [e.t for e in sol.events][-2:] == pytest.approx([lets_go, stops], abs=1e-8)
+    assert sol.q[sol.dof_names.index("block.x"), -1] == pytest.approx(way, rel=1e-6)

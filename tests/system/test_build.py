@@ -238,6 +238,22 @@ def test_breakpoints_known_and_searched():
     assert system.problem_for(0.0, 1.0) is system.problem
 
 
+@pytest.mark.parametrize(("value", "instants"), [
+    (sympy.Max(0, 1 - sympy.Abs(fm.t - 18.8162) / 1e-7), [18.8162 - 1e-7, 18.8162, 18.8162 + 1e-7]),
+    (sympy.Max(0, sympy.exp(-(((fm.t - 7.123) / 1e-4) ** 2)) - 0.5),
+     7.123 + 1e-4 * np.sqrt(np.log(2.0)) * np.array([-1.0, 1.0])),
+    (sympy.Piecewise((1, sympy.sin(3 * fm.t) ** 2 > 0.99999), (0, True)),
+     np.sort([(np.pi * (k + 0.5) + s * np.arcsin(np.sqrt(1e-5))) / 3.0 for k in range(30) for s in (-1, 1)])),
+    (sympy.Abs(fm.t**2 - 2.0 * fm.t + 1.0), []),
+])  # fmt: skip
+def test_breakpoints_are_found_however_close_they_are(value, instants):
+    """Pulses between two times of any grid; a function that touches 0 has no sign change."""
+    body = fm.Body("a", mass=1.0)
+    scene = fm.Scene("s", [body, fm.Force("f", body, axis="x", value=value)])
+    found = build(scene).problem_for(0.0, 31.5).signals.breakpoints
+    np.testing.assert_allclose(found, instants, rtol=0.0, atol=1e-11)
+
+
 def test_what_cannot_matter_is_not_built():
     a, b = fm.Body("a", mass=1.0, velocity={"x": 1.0}), fm.Body("b", mass=3.0, axes="xy", velocity={"y": 2.0})
     parts = [
