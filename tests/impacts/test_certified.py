@@ -80,6 +80,8 @@ def test_a_block_between_stops_rubs_and_sticks(rtol):
     assert len(hits) == 9
     assert len(sticks) == 8
     assert [hit.side for hit in hits] == ["upper", "lower"] * 4 + ["upper"]
+    at_first = [event.kind for event in sol.events if event.t == hits[0].t]
+    assert at_first == ["impact", "reversal"]
     near(hits[0].t, 0.7168891340397369, rtol)
     near(hits[-1].t, 36.07644723876578, rtol)
     near(0.6 * hits[-1].approach, 0.5311845807723397, rtol)

@@ -85,9 +85,10 @@ class ImpactLog:
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         mine = self._kept(found)
         let_go = self._let_go(t, opened)
-        time = np.concatenate([found.t[mine], rows[:, 0], let_go[:, 0]])
-        contact = np.concatenate([found.contact[mine], rows[:, 1], let_go[:, 1]]).astype(int)
-        kind = np.concatenate([found.kind[mine], rows[:, 2], np.full(len(let_go), EVENT_OPEN)]).astype(int)
+        # of one instant the impact comes first: contacts reverse or stick because of it
+        time = np.concatenate([rows[:, 0], found.t[mine], let_go[:, 0]])
+        contact = np.concatenate([rows[:, 1], found.contact[mine], let_go[:, 1]]).astype(int)
+        kind = np.concatenate([rows[:, 2], found.kind[mine], np.full(len(let_go), EVENT_OPEN)]).astype(int)
         order = np.argsort(time, kind="stable")
         return Transitions(t=time[order], contact=contact[order], kind=kind[order], impacts=rows)
 
