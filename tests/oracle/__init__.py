@@ -10,5 +10,6 @@ of itself (``define_force``, ``define_rate``, ``define_coefficient``).
 ``judge``     the error of a run of fricmb over its tolerance and the growth of errors
 ``table``     every law, five situations;  ``random_scenes``  scenes from seeds;  ``known``  cells that still fail
 ``inputs``    fast and brief functions of time;  ``feet``, ``driven``, ``drives``, ``groups``  more kinds of scenes
+``impacts``   scenes with impacts;  ``struck``, ``bounces``, ``struck_judge``  a program of their own and its judge
 ``units``     scenes in other units, and beside idle bodies;  ``drawn``  what draws them
 """

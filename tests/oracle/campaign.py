@@ -16,11 +16,11 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from . import driven, drives, feet, groups, units
+from . import driven, drives, feet, groups, impacts, units
 from .drawn import Drawn
 from .inputs import Shaken
 from .inputs import case_of as inputs_case
-from .judge import Case, Truth, Verdict, Worker, end_with_parent, judge, truth
+from .judge import Case, Truth, Verdict, Worker, end_with_parent, judge
 from .mechanisms import Chain
 from .mechanisms import case_of as chain_case
 from .problem import OracleError
@@ -33,7 +33,7 @@ from .table import LAWS, SITUATIONS
 from .table import case as cell
 
 #: What makes both forms of a scene that was drawn as numbers.
-MAKERS = {**feet.MAKERS, **driven.MAKERS, **drives.MAKERS, **groups.MAKERS, **units.MAKERS}
+MAKERS = {**feet.MAKERS, **driven.MAKERS, **drives.MAKERS, **groups.MAKERS, **units.MAKERS, **impacts.MAKERS}
 #: How long the oracle itself may take for a scene; most take one or two.
 SECONDS = 40.0
 
@@ -89,13 +89,15 @@ def noted(path: Path | None, found: Found) -> None:
 
 
 #: Modules whose text decides what the oracle says of given numbers.
-DECIDING = ("problem", "laws", "loads", "instant", "motion", "slow", "turning", "run")
+DECIDING = (
+    "problem", "laws", "loads", "instant", "motion", "slow", "turning", "run", "struck", "bounces", "struck_judge",
+)  # fmt: skip
 
 
 def said(case: Case, spec: Any, folder: Path | None) -> Truth:
     """What the oracle says of the scene; kept in ``folder``, as it says the same whatever becomes of the engine."""
     if folder is None or spec is None:
-        return truth(case)
+        return case.truth()
     home = Path(__file__).parent
     key = hashlib.sha256(json.dumps(spec.data(), sort_keys=True).encode())
     for name in DECIDING:
@@ -103,7 +105,7 @@ def said(case: Case, spec: Any, folder: Path | None) -> Truth:
     path = folder / f"{spec.kind}-{key.hexdigest()[:24]}.pickle"
     if path.exists():
         return replace(pickle.loads(path.read_bytes()), case=case)
-    true = truth(case)
+    true = case.truth()
     folder.mkdir(parents=True, exist_ok=True)
     path.write_bytes(pickle.dumps(replace(true, case=None)))  # type: ignore[arg-type]
     return true

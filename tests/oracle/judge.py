@@ -49,6 +49,10 @@ class Case:
     silent: frozenset[str] = frozenset()
     """Contacts next to without friction: when their slip turns round is nothing that a run looks for."""
 
+    def truth(self) -> Truth:
+        """What the oracle says of it."""
+        return truth(self)
+
 
 @dataclass
 class Truth:
@@ -64,6 +68,10 @@ class Truth:
     scales: tuple[np.ndarray, np.ndarray] = field(default_factory=lambda: (np.ones(1), np.ones(1)))
     hangs: dict[float, bool] = field(default_factory=dict)
     """Whether transitions hang on changes of that size, as far as that has been asked."""
+
+    def compared(self, found: Outcome, rtol: float) -> Verdict:
+        """What a run is worth."""
+        return compare(self, found, rtol)
 
 
 @dataclass
@@ -88,6 +96,10 @@ class Outcome:
     q: np.ndarray | None = None
     v: np.ndarray | None = None
     events: list[tuple[str, str]] = field(default_factory=list)
+    impacts: list[tuple[str, float]] = field(default_factory=list)
+    """Surface and time; of rests likewise."""
+    approach: list[float] = field(default_factory=list)
+    rests: list[tuple[str, float]] = field(default_factory=list)
 
 
 class Worker:
@@ -269,10 +281,18 @@ def attempt(scene: Any, method: str, rtol: float, t: np.ndarray, t_end: float, s
         return Outcome("refused", str(error))
     except fm.IntegrationError as error:
         return Outcome("stopped", str(error))
+    hits, rests = (list(sol.events.of(kind=kind)) for kind in ("impact", "rest"))
     return Outcome(
         "done", "; ".join(sol.stats.notes), sol.stats.method, np.array([sol[name] for name in signals]),
         np.array([sol.velocity(name) for name in signals]), [(e.contact, e.kind) for e in sol.events],
+        [(surface(e), float(e.t)) for e in hits], [float(e.approach) for e in hits],
+        [(surface(e), float(e.t)) for e in rests],
     )  # fmt: skip
+
+
+def surface(event: Any) -> str:
+    """Which one is hit, of a part with two sides as well."""
+    return f"{event.contact}.{event.side}" if event.side else str(event.contact)
 
 
 def judge(true: Truth, method: str, rtol: float = 1e-6, worker: Worker | None = None) -> Verdict:
@@ -283,7 +303,7 @@ def judge(true: Truth, method: str, rtol: float = 1e-6, worker: Worker | None = 
     outcome = attempt(*asked) if worker is None else worker.ask(*asked)
     if outcome.kind != "done":
         return Verdict(outcome.kind, why=outcome.why)
-    return compare(true, outcome, rtol)
+    return true.compared(outcome, rtol)
 
 
 def compare(true: Truth, found: Outcome, rtol: float) -> Verdict:

@@ -109,7 +109,7 @@ class Impacts:
         out.top_force = max(float(out.top_force), push)
         tell_changes(self._mech, y, before, self._record)
         rested = (touched & s.held)[members].tolist()
-        self.log.add(float(y.t), members, rested, -rate[members], outcome, hops)
+        self.log.add(float(y.t), members, rested, np.maximum(-rate[members], 0.0) + 0.0, outcome, hops)
         return DONE
 
     def _piles_up(self, t: float, count: int) -> bool:
@@ -235,7 +235,7 @@ class Impacts:
         bounces = {j for j, hop in zip(members.tolist(), hops, strict=True) if hop is not None}
         if any(hop is not None and not hop.ends for hop in hops):
             return {}
-        now, pressed, reach = s.rates(y.v), s.pressed(), s.reach()
+        now, pressed, reach, pace = s.rates(y.v), s.pressed(), s.reach(), s.pace()
         fastest = float(np.max(-rate[members], initial=0.0))
         found = {}
         for j in np.flatnonzero(s.open & s.rigid).tolist():
@@ -245,7 +245,8 @@ class Impacts:
                 joint=j, t=float(y.t), speed=float(now[j]), e=float(self.joints.restitution[j]),
                 rises=float(pressed[j]), falls=float(pressed[j]), size=float(reach[j]), noise=float(s.noise[j]),
             )  # fmt: skip
-            hop = self._bounces.among_others(leaving, float(s.gap[j]), float(now[j]) / max(fastest, 1e-300))
+            ratio = float(now[j]) / max(fastest, 1e-300)
+            hop = self._bounces.among_others(leaving, float(s.gap[j]), ratio, float(pace[j]))
             if hop.ends:
                 found[j] = hop
         return found

@@ -71,7 +71,9 @@ class Leaving:
 
 def hop_of(gap: float, rate: float, pressed: float) -> float:
     """Time until a contact at a distance ``gap`` that opens at a rate meets its surface, pressed by an acceleration."""
-    return float((rate + np.sqrt(max(rate * rate + 2.0 * pressed * max(gap, 0.0), 0.0))) / pressed)
+    height = max(gap, 0.0)
+    root = float(np.sqrt(max(rate * rate + 2.0 * pressed * height, 0.0)))
+    return 2.0 * height / (root - rate) if rate < 0.0 else (rate + root) / pressed
 
 
 class Bounces:
@@ -83,15 +85,16 @@ class Bounces:
         self._falls: Floats = np.zeros(n)
         self._count = np.zeros(n, np.int64)
 
-    def among_others(self, leaving: Leaving, gap: float, ratio: float) -> Hop:
+    def among_others(self, leaving: Leaving, gap: float, ratio: float, pace: float) -> Hop:
         """The hop of a contact that others have thrown up, or that is on its way back, while these come to rest.
 
         ``ratio``: by which speeds fall from one impact to the next.  Bounces in turn shrink with it, and end together.
+        ``pace``: acceleration that is usual.  Of two that fall side by side there is next to none between them.
         """
         if not leaving.rises > 0.0:
             return Hop(ends=False)
         T = hop_of(gap, leaving.speed, leaving.rises) / (1.0 - min(max(ratio, leaving.e), 0.99))
-        ends = SHORT * leaving.size / leaving.rises >= T
+        ends = SHORT * leaving.size / max(leaving.rises, pace) >= T
         bound = T + self._rtol * (leaving.t - self._t_start)
         return Hop(ends=bool(ends), left=T, bound=bound)
 

@@ -107,11 +107,16 @@ class Surfaces:
         gap_accelerations(self._mech, self._workspace.k, self._workspace.y, found)
         return -found
 
+    def pace(self) -> Floats:
+        """Accelerations (n_j,) that those of the present state could bring about."""
+        found: Floats = np.abs(self.G[self.first]) @ np.abs(self._workspace.y.a)
+        return found
+
     def falling(self, members: Ints, rate: Floats) -> Ints:
         """Open members that are at rest on their surface and would fall into it, the worst first."""
-        y, pressed = self._workspace.y, self.pressed()
-        size = np.abs(self.G[self.first]) @ np.abs(y.a)
-        found = self.open & (np.abs(rate) <= self.still()) & (pressed > SLIGHT * size) & (self.gap <= 10.0 * self.noise)
+        pressed = self.pressed()
+        still, near = np.abs(rate) <= self.still(), self.gap <= 10.0 * self.noise
+        found = self.open & still & near & (pressed > SLIGHT * self.pace())
         mine = members[found[members]]
         return np.asarray(mine[np.argsort(-pressed[mine])], dtype=np.int64)
 
