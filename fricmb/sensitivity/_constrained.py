@@ -24,6 +24,7 @@ from fricmb.sensitivity._found import Found, total, whole
 from fricmb.sensitivity._joints import Joins
 from fricmb.sensitivity._motions import Moment, Row
 from fricmb.sensitivity._parts import refuse
+from fricmb.sensitivity._struck import Meeting, Struck
 
 #: Newton's method on the reactions: most steps, and the change at which it ends.
 _MOST, _SMALL = 25, 1e-9
@@ -45,6 +46,7 @@ class Constrained(Equations):
     def _prepare(self, piece: Any) -> None:
         self.piece = piece
         self.joints: list[Joins] = []
+        self.struck: dict[str, Struck] = {}
 
     def _parts(self, scene: Any) -> Sequence[Any]:
         return with_inner(scene.parts)
@@ -65,6 +67,9 @@ class Constrained(Equations):
     def _take(self, part: Any, held: bool) -> None:
         if not isinstance(part, Joint):
             super()._take(part, held)
+            return
+        if part.impact is not None:  # it does nothing between its impacts
+            self.struck[part.name] = Struck(part, self.seeds)
             return
         k = self.names.contact_index.get(part.name)
         self.joints.append(Joins(part, k, 0 if k is None else int(self.names.z_start[k]), self.seeds))
@@ -91,6 +96,11 @@ class Constrained(Equations):
     def said(self, samples: Samples, mode: Codes, sign: Floats, slip: Slip | None = None) -> Found:
         """What parts say under the reactions of the run."""
         return self._found(self.moment(samples, slip), self._of_run(samples), mode, sign)
+
+    def meetings(self, samples: Samples) -> dict[str, Meeting]:
+        """Surfaces that bodies bounce on, at the times of samples."""
+        moment = self.moment(samples)
+        return {name: struck.at(moment) for name, struck in self.struck.items()}
 
     def _of_run(self, samples: Samples) -> Unknowns:
         """Reactions and friction of the run."""

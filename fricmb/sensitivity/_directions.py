@@ -41,7 +41,7 @@ def signs_at_rest(
     for i, one in enumerate(happened):
         for k, kind in zip(one.contacts, one.kinds, strict=True):
             rests = kind in ("stick", PASS) or (kind == "slip" and not _moves_on(e, phases, after, i, k))
-            if e.contacts[k].d > 1 and rests:
+            if rests and e.contacts[k].d > 1:
                 found += [(i, k, ends) for ends in (True, False) if kind == PASS or ends == (kind == "stick")]
     if not found:
         return signs

@@ -22,6 +22,7 @@ from fricmb.sensitivity._linear import Linear
 from fricmb.sensitivity._motions import Frame, Moment, Row
 from fricmb.sensitivity._parts import Acting, acting, masses, refuse
 from fricmb.sensitivity._seeds import Seeds
+from fricmb.sensitivity._struck import Meeting
 
 #: Slip (d, n_t) by number of contact.
 Slip = Mapping[int, Floats]
@@ -99,6 +100,10 @@ class Equations:
     def joining(self) -> Sequence[Any]:
         """What joints state; there are none here."""
         return ()
+
+    def meetings(self, samples: Samples) -> dict[str, Meeting]:
+        """Surfaces that bodies bounce on; there are none here."""
+        return {}
 
     def _check_body(self, body: Any) -> None:
         """Refuse bodies that are not covered."""

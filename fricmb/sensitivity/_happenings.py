@@ -19,6 +19,7 @@ PASS = "pass"
 class Happening:
     """What happens at one time: numbers of its events, contacts, kinds, and the stretch that begins there.
 
+    What is hit and has no friction has the number -1 among the contacts.
     Of kind ``PASS`` is slip in two directions that comes to rest and sets out at once in another one.  No event of the
     run says so: it has the number behind the last.
     """
@@ -28,6 +29,11 @@ class Happening:
     contacts: list[int]
     kinds: list[str]
     phase: int
+
+    @property
+    def is_impact(self) -> bool:
+        """Whether something is hit; other events are what follows from that."""
+        return "impact" in self.kinds
 
     def kind_of(self, event: int) -> str:
         """Kind of one of its events."""
@@ -50,7 +56,7 @@ def happenings(
         one = Happening(
             t=float(time),
             events=own,
-            contacts=[names.contact(held[i].contact) for i in own],
+            contacts=[names.contact_index.get(held[i].contact, -1) for i in own],
             kinds=[held[i].kind for i in own],
             phase=int(np.searchsorted(phases.t, time)),
         )

@@ -24,14 +24,12 @@ class Joins:
 
     def __init__(self, joint: Joint, number: int | None, states: int, seeds: Seeds) -> None:
         self.name, self.number = joint.name, number
-        if joint.impact is not None:
-            refuse(joint, "a part with impacts")
         if joint.hands_over:
             refuse(joint, "a joint that lets go")
         if joint.loaded_by:
             refuse(joint, "friction by the reaction of another joint")
         self.forms = joint.local_coordinates()
-        self.drives = [_driven(joint, drive, seeds) for drive in joint.drives()]
+        self.drives = [driven(joint, drive, seeds) for drive in joint.drives()]
         self.count = len(self.forms) + len(self.drives)
         self.function = Function(stated.joint_motion(joint, self.count))
         self.numbers = seeds.numbers(joint.bare(), f"{joint.name}.")
@@ -46,21 +44,21 @@ class Joins:
         """Refuse parameters that are none of what is differentiated here."""
         law = () if self.friction is None else self.friction.numbers
         known = {j for number in (*self.numbers, *law) for j in number.slopes}
-        known |= {j for drive in self.drives for given in drive for j in _columns(given)}
+        known |= {j for drive in self.drives for given in drive for j in columns_of(given)}
         for name in seeds.touch(joint):
             if seeds.columns[name] not in known:
                 refuse(joint, f"the parameter {name!r}")
 
     def add(self, moment: Moment, found: Found, lam: Sequence[Dual], mode: Any, sign: Floats) -> None:
         """Constraints, reactions ``lam`` and friction; ``mode`` (n_c, n_t), ``sign`` (d, n_t)."""
-        motions = [moment.form(form) for form in self.forms] + [_motion(drive, moment) for drive in self.drives]
+        motions = [moment.form(form) for form in self.forms] + [motion_of(drive, moment) for drive in self.drives]
         arguments = [m.position for m in motions] + [m.rate for m in motions] + [*lam, *self.numbers]
         values = iter(self.function(arguments))
         m, n = len(lam), self.count
         phi = [next(values) for _ in range(m)]
         gradient = [[next(values) for _ in range(n)] for _ in range(m)]
         for value, slopes, push in zip(phi, gradient, lam, strict=True):
-            row, rate, drift = _combined(motions, slopes, next(values))
+            row, rate, drift = combined(motions, slopes, next(values))
             found.held.append(Held(value=value, rate=rate, drift=drift, row=row))
             found.push(row, push)
         if self.friction is not None:
@@ -73,7 +71,7 @@ class Joins:
         assert self.friction is not None
         assert k is not None
         slips = [values[i * n : (i + 1) * n] for i in range(self.slips)]
-        made = [_combined(motions, slip, values[self.slips * n + i]) for i, slip in enumerate(slips)]
+        made = [combined(motions, slip, values[self.slips * n + i]) for i, slip in enumerate(slips)]
         found.rows[k] = [row for row, _, _ in made]
         found.g[k], found.drift[k] = moment.slipping(k, [g for _, g, _ in made]), [drift for _, _, drift in made]
         found.N[k] = values[-1]
@@ -81,7 +79,7 @@ class Joins:
         self.friction.rub(moment, found, masked(values[-1], np.asarray(values[-1].value) > 0.0), codes, sign)
 
 
-def _combined(motions: list[Motion], slopes: Sequence[Dual], turned: Dual) -> tuple[Row, Dual, Dual]:
+def combined(motions: list[Motion], slopes: Sequence[Dual], turned: Dual) -> tuple[Row, Dual, Dual]:
     """Of ``slopes . x'`` its row, value, and rate without accelerations; ``turned``: of that what slopes bring."""
     pairs = [(m, c) for m, c in zip(motions, slopes, strict=True) if c.slopes or np.any(c.value)]
     row = [(i, c.times(k) if isinstance(k, Dual) else c * k) for m, c in pairs for i, k in m.row]
@@ -89,7 +87,7 @@ def _combined(motions: list[Motion], slopes: Sequence[Dual], turned: Dual) -> tu
     return row, rate, turned + summed(m.drift.times(c) for m, c in pairs)
 
 
-def _driven(joint: Joint, drive: tuple[Any, ...], seeds: Seeds) -> tuple[Given, Given, Given]:
+def driven(joint: Joint, drive: tuple[Any, ...], seeds: Seeds) -> tuple[Given, Given, Given]:
     """A prescribed function of time of a joint, with its two derivatives."""
     kind, value, start = drive
     # the number that is prescribed is known by the name of its slot, of those that may hold functions of time
@@ -129,11 +127,11 @@ class _Ramp(Given):
         return self.given.over(time).times(time) + Dual(value=self.start)
 
 
-def _motion(drive: tuple[Given, Given, Given], moment: Moment) -> Motion:
+def motion_of(drive: tuple[Given, Given, Given], moment: Moment) -> Motion:
     position, rate, drift = (given.over(moment.time) for given in drive)
     return Motion(position=position, rate=rate, drift=drift, row=[])
 
 
-def _columns(given: Given) -> set[int]:
+def columns_of(given: Given) -> set[int]:
     held = given.held if given.number is None else [given.number]
     return {j for one in held for j in one.slopes}

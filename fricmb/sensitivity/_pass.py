@@ -17,6 +17,7 @@ from fricmb.sensitivity._constrained import Constrained
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._formula_switches import formula_switches
 from fricmb.sensitivity._happenings import PASS, Happening, happenings
+from fricmb.sensitivity._impacts import check_open
 from fricmb.sensitivity._landings import extrapolated, near_misses, passes, places_before, settled
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
@@ -55,6 +56,8 @@ class Tangent:
         self.equations: Equations = kind(piece, sol.names, self.parameters)
         _check(sol, self.equations)
         e = self.equations
+        if isinstance(e, Constrained):
+            check_open(piece, e.struck)
         self.states = state_names(sol.names) if STATE in names else ()
         self.columns = (*self.states, *self.parameters)
         sample = piece.trajectory.motion
@@ -76,7 +79,10 @@ class Tangent:
         self.mesh = mesh_of(self.stepper, scale, self.rtol, solved)
         passed = passes(e, self.stepper.rests)
         happened = happenings(sol.events.transitions, sol.names, self.phases, breakpoints.moving(), passed)
-        transitions = Transitions(e, self.phases, sample, happened, breakpoints, self.rtol)
+        rows = piece.trajectory.row_motion()
+        transitions = Transitions(
+            e, self.phases, sample, happened, breakpoints, self.rtol, rows, sol.events.transitions
+        )
         mode, S = self.phases.mode[:, 0], self._begin()
         first = e.said(sample(self.phases.t[:1]), mode[:, None], self.phases.sign[:, :1])
         S = e.settled(first, S)

@@ -8,7 +8,7 @@ dt = -(h_y S- + h_p)/(h_y f- + h_t).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from fricmb.sensitivity._directions import signs_at_rest
 from fricmb.sensitivity._equations import Equations
 from fricmb.sensitivity._found import total
 from fricmb.sensitivity._happenings import PASS, Happening
+from fricmb.sensitivity._impacts import Impacts
 from fricmb.sensitivity._phases import BESIDE, Phases
 from fricmb.sensitivity._starts import held
 from fricmb.sensitivity._triggers import Trigger, Triggers
@@ -43,7 +44,7 @@ class Transitions:
 
     def __init__(
         self, equations: Equations, phases: Phases, sample: Any, happened: list[Happening], breakpoints: Breakpoints,
-        rtol: float,
+        rtol: float, rows: Samples, events: Any,
     ) -> None:  # fmt: skip
         self.equations, self.phases, self.happened, self.breakpoints = equations, phases, happened, breakpoints
         self.rtol = rtol
@@ -58,13 +59,15 @@ class Transitions:
         self.samples: Samples = sample(times)
         # functions of time may jump here, at an instant that is known to some units of round-off
         beside = BESIDE * np.maximum(1.0, np.abs(times))
-        before, after = (replace(self.samples, t=times + sign * beside) for sign in (-1.0, 1.0))
+        first = _before_impacts(self.samples, happened, rows)
+        before, after = replace(first, t=times - beside), replace(self.samples, t=times + beside)
         said = equations.said(after, phases.mode[:, begin], phases.sign[:, begin])
         signs = signs_at_rest(equations, phases, happened, sample, self.samples, said)
         self.before = equations.field(before, phases.mode[:, begin - 1], signs[0])
         self.after = equations.field(after, phases.mode[:, begin], signs[1])
         self.triggers = Triggers(equations, phases, happened, self.before, self.samples, self.zero)
         self._kept: dict[int, list[Trigger]] = {}
+        self.impacts = Impacts(equations, happened, equations.meetings(first), self.before.found.held, events)
 
     def of(self, i: int) -> list[Trigger]:
         """Event functions of a happening."""
@@ -77,6 +80,8 @@ class Transitions:
 
         ``landing``: those of its time, where slip in two directions ends.
         """
+        if self.happened[i].is_impact:
+            return self._struck(i, S)
         given = self._given(i)
         if given is not None:
             dt = np.concatenate([np.zeros(S.shape[1] - given.size), given])
@@ -104,8 +109,23 @@ class Transitions:
         given = self.breakpoints.at(self.happened[i].t)
         return None if any(trigger.residual <= self.zero for trigger in self.of(i)) else given
 
+    def _struck(self, i: int, S: Floats) -> tuple[Floats, Floats]:
+        """Derivatives behind an impact, and of its time."""
+        f = self.before.y_dot[i]
+        dts = self.impacts.times(i, f, S)
+        if any(not np.allclose(dt, dts[0], rtol=1e-6, atol=1e-12) for dt in dts):
+            names = ", ".join(repr(event.contact) for event, _, _ in self.impacts.hits(i))
+            self.unsafe.update(self.happened[i].events.tolist())
+            self.notes.append(
+                f"at t = {self.happened[i].t:.10g} {names} are hit at the same time, and parameters would move those"
+                " times apart: there is no sound derivative of what follows"
+            )
+        return self.impacts.jump(i, S, dts[0], f, self.after.y_dot[i]), dts[0]
+
     def landing(self, i: int) -> int | None:
         """Contact whose slip in two directions ends in a happening."""
+        if self.happened[i].is_impact:
+            return None
         return next((trigger.contact for trigger in self.of(i) if self.lands(i, trigger)), None)
 
     def landing_times(self, i: int, S: Floats, g: Floats) -> tuple[Floats, Floats]:
@@ -129,12 +149,18 @@ class Transitions:
 
     def transversality(self, i: int) -> list[float]:
         """Of the events of a happening; inf where a function of time makes them."""
+        if self.happened[i].is_impact:
+            least = min(self.impacts.transversality(i, self.before.y_dot[i], self.phases.speed))
+            return [least] * len(self.happened[i].events)
         if self._given(i) is not None:
             return [np.inf] * len(self.of(i))
         return [trigger.transversality for trigger in self.of(i)]
 
     def say_unsafe(self, i: int) -> None:
         """Events that only touch their condition, or are releases that are not determined; notes tell of them."""
+        if self.happened[i].is_impact:
+            self._say_grazing(i)
+            return
         if self._given(i) is not None:
             return
         one, names = self.happened[i], self.equations.names.contacts
@@ -152,6 +178,17 @@ class Transitions:
                     f"{where}: lets go while stuck contacts hold the same motion, which leaves their forces open;"
                     " derivatives of what follows are not sound"
                 )
+
+    def _say_grazing(self, i: int) -> None:
+        """An impact with next to no speed: derivatives behind it go with one over that speed."""
+        one, least = self.happened[i], self.transversality(i)[0]
+        if least < max(TOUCHES, 10.0 * self.rtol):
+            self.unsafe.update(one.events.tolist())
+            names = ", ".join(repr(event.contact) for event, _, _ in self.impacts.hits(i))
+            self.notes.append(
+                f"at t = {one.t:.10g} {names} is hit at {least:.1e} of the largest speed: derivatives of what follows"
+                " grow as one over that, and are not sound"
+            )
 
     def say_unsure(self, i: int, dt: Floats, off: Floats, columns: Sequence[str]) -> None:
         """A note where derivatives of a landing's time are not known to a thousand tolerances of their own size."""
@@ -213,3 +250,18 @@ class Transitions:
                 if one.kinds[j] == PASS:  # it rests for a moment
                     mode[k] = STICK
         return mode, sign
+
+
+def _before_impacts(samples: Samples, happened: list[Happening], rows: Samples) -> Samples:
+    """Samples with velocities before impacts; the run keeps them in the first of two rows at one time."""
+    struck = [i for i, one in enumerate(happened) if one.is_impact]
+    if not struck:
+        return samples
+    twice = np.flatnonzero(np.diff(rows.t) == 0.0)
+    found = {f.name: np.array(getattr(samples, f.name)) for f in fields(samples)}
+    for i in struck:
+        row = twice[np.argmin(np.abs(rows.t[twice] - happened[i].t))]
+        for name, values in found.items():
+            if name != "t":
+                values[..., i] = getattr(rows, name)[..., row]
+    return replace(samples, **found)

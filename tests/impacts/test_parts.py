@@ -55,9 +55,7 @@ def test_a_start_inside_is_refused():
         fm.simulate(fm.Scene("inside", [inside, floor]), t_end=1.0)
 
 
-def test_derivatives_and_methods_that_cannot_are_refused():
-    with pytest.raises(fm.SceneError, match=r"'ends\.lower': a part with impacts is not covered"):
-        fm.simulate(scene(), t_end=2.0, sensitivities=("spring.stiffness",))
+def test_methods_that_cannot_are_refused():
     for method in ("collocation", "taylor", "bdf2-paper"):
         with pytest.raises(fm.SceneError, match="joints"):
             fm.simulate(scene(), t_end=2.0, method=method)

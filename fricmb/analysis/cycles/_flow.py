@@ -112,6 +112,11 @@ def detached(scene: Scene) -> Scene:
 
 
 def check_scene(scene: Scene, who: str) -> None:
-    """Refuse scenes whose states are not free to be varied one by one."""
-    if checked_scene(who, scene).is_mechanism:
-        raise AnalysisError(f"{who}: takes no bodies that turn and joints")
+    """Refuse scenes whose states are not free to be varied one by one, as surfaces that are left at once leave them."""
+    from fricmb.scene import Joint, RigidBody, SpaceBody
+
+    checked_scene(who, scene)
+    turn = [part.name for part in scene.parts if isinstance(part, RigidBody | SpaceBody)]
+    held = [part.name for part in scene.parts if isinstance(part, Joint) and not part.is_rigid]
+    if scene.is_mechanism and (turn or held):
+        raise AnalysisError(f"{who}: takes no bodies that turn and joints; here {', '.join(map(repr, turn + held))}")
