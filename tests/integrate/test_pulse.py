@@ -18,9 +18,9 @@ def pulse(t):
     return PEAK * np.exp(-(((t - AT) / WIDTH) ** 2))
 
 
-def first_slide(inertia, force, hold, rub, start):
+def first_slide(inertia, force, hold, rub, start, since=6.0 * WIDTH):
     """When and where one degree of freedom at rest lets go under ``force(t, x)`` beyond ``hold``, and turns."""
-    t0 = brentq(lambda t: force(t, start) - hold, AT - 6.0 * WIDTH, AT, xtol=1e-13)
+    t0 = brentq(lambda t: force(t, start) - hold, AT - since, AT, xtol=1e-13)
 
     def turns(_t, y):
         return y[1] if _t > t0 + 0.01 else 1.0
@@ -59,6 +59,27 @@ def test_a_slide_that_rests_on_its_guide_is_pushed(method):
     ])  # fmt: skip
     sol = fm.simulate(scene, t_end=END, rtol=1e-6, method=method)
     lets_go, turns, way = first_slide(1.0, lambda t, x: pulse(t) - x, 1.0, 0.8, 0.0)
+    assert [e.t for e in sol.events][:2] == pytest.approx([lets_go, turns], abs=1e-5)
+    assert sol.at([turns]).q[sol.dof_names.index("block.x"), 0] == pytest.approx(way, rel=1e-5)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("width", [0.5, 0.1, 0.02])
+def test_a_slide_that_rests_is_pushed_by_what_passes_by(width, method):
+    """A force by the place of another body, which no error of the motion shows and no function of time tells of."""
+    body, runner = fm.RigidBody("block", mass=1.0, inertia=1.0), fm.Body("runner", mass=1.0, velocity={"x": 1.0})
+    value = PEAK * sympy.exp(-(((fm.coordinate("runner.x") - AT) / width) ** 2))
+    guide = fm.Prismatic("guide", body, fm.ground_point(0.0, 0.0), friction=fm.laws.Coulomb(mu_s=1.0, mu_k=0.8))
+    scene = fm.Scene("pushed", [
+        body, runner, guide, fm.Force("pulse", body, axis="x", value=value),
+        fm.Gravity("gravity", acceleration={"y": -1.0}), fm.Spring("spring", body, axis="x", stiffness=1.0),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=END, rtol=1e-6, method=method)
+
+    def force(t, x):
+        return PEAK * np.exp(-(((t - AT) / width) ** 2)) - x
+
+    lets_go, turns, way = first_slide(1.0, force, 1.0, 0.8, 0.0, 6.0 * width)
     assert [e.t for e in sol.events][:2] == pytest.approx([lets_go, turns], abs=1e-5)
     assert sol.at([turns]).q[sol.dof_names.index("block.x"), 0] == pytest.approx(way, rel=1e-5)
 

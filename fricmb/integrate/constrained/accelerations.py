@@ -20,12 +20,13 @@ from fricmb.integrate.constrained.friction_rows import friction_residual
 from fricmb.integrate.constrained.instant_matrix import ALL, instant_matrix, solve_instant
 from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.load_share import share_load
+from fricmb.integrate.constrained.loop_mobility import may_share
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.forces import element_powers, evaluate
-from fricmb.integrate.problem import NORMAL_LAW, Floats
+from fricmb.integrate.problem import NORMAL_LAW, STICK, Floats
 
 
 @kernel
@@ -148,6 +149,15 @@ def is_linear(y: State) -> bool:
     return bool(linear)
 
 
+@kernel
+def forget_shares(mech: Mech, y: State) -> None:
+    """Let forces of ports that stick in loops be sought from 0: those of least norm, whatever the steps before."""
+    for c in range(y.mode.shape[0]):
+        if y.mode[c] == STICK and may_share(mech, c):
+            for a in range(mech.port.row[c], mech.port.row[c + 1]):
+                y.F[a] = 0.0
+
+
 @block
 def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
     """Accelerations, reactions and friction forces of the given modes; False where there are none.
@@ -156,6 +166,7 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
     """
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
     move(mech, k, y.t, y.q, y.v)
+    forget_shares(mech, y)
     last = np.inf
     linear = is_linear(y)
     # where everything comes to rest, round-off is that of what has been

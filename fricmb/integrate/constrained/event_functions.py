@@ -11,17 +11,18 @@ from fricmb.integrate.constrained.load_share import share_stages
 from fricmb.integrate.constrained.loop_mobility import may_share
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import lack, plane, slip_speed, spare
+from fricmb.integrate.constrained.slip_rows import lack, may_open, plane, slip_speed, spare
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
+from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.model.law_values import magnitude
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import first_below
 
-#: Forces at the stages are of lower order than velocities: this part of the largest one, between them, is no sign.
-ROUGH = 1e-6
+#: Forces at the stages are of lower order than velocities: this part of their size, between them, is no sign.
+ROUGH = 5e-7
 
 
 @kernel
@@ -87,7 +88,7 @@ def triggers(
     for c in range(n_c):
         out.trigger[2 * c] = 1.0
         out.trigger[2 * c + 1] = 1.0
-        if port.normal[c] == NORMAL_LAW:
+        if may_open(mech, c):
             out.trigger[2 * c + 1] = -N[c] if mode[c] == OPEN else N[c]
         if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
             continue
@@ -189,11 +190,20 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
     if j >= 2 * n_c:
         return True
     if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
-        return bool(mech.port.normal[j // 2] == NORMAL_LAW)
+        return may_open(mech, j // 2)
     loaded = lack(mech, k, j // 2, y.N[j // 2]) == 0.0
     for i in range(st.tab.c.shape[0]):
         loaded = loaded and lack(mech, k, j // 2, st.N[i, j // 2]) == 0.0
     return bool(loaded)
+
+
+@kernel
+def size_of_force(mech: Mech, k: Moving, out: Watch, j: int, y: State) -> float:
+    """What the force of trigger j is measured by: the limit of a port that sticks, else the largest force."""
+    c = j // 2
+    if j < 2 * y.mode.shape[0] and j % 2 == 0:
+        return stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
+    return float(out.top_force)
 
 
 @kernel
@@ -208,7 +218,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
         fine = is_slip(j, y) or is_open(mech, j - 2 * y.mode.shape[0])
-        hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * out.top_force
+        hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * size_of_force(mech, k, out, j, y)
         for i in range(st.tab.c.shape[0]):
             out.values[i] = out.inner[i + 1, j] + hair
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment

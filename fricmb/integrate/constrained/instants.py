@@ -20,11 +20,12 @@ from fricmb.integrate.run.breakpoints import set_window_around
 @entry
 def instants(
     mech: Mech, k: Moving, w: Instant, y: State, times: Floats, q: Floats2, v: Floats2, z: Floats2, mode: Codes2,
-    force: Floats2, small: float, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
+    force: Floats2, small: Floats, F: Floats2, N: Floats2, g: Floats2, lam: Floats2, a: Floats2,
     stored: Floats, project: bool, side: Floats, power: Floats2,
 ) -> int:  # fmt: skip
     """Complete every state (row by row); ``force`` (n_t, m + 2 m_p) start values [lam, F, n].  Number of failures.
 
+    ``small`` (n_t,): slip slower than that keeps its direction n;
     ``project``: q and v, interpolated between steps, are first moved onto the constraints; ``stored`` (n_t,): energy in
     contacts with damping; ``side`` (n_t,): a time on the side of a breakpoint on which each state is; ``power``
     (n_t, n_c + 2): what friction, damping and input take and give.
@@ -51,7 +52,7 @@ def instants(
             for j in range(y.q.shape[0]):
                 q[i, j] = y.q[j]
                 v[i, j] = y.v[j]
-        follow(mech, k, y, small)
+        follow(mech, k, y, small[i])
         if not react(mech, k, w, y, False):
             failed += 1
         for j in range(power.shape[1]):

@@ -25,10 +25,10 @@ from fricmb.integrate.constrained.mode_trial import (
 )
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import plane
+from fricmb.integrate.constrained.slip_rows import may_open, plane
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import magnitude, point_along
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 
 
 @block
@@ -139,7 +139,7 @@ def mark_rest(mech: Mech, y: State, small: float, part: Codes) -> None:
             continue
         if j >= 0 and y.mode[c] == OPEN:
             y.mode[c] = SLIP
-        if port.normal[c] == NORMAL_LAW:
+        if may_open(mech, c):
             if y.N[c] <= 0.0:
                 y.mode[c] = OPEN
                 continue

@@ -37,9 +37,9 @@ def plane_residual(
     """Residuals of a port that slips in several directions."""
     port = mech.port
     first, last = port.row[c], port.row[c + 1]
-    found = (full and k.form[c] == 1) or mode[c] == SETTING_OUT
-    size = magnitude(port.row, c, F)
-    if found and load > 0.0 and size > 0.0:
+    found = load > 0.0 and ((full and k.form[c] == 1) or mode[c] == SETTING_OUT)
+    size = magnitude(port.row, c, F) if found else 0.0
+    if size > 0.0:
         # rate: slip velocity in a stage, its derivative where the port sets out
         along = slip_speed(port.row, c, n, F, rate) if full else 0.0
         mu, _, _ = friction_coefficient(mech, k, c, along, load)

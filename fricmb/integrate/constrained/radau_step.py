@@ -18,7 +18,7 @@ from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, factor
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
-from fricmb.integrate.step.stage_predictor import lagrange
+from fricmb.integrate.step.slow_slip import line_at
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 
@@ -27,7 +27,7 @@ class Control(Layout):
 
     ``rtol``, and where it cannot be had ``blur``, what can (see ``singular_position``); running maxima ``q``,
     ``v``, ``z`` with floors ``floor_v``; ``h`` next step, ``last_h`` the step before; ``old`` (s+1, n + m + n_c +
-    nz) its values at ``nodes`` (s+1,) 0, c for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts``
+    nz) its values at 0, c for prediction, by ``weight`` (s, s+1) at ``ahead`` (s,); ``counts``
     work done; ``longest`` step at present, and anywhere, ``bound``; ``span`` (2,) and ``stops`` times to step to;
     ``mass`` (n,) diagonal of M;
     ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,) space
@@ -54,7 +54,6 @@ class Control(Layout):
     mass: Floats
     made: float
     power: Floats2
-    nodes: Floats
     ahead: Floats
     weight: Floats2
     inertia: Floats
@@ -70,7 +69,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
     return Control(
         0.0, 0.0, np.zeros(n), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
-        0.0, np.zeros((s, problem.n_c + 2)), np.append(0.0, st.tab.c), np.zeros(s), np.zeros((s, s + 1)),
+        0.0, np.zeros((s, problem.n_c + 2)), np.zeros(s), np.zeros((s, s + 1)),
         np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
     )  # fmt: skip
 
@@ -79,6 +78,10 @@ def control_of(problem: Problem, st: Stages) -> Control:
 def asked(c: Control) -> float:
     """Part of what counts as 1 that a step may err by."""
     return max(c.rtol, c.blur)
+
+
+#: Relative round-off of positions.
+ROUND_OFF = 2.3e-16
 
 
 @kernel
@@ -95,6 +98,13 @@ def measure(mech: Mech, c: Control, y: State, h: float, scale: Floats) -> None:
     for i in range(scale.shape[0]):
         here = max(c.v[i], abs(y.v[i]) + h * abs(y.a[i]), c.floor_v[i])
         scale[i] = max(here, 1e-4 * np.sqrt(energy[group[i]] / c.mass[i]), 1e-290)
+    linear = mech.linear
+    for e in range(linear.K.shape[0]):
+        i, j = linear.Ki[e], linear.Kj[e]
+        if i < scale.shape[0] and j < scale.shape[0]:
+            # a stiff spring turns the round-off of positions into velocities, which is no error of a step
+            rate = np.sqrt(abs(linear.K[e]) / c.mass[i])
+            scale[i] = max(scale[i], ROUND_OFF * rate * min(rate * h, 1.0) * c.q[j] / asked(c))
 
 
 @kernel
@@ -132,15 +142,15 @@ def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
     before = c.last_h
     for i in range(c.ahead.shape[0]):
         c.ahead[i] = 1.0 + st.tab.c[i] * h / before
-    if before > 0.0:
-        lagrange(c.nodes, c.ahead, c.weight)
+        if before > 0.0:
+            line_at(st.tab, c.ahead[i], c.weight[i])
     for i in range(c.ahead.shape[0]):
         at = 0
         old = before > 0.0 and c.ahead[i] <= 4.0
         for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.z)):
             for a in range(start.shape[0]):
                 value = 0.0 if old else start[a]
-                for j in range(c.nodes.shape[0] if old else 0):
+                for j in range(c.weight.shape[1] if old else 0):
                     value += c.weight[i, j] * c.old[j, at + a]
                 part[i, a] = value
             at += start.shape[0]

@@ -31,7 +31,8 @@ from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.signals.longest_steps import steps_of_run
-from fricmb.integrate.step.step_control import SAMPLED, first_step
+from fricmb.integrate.step.stages import STIFF
+from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
 
 #: Steps that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 1024, 1e6
@@ -124,7 +125,7 @@ def _set_up(
     for state in (y, workspace.end, workspace.before):
         set_out(state, start)
     c.rtol, c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
-    c.longest = c.bound = (SAMPLED if problem.loads_bend else 1.0) * (t_end - start.t)
+    c.longest = c.bound = _longest_step(problem, t_end - start.t)
     c.q[:], c.v[:], c.z[:] = np.abs(start.q), np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
@@ -135,8 +136,26 @@ def _set_up(
     trifle = (weight * c.v).max(initial=0.0) <= 1e-12 * (weight * first).max(initial=0.0)
     if trifle and not (problem.contacts.law == LAW_SMOOTH).any():
         y.v[:] = 0.0  # round-off of a start at rest; smooth laws know no rest, and their forces tell such speeds apart
-    slip = _slip_by(problem, start, y.v, first)
-    return 1e-12 * float(slip.max(initial=0.0)), FURTHER * float(np.linalg.norm(weight * first))
+    # what drivers bring is what slip may be round-off of, too, where all that they carry is at rest on them
+    workspace.out.top_slip = _slip_of_drivers(problem, start, t_end)
+    slip = max(float(_slip_by(problem, start, y.v, first).max(initial=0.0)), float(workspace.out.top_slip))
+    return 1e-12 * slip, FURTHER * float(np.linalg.norm(weight * first))
+
+
+def _longest_step(problem: Problem, span: float) -> float:
+    """The longest step that is taken, whatever its error.
+
+    Where nothing moves no error says what loads, or elements between what moves otherwise, will do: they are looked at
+    a hundred times.  So are stiff parts, for what they leave to round-off grows with steps.
+    """
+    m, h = mechanism_of(problem), FREE * span
+    force = np.zeros(m.n)
+    for entries, weight in ((m.K, h * h), (m.C, h)):
+        own = (entries.row < m.n) & (entries.column < m.n)
+        np.maximum.at(force, entries.row[own], weight * np.abs(entries.value[own]))
+    nonlinear = problem.elements.table.address.size > 0
+    short = problem.loads_bend or nonlinear or bool(np.any(force > STIFF * masses(m)))
+    return (SAMPLED if short else FREE) * span
 
 
 def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float) -> None:
@@ -144,7 +163,7 @@ def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: floa
     y, out, c = workspace.y, workspace.out, workspace.control
     load = _load(mechanism_of(problem), y)
     if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
-        to_come = _speeds_to_come(problem, start, t_end, load, c.mass)
+        to_come = _speeds_to_come(problem, start, t_end, load, c.mass, float(np.abs(y.g).max(initial=0.0)))
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
         out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
     weight = np.sqrt(c.mass)
@@ -193,18 +212,20 @@ def _load(m: Mechanism, y: State) -> float:
     return max(float(np.abs(x).max(initial=0.0)) for x in (y.lam, y.F, m.f))
 
 
-def _speeds_to_come(problem: Problem, start: Start, t_end: float, load: float, mass: Floats) -> Floats:
+def _speeds_to_come(
+    problem: Problem, start: Start, t_end: float, load: float, mass: Floats, slip: float
+) -> Floats:
     """Speeds (n,) that count as 1 where everything is at rest: from accelerations a little later, without friction.
 
     That which would bring most energy, for each its own mass.  Where there are none, either, a small part of what the
-    load would bring.
+    load would bring, or of the largest ``slip`` speed: bristles that drivers have still to bend are all that will push.
     """
     span = t_end - start.t
-    for part in (1e-3, 1e-2, 1e-1, 1.0):
+    for part in LATER:
         a = _without_friction(problem, start, start.t + part * span, np.zeros(problem.n))
         if np.isfinite(a).all() and (mass * np.abs(a)).max() > ROUND_OFF * load:
             return np.asarray(1e-3 * part * span * (np.sqrt(mass) * np.abs(a)).max() / np.sqrt(mass))
-    return np.full(problem.n, 1e-4 * span * load / mass.max())
+    return np.full(problem.n, 1e-4 * max(span * load / mass.max(), slip))
 
 
 def _first_speeds(problem: Problem, start: Start, t_end: float) -> Floats:
@@ -221,13 +242,26 @@ def _slip_by(problem: Problem, start: Start, *v: Floats) -> Floats:
     return slip
 
 
+#: Parts of a run after which it is looked at what drivers, or loads, bring.
+LATER = 1e-3, 1e-2, 1e-1, 1.0
+
+
+def _slip_of_drivers(problem: Problem, start: Start, t_end: float) -> float:
+    """Largest slip velocity that signals bring at some later times, where nothing else moves."""
+    if not problem.n_u:
+        return 0.0
+    t = start.t + np.array(LATER) * (t_end - start.t)
+    g = np.abs(_completed(problem, start, t, np.zeros((len(LATER), problem.n)))[2])
+    return float(g[np.isfinite(g)].max(initial=0.0))
+
+
 def _without_friction(problem: Problem, start: Start, t: float, v: Floats) -> Floats:
     """Accelerations (n,) at the start's positions, at time t, with velocities v."""
     return _completed(problem, start, t, v[None])[4].ravel()
 
 
-def _completed(problem: Problem, start: Start, t: float, v: Floats) -> tuple[Floats, ...]:
-    """What :func:`complete_at` finds at the start's positions, at time t, without friction; velocities v (k, n)."""
+def _completed(problem: Problem, start: Start, t: float | Floats, v: Floats) -> tuple[Floats, ...]:
+    """What :func:`complete_at` finds at the start's positions, at t (k,), without friction; velocities v (k, n)."""
     k = len(v)
     q, z = np.tile(np.array(start.q, float), (k, 1)), np.tile(np.array(start.z, float), (k, 1))
     force = np.zeros((k, mechanism_of(problem).n_rows + 2 * problem.m))

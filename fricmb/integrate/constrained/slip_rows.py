@@ -18,7 +18,17 @@ from fricmb.integrate.constrained.problem_structs import Mech, first_multiplier
 from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.friction_cone import cone_margin, stick_limit
 from fricmb.integrate.model.law_values import coefficient, magnitude, point_along
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes, Floats, Ints
+from fricmb.integrate.problem import (
+    LAW_SMOOTH,
+    NORMAL_CONSTANT,
+    NORMAL_EXPRESSION,
+    NORMAL_LAW,
+    SLIP,
+    STICK,
+    Codes,
+    Floats,
+    Ints,
+)
 
 #: Mode of a port in two directions while modes are decided: at rest, and about to slip in a direction to be found.
 SETTING_OUT = 3
@@ -30,6 +40,12 @@ SLIGHT = 1e-7
 def plane(mech: Mech, c: int) -> bool:
     """Whether port c slips in two or three directions under a set-valued law."""
     return bool(mech.port.row[c + 1] - mech.port.row[c] >= 2 and mech.port.law[c] != LAW_SMOOTH)
+
+
+@kernel
+def may_open(mech: Mech, c: int) -> bool:
+    """Whether contact c is open while its load is below 0: a given number is not, and that of a joint is a reaction."""
+    return bool(mech.port.normal[c] == NORMAL_LAW or mech.port.normal[c] == NORMAL_EXPRESSION)
 
 
 @kernel

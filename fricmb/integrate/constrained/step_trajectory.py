@@ -76,7 +76,10 @@ class StepTrajectory(Trajectory):
         values = self._values[self._row_step, np.where(self._row_side == 0, 0, len(self._nodes) - 1)]
         # what a step ends with belongs to the side of a breakpoint that it comes from
         side = np.where(self._row_side == 0, self.t, np.nextafter(self.t, -np.inf))
-        return self._complete(self.t, values, self._row_step, side=side)[:2]
+        # at its start a step says itself where slip goes, of whose speed round-off may be all there is
+        start = np.full(len(self.t), np.inf)
+        start[self._row_side != 0] = _still(values[:, self.problem.n : 2 * self.problem.n])
+        return self._complete(self.t, values, self._row_step, side=side, still=start)[:2]
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
@@ -182,15 +185,17 @@ class StepTrajectory(Trajectory):
         return float(self._complete(self._span[:1, 0], self._values[:1, 0], np.zeros(1, int))[1][0])
 
     def _complete(
-        self, t: Floats, values: Floats, step: Ints, *, project: bool = False, side: Floats | None = None
+        self, t: Floats, values: Floats, step: Ints, *, project: bool = False, side: Floats | None = None,
+        still: Floats | None = None,
     ) -> tuple[MotionSamples, Floats, Floats]:
         """The motion, what contacts with damping store (n_t,), and powers (n_t, w)."""
         problem = self.problem
         n, nz = problem.n, problem.n_z
         q, v, z, _ = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
         found = complete_open(
-            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project, side=side
-        )
+            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project, side=side,
+            still=still,
+        )  # fmt: skip
         motion = MotionSamples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
             mode=np.ascontiguousarray(self._mode[step].T),
@@ -198,12 +203,18 @@ class StepTrajectory(Trajectory):
         return motion, found[5][0], found[6].T
 
 
+def _still(v: Floats) -> float:
+    """Round-off of velocities (n_t, n)."""
+    return 1e-11 * float(np.abs(v).max(initial=0.0))
+
+
 def complete_open(
     problem: Problem, opened: Codes, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats,
-    *, project: bool = False, side: Floats | None = None, still: float | None = None,
+    *, project: bool = False, side: Floats | None = None, still: float | Floats | None = None,
 ) -> tuple[Floats, ...]:  # fmt: skip
     """As :func:`complete_at`, ``opened`` (n_t, n_j) saying which joints are open."""
     side = t if side is None else side
+    still = np.broadcast_to(_still(v) if still is None else still, t.shape)
     if not opened.any() and not mechanism_of(problem).has_impacts:
         return complete_at(problem, t, q, v, z, mode, force, project=project, side=side, still=still)
     patterns, which = np.unique(opened, axis=0, return_inverse=True)
@@ -213,7 +224,7 @@ def complete_open(
         q_here, v_here = q[mine], v[mine]
         part = complete_at(
             with_open(problem, pattern), t[mine], q_here, v_here, z[mine], mode[mine], force[mine], project=project,
-            side=side[mine], still=still,
+            side=side[mine], still=still[mine],
         )  # fmt: skip
         q[mine], v[mine] = q_here, v_here
         found = found or [np.zeros((len(x), len(t))) for x in part]
@@ -224,15 +235,15 @@ def complete_open(
 
 def complete_at(
     problem: Problem, t: Floats, q: Floats, v: Floats, z: Floats, mode: Codes, force: Floats, *, project: bool = False,
-    side: Floats | None = None, still: float | None = None,
+    side: Floats | None = None, still: float | Floats | None = None,
 ) -> tuple[Floats, ...]:  # fmt: skip
     """F (m_p, n_t), N (n_c, n_t), g (m_p, n_t), multipliers (m, n_t) and accelerations (n, n_t) at states (n_t, .).
 
     The last two are energies (1, n_t) that contacts with damping store, and powers (n_c + 2, n_t).
 
     ``project``: q and v are first moved onto the constraints, in place.  ``side`` (n_t,): a time on the side of a
-    breakpoint on which each state is, where that is not the right-hand one.  ``still``: slip slower than this keeps the
-    direction that ``force`` gives it (default: round-off of these velocities).
+    breakpoint on which each state is, where that is not the right-hand one.  ``still`` (n_t,): slip slower than this
+    keeps the direction that ``force`` gives it (default: round-off of these velocities).
     """
     m, nc, rows, count = mechanism_of(problem).n_rows, problem.n_c, problem.m, len(t)
     F, N, g = np.zeros((count, rows)), np.zeros((count, nc)), np.zeros((count, rows))
@@ -240,7 +251,7 @@ def complete_at(
     power = np.zeros((count, nc + 2))
     mech = mech_of(problem)
     solid = np.ascontiguousarray
-    still = 1e-11 * float(np.abs(v).max(initial=0.0)) if still is None else still
+    still = solid(np.broadcast_to(_still(v) if still is None else still, t.shape), float)
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),

@@ -22,7 +22,7 @@ from fricmb.integrate.run.stop import ended
 from fricmb.integrate.signals.longest_steps import LongestSteps, steps_of_run
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
-from fricmb.integrate.step.step_control import SAMPLED, first_step
+from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 1e6
@@ -143,8 +143,8 @@ def run_loop(
     return run.trajectory(ended() or (None if code == FULL else FAILURES[code]))
 
 
-#: Parts of a run that a step may take with exact structure, and where no loads are prescribed.
-COLLOCATED, FREE = 0.02, 0.1
+#: Part of a run that a step may take with exact structure.
+COLLOCATED = 0.02
 
 
 def longest_step(run: Collector) -> float:

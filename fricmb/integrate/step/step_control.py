@@ -22,6 +22,8 @@ from fricmb.integrate.problem import Floats
 #: Part of a run that a step takes at most under loads that are not linear in time: where nothing moves, no error says
 #: how fast they change, so they are looked at a hundred times at least.
 SAMPLED = 0.01
+#: Part that a step takes of a run without such loads, which the error of steps knows.
+FREE = 0.1
 #: Parts of the step that would just do: of one-step methods, and of BDF.
 ONE_STEP_SAFETY, BDF_SAFETY = 0.85, 0.9
 #: Rungs of their ladders between a step and its double.
