@@ -80,8 +80,7 @@ def add_friction(
             mu, by_speed, by_load = friction_coefficient(mech, k, c, n[first] * g[first], load)
             if full and by_speed != 0.0:
                 add_slip(mech, k, c, 0, lam, L, row, by_speed * load, full)
-            if N[c] > 0.0 or port.joint[c] >= 0:
-                add_load(mech, k, c, lam, L, row, n[first] * (mu + by_load * load), full)
+            add_load(mech, k, c, lam, L, row, n[first] * (mu + by_load * load), full)
         elif ((full and k.form[c] == 1) or mode[c] == SETTING_OUT) and load > 0.0 and magnitude(port.row, c, F) > 0.0:
             add_found(mech, k, c, n, F, lam, load, g if full else ga, L, row, full)
         else:

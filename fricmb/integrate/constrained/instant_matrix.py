@@ -52,7 +52,7 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -
     w.L.A1[:] = 0.0
     add_mass(mech, w.L)
     add_joints(mech, k, y.lam, y.F, w.L, False)
-    add_contacts(mech, k, y.N, w.L, False)
+    add_contacts(mech, k, y.mode, w.L, False)
     size = order.place.shape[0]
     if friction == ALL:
         add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, w.L, False)

@@ -14,7 +14,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, Order, Place, first_multiplier
 from fricmb.integrate.model.forces import evaluate
 from fricmb.integrate.model.problem_structs import Table
-from fricmb.integrate.problem import NORMAL_LAW, Floats
+from fricmb.integrate.problem import NORMAL_LAW, OPEN, Codes, Floats
 
 
 class Layers(Layout):
@@ -208,8 +208,11 @@ def add_joints(mech: Mech, k: Moving, lam: Floats, F: Floats, L: Layers, full: b
 
 
 @block
-def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool) -> None:
-    """Columns of the friction of contacts that are no joints; ``full``: stiffness of what normal-force laws press."""
+def add_contacts(mech: Mech, k: Moving, mode: Codes, L: Layers, full: bool) -> None:
+    """Columns of the friction of contacts that are no joints; ``full``: stiffness of what normal-force laws press.
+
+    By the mode, not by the load: where a contact has just opened or closed, that is 0 but for round-off.
+    """
     port = mech.port
     n_c = port.joint.shape[0]
     first = mech.order.place.shape[0] - port.z_start[-1] - port.row[-1]
@@ -219,7 +222,7 @@ def add_contacts(mech: Mech, k: Moving, N: Floats, L: Layers, full: bool) -> Non
         for a in range(port.row[c], port.row[c + 1]):
             form = port.slip.x_start[c] + 2 * (a - port.row[c])
             add_column(mech, k, L.A1, first + a, port.slip, form, -1.0)
-        if full and port.normal[c] == NORMAL_LAW and N[c] > 0.0:
+        if full and port.normal[c] == NORMAL_LAW and mode[c] != OPEN:
             normals, s = port.normals, k.s
             evaluate(normals, c, s)
             x0 = normals.x_start[c]

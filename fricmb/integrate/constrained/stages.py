@@ -101,7 +101,7 @@ def linearise(mech: Mech, k: Moving, y: State, st: Stages) -> None:
     add_mass(mech, L)
     add_structure(mech, k, L)
     add_joints(mech, k, y.lam, y.F, L, True)
-    add_contacts(mech, k, y.N, L, True)
+    add_contacts(mech, k, y.mode, L, True)
     add_friction(mech, k, y.mode, y.n, y.F, y.lam, y.z, y.N, y.g, y.ga, L, True)
     size = mech.order.place.shape[0]
     for i in range(size - y.z.shape[0], size):
