@@ -108,7 +108,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
             for i in range(part.shape[0]):
                 target[0, i] = part[i]
         keep_held(mech, y.mode, y.F, one.F[0])
-        used = iterate_stages(mech, k, base, one, beta_h, accuracy)
+        used = iterate_stages(mech, k, base, one, beta_h, beta_h, accuracy)
         c.counts[2] += max(used, 1)
         if used == 0 or one.found > SLOW:
             formula.made = 0.0

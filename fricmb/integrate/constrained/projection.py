@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import forces, move
-from fricmb.integrate.constrained.instant_matrix import NONE, STUCK, instant_matrix, solve_instant
+from fricmb.integrate.constrained.instant_matrix import ALL, NONE, STUCK, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.state import Instant, State
@@ -70,7 +70,9 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
     row = mech.port.row
     move(mech, k, y.t, y.q, y.v)
     forces(mech, k, y.lam, y.F, y.N, y.g)
-    if not (factored and not stuck) and not instant_matrix(mech, k, w, y, STUCK if stuck else NONE):
+    # without joints no load is a reaction: friction of what slips adds nothing that accelerations or forces bring
+    friction = STUCK if m > 0 else ALL
+    if not (factored and not stuck) and not instant_matrix(mech, k, w, y, friction if stuck else NONE):
         return False
     for _ in range(2):
         for j in range(w.r.shape[0]):

@@ -171,18 +171,21 @@ def remember(c: Control, y: State, st: Stages, h: float) -> None:
     c.last_h = h
 
 
-#: Newton's iterations stop at this part of the tolerance.
-KAPPA = 1e-3
+#: Newton's iterations stop at this part of the tolerance; with factors of a step of another length, at this part of that.
+KAPPA, AGAIN = 1e-3, 1e-3
+#: Factors serve steps that differ in length by this part: while a transition is located most do, and factors are what
+#: steps cost where many contacts rub on many modes.
+ALIKE = 1e-3
 
 
-@block
-def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
-    """Solve the stages of a step h from y."""
+@kernel
+def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
+    """Solve the stages of a step h from y, by the factors that are there where they are of a step almost as long."""
     if c.made == 0.0:
         choose_forms(mech, k, y, st, h)
         linearise(mech, k, y, st)
         c.counts[3] += 1
-    if c.made != h:
+    if not abs(c.made - h) <= ALIKE * h:
         c.counts[4] += 1
         if not factor_stages(mech, st, h):
             c.made = 0.0
@@ -194,10 +197,22 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    used = iterate_stages(mech, k, y, st, h, max(KAPPA * asked(c), 1e-14))
+    accuracy = KAPPA * asked(c) * (1.0 if c.made == h else AGAIN)
+    used = iterate_stages(mech, k, y, st, h, c.made, max(accuracy, 1e-14))
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0
+
+
+@block
+def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
+    """As ``solve_stages``; where factors of another step do not get there, by its own."""
+    if solve_stages(mech, k, y, st, c, h):
+        return True
+    if c.made == 0.0 or c.made == h:
+        return False
+    c.made = 0.0
+    return bool(solve_stages(mech, k, y, st, c, h))
 
 
 @kernel

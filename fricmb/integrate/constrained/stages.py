@@ -244,10 +244,11 @@ def is_linear(mech: Mech, y: State) -> bool:
 
 
 @kernel
-def left_by_factors(mech: Mech, y: State, h: float) -> float:
-    """Part of a change that its solution by the factors of a step h may be off by; 1 where equations are not linear.
+def left_by_factors(mech: Mech, y: State, h: float, made: float) -> float:
+    """Part of a change that its solution by factors may leave in a step h; 1 where equations are not linear.
 
     Stiff springs and dampers, whose forces over a step are far above those of inertia, take digits from soft motion.
+    Those made for a step of another length leave what the matrices differ by: powers of h up to the second.
     """
     if not is_linear(mech, y):
         return 1.0
@@ -259,19 +260,19 @@ def left_by_factors(mech: Mech, y: State, h: float) -> float:
     for e in range(linear.C.shape[0]):
         i = linear.Ci[e]
         stiff = max(stiff, h * abs(linear.C[e]) / mech.mass[i] if i < n else 0.0)
-    return ROUND_OFF * stiff
+    return ROUND_OFF * stiff + 4.0 * abs(1.0 - made / h)
 
 
 @block
-def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> int:
+def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: float, accuracy: float) -> int:
     """Newton from the values in ``st`` until changes of velocities and states are below ``accuracy`` of their sizes.
 
-    Returns the number of iterations, or 0 where they do not converge.
+    ``made``: length of the step that factors are of.  Returns the number of iterations, or 0 where they do not converge.
     """
     tab = st.tab
     s = tab.c.shape[0]
     last = np.inf
-    exact = left_by_factors(mech, y, h)
+    exact = left_by_factors(mech, y, h, made)
     st.found, st.fresh = 1.0, 0
     for iteration in range(ITERATIONS):
         for i in range(s):
