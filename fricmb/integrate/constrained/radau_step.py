@@ -171,8 +171,10 @@ def remember(c: Control, y: State, st: Stages, h: float) -> None:
     c.last_h = h
 
 
-#: Newton's iterations stop at this part of the tolerance; with factors of a step of another length, at this part of that.
-KAPPA, AGAIN = 1e-3, 1e-3
+#: Newton's iterations stop at this part of the tolerance.
+KAPPA = 1e-3
+#: With factors of a step of another length they stop at this part of that: their own would gain as much in one more.
+STRICTER = 1e-3
 #: Factors serve steps that differ in length by this part: while a transition is located most do, and factors are what
 #: steps cost where many contacts rub on many modes.
 ALIKE = 1e-3
@@ -197,7 +199,7 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    accuracy = KAPPA * asked(c) * (1.0 if c.made == h else AGAIN)
+    accuracy = KAPPA * asked(c) * (1.0 if c.made == h else STRICTER)
     used = iterate_stages(mech, k, y, st, h, c.made, max(accuracy, 1e-14))
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)

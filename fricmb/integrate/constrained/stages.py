@@ -267,7 +267,7 @@ def left_by_factors(mech: Mech, y: State, h: float, made: float) -> float:
 def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: float, accuracy: float) -> int:
     """Newton from the values in ``st`` until changes of velocities and states are below ``accuracy`` of their sizes.
 
-    ``made``: length of the step that factors are of.  Returns the number of iterations, or 0 where they do not converge.
+    Returns the number of iterations, or 0 where they do not converge.  ``made``: length of the step of the factors.
     """
     tab = st.tab
     s = tab.c.shape[0]
