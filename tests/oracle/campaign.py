@@ -16,7 +16,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from . import driven, drives, feet, groups, impacts, units
+from . import driven, drives, feet, groups, impacts, machines, units
 from .drawn import Drawn
 from .inputs import Shaken
 from .inputs import case_of as inputs_case
@@ -33,7 +33,10 @@ from .table import LAWS, SITUATIONS
 from .table import case as cell
 
 #: What makes both forms of a scene that was drawn as numbers.
-MAKERS = {**feet.MAKERS, **driven.MAKERS, **drives.MAKERS, **groups.MAKERS, **units.MAKERS, **impacts.MAKERS}
+MAKERS = {
+    **feet.MAKERS, **driven.MAKERS, **drives.MAKERS, **groups.MAKERS, **units.MAKERS, **impacts.MAKERS,
+    **machines.MAKERS,
+}  # fmt: skip
 #: How long the oracle itself may take for a scene; most take one or two.
 SECONDS = 40.0
 

@@ -141,20 +141,20 @@ def rope_case(n: dict[str, Any]) -> Case:
         fm.Force(f"f{name}", body, axis="x", value=formula(w, fm.t))
         for name, body, w in zip("ab", (a, b), n["waves"], strict=True)
     )]  # fmt: skip
-    more = {}
+    turning = {}
     if n["drum"]:
         drum = fm.RigidBody("d", mass=1.0, inertia=n["inertia"])
         parts += [
             drum, fm.Revolute("axle", drum), fm.Torque("t", drum, value=formula(n["turns"], fm.t)),
             fm.TorsionSpring("kd", drum, stiffness=n["stiff"]),
         ]  # fmt: skip
-        more = {"drum": drum, "radius": R}
+        turning = {"drum": drum, "radius": R}
     if n["k"]:
         parts.append(fm.Spring("k", b, axis="x", stiffness=n["k"]))
     if n["damping"]:
         parts.append(fm.Damper("c_b", b, axis="x", damping=n["damping"]))
     law = fm.laws.Coulomb(mu_s=mu_s, mu_k=mu_k)
-    parts.append(fm.Rope("c", (a, b), axes="xx", angle=n["angle"], friction=law, **more))
+    parts.append(fm.Rope("c", (a, b), axes="xx", angle=n["angle"], friction=law, **turning))
     wind = math.tanh(0.5 * mu_k * n["angle"])
 
     def held(t: float, q: np.ndarray, v: np.ndarray) -> float:
@@ -170,7 +170,9 @@ def rope_case(n: dict[str, Any]) -> Case:
     d = 1 + n["drum"]
     M = np.diag([m_a + m_b, n["inertia"]][:d])
     W = np.array([[1.0], [-R]])[:d]
-    contact = Contact(name="c", W=W, N=NONE, reaction=load, mu=constant(1.0), mu_s=constant(mu_s / mu_k))
+    # what breaks away is the ratio of tensions e^(mu_s angle), not so many times the difference as mu_s is over mu_k
+    more = math.tanh(0.5 * mu_s * n["angle"]) / wind
+    contact = Contact(name="c", W=W, N=NONE, reaction=load, mu=constant(1.0), mu_s=constant(more))
     zero = np.zeros((d, d))
     problem = Problem(
         M=M, K=zero, C=zero, q=np.zeros(d), v=np.array([n["v"], 0.0][:d]), t_end=n["t_end"], contacts=(contact,),

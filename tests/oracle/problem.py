@@ -45,7 +45,7 @@ class Contact:
     slide: Callable[[float], Any] = nothing
     slide_rate: Callable[[float], Any] = nothing
     constant: bool = True
-    """Whether N never changes."""
+    """Whether N never changes; of a reaction: whether nothing ends where it falls to 0."""
 
     @property
     def d(self) -> int:

@@ -15,6 +15,7 @@ from .groups import bare, elsewhere, together
 from .impacts import impacts
 from .inputs import excursion as excursions
 from .inputs import shaken as inputs
+from .machines import machines
 from .mechanisms import Chain
 from .space import Bodies, Link, Push, Triple, turned
 from .spec import Pull, Spec, Touch
@@ -324,7 +325,7 @@ KINDS: dict[str, Callable[[Generator], Any]] = {
     "line": line, "shaken": shaken, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes,
     "chain": chain, "tree": tree, "roller": roller, "inputs": inputs, "excursions": excursions, "feet": feet,
     "driven": driven, "drives": drives, "together": together, "bare": bare, "elsewhere": elsewhere,
-    "units": other_units, "beside": other_scales, "impacts": impacts,
+    "units": other_units, "beside": other_scales, "impacts": impacts, "machines": machines,
 }  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -133,7 +134,10 @@ class Run:
             return np.array(moving.loads(t, q, v, under(loads)[0]))
 
         loads = np.array(moving.loads(t, q, v, guess))
-        _, push, b, found = under(settled(answer, loads) if moving.reactive else loads)
+        if moving.reactive:
+            held = None if released or one_of else self.held(resting, t, answer)
+            loads = settled(answer, loads) if held is None else held
+        _, push, b, found = under(loads)
         if len({tuple(np.round(D @ f[1] + b, 9)) for f in found}) > 1:
             self.motion.ambiguous = True
         slips, F = found[0]
@@ -147,6 +151,22 @@ class Run:
                 self.signs[i] = self.sign(moving, t, F[row], (D @ F + b)[row], columns[row])
                 if p.contacts[i].d > 1:
                     self.start[i] = push
+
+    def held(self, resting: list[int], t: float, answer: Callable[[np.ndarray], np.ndarray]) -> np.ndarray | None:
+        """Loads with all at rest stuck, where these loads hold them: loads that friction brings have other answers too.
+
+        A gear with losses that turns round may have a load under which it sticks, and a smaller one under which it
+        slips; as everywhere the answer with the most contacts stuck is the one that counts.
+        """
+        modes = [STICK if i in resting else m for i, m in enumerate(self.modes)]
+        stuck = Field(self.p, modes, self.signs, (self.t, self.end))
+        try:
+            a = stuck.evaluate(t, self.y)[0]
+            loads = np.array(stuck.loads(t, self.y[: self.n], self.y[self.n : 2 * self.n], a))
+            found = answer(loads)
+        except OracleError:
+            return None
+        return loads if np.abs(found - loads).max() <= 1e-11 * max(np.abs(loads).max(), 1e-300) else None
 
     def sign(self, moving: Field, t: float, F: float, rate: float, column: int) -> float:
         """Which way slip of one direction sets out: against its friction, or where there is none as it is pushed."""
@@ -278,6 +298,8 @@ class Run:
         """What crossed at one instant: margins of modes (0) or a normal force (1), with the contact."""
         which, i = crossed[0]
         if which == 1:
+            if self.p.contacts[i].reaction is not None:
+                raise OracleError(f"{self.p.contacts[i].name!r} has no load any more at t = {self.t}")
             if self.p.contacts[i].force is None:
                 self.settle(flipped=frozenset([i]))
             return
