@@ -40,10 +40,18 @@ class Centre(Element):
 
 @dataclass(frozen=True, eq=False)
 class CentreForce(Force):
-    """The same along one letter on one end, under a normal force that is an expression; its work is input."""
+    """The same along one letter on one end, under a normal force that is an expression; its work is input.
+
+    ``value`` is ``offset`` times ``per_offset``; ``slot`` names the parameter that the offset is.
+    """
+
+    _fixed: ClassVar[tuple[str, ...]] = (*Force._fixed, "offset", "per_offset", "slot")
 
     _: KW_ONLY
     place: str
+    offset: Any
+    per_offset: Any
+    slot: str
 
     @property
     def signal_name(self) -> str:
@@ -57,11 +65,16 @@ def centres_of(contact: Contact) -> tuple[Element, ...]:
         return (Centre(contact.name, contact, law=contact.law, normal_force=contact.normal_force),)
     import sympy
 
-    N = sympy.Max(0, contact.normal_force)
+    law: Any = contact.law
+    N, offsets, several = sympy.Max(0, contact.normal_force), law.offsets(), isinstance(law.offset, tuple)
+    slots = [f"{contact.name}.law.offset{f'.{i}' if several else ''}" for i in range(len(offsets))]
     ends = [(end, sign) for end, sign in ((contact.a, -1.0), (contact.b, 1.0)) if end.movable]
     return tuple(
-        CentreForce(contact.name, end, axis=letter, value=sign * share * offset * N, place=f"{label}.{letter}.{sign:g}")
-        for direction, offset, label in zip(contact.directions(), contact.law.offsets(), contact.labels(), strict=True)
+        CentreForce(
+            contact.name, end, axis=letter, value=sign * share * offset * N, place=f"{label}.{letter}.{sign:g}",
+            offset=offset, per_offset=sign * share * N, slot=slot,
+        )
+        for direction, offset, label, slot in zip(contact.directions(), offsets, contact.labels(), slots, strict=True)
         for letter, share in direction.vector
         for end, sign in ends
-    )
+    )  # fmt: skip

@@ -68,6 +68,8 @@ class Constrained(Equations):
         if not isinstance(part, Joint):
             super()._take(part, held)
             return
+        if part.loaded_by and self.scene[part.loaded_by].impact is not None:
+            refuse(part, "resistance beside impacts")
         if part.impact is not None:  # it does nothing between its impacts
             self.struck[part.name] = Struck(part, self.seeds)
             return
@@ -121,10 +123,10 @@ class Constrained(Equations):
         for part in (self.linear, *self.linear.rest):
             part.add(moment, found)
         duals = iter([Dual(value=x, slopes={self.columns + i: 1.0}) for i, x in enumerate(lam)])
+        reactions = {joint.name: [next(duals) for _ in unknowns.lam[joint.name]] for joint in self.joints}
         for joint in self.joints:
-            own = [next(duals) for _ in unknowns.lam[joint.name]]
             rows = slice(0, 0) if joint.number is None else self.rows(joint.number)
-            joint.add(moment, found, own, mode, sign[rows])
+            joint.add(moment, found, reactions[joint.name], reactions[joint.pressed], mode, sign[rows])
         for k, contact in self.touching.items():
             contact.add(moment, found, mode[k], sign[self.rows(k)])
         column = self.columns + len(lam)

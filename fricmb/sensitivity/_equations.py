@@ -125,9 +125,6 @@ class Equations:
                     f"sensitivities: {part._label()} was left out of the run, because it acts on nothing or is nothing;"
                     f" there is no derivative with respect to {touched[0]!r}"
                 )
-            lost = [name for name in touched if name.startswith(f"{part.name}.law.offset")]
-            if lost and part.normal_kind != "constant":
-                refuse(part, f"{lost[0]!r} of a contact whose normal force is an expression")
             self.contacts[k] = self.touching[k] = Rubs(part, k, int(self.names.z_start[k]), self.seeds)
             return
         found = acting(self.scene, part, self.frame.index, self.seeds)

@@ -24,10 +24,9 @@ class Joins:
 
     def __init__(self, joint: Joint, number: int | None, states: int, seeds: Seeds) -> None:
         self.name, self.number = joint.name, number
+        self.pressed = joint.loaded_by or joint.name
         if joint.hands_over:
             refuse(joint, "a joint that lets go")
-        if joint.loaded_by:
-            refuse(joint, "friction by the reaction of another joint")
         self.forms = joint.local_coordinates()
         self.drives = [driven(joint, drive, seeds) for drive in joint.drives()]
         self.count = len(self.forms) + len(self.drives)
@@ -49,10 +48,15 @@ class Joins:
             if seeds.columns[name] not in known:
                 refuse(joint, f"the parameter {name!r}")
 
-    def add(self, moment: Moment, found: Found, lam: Sequence[Dual], mode: Any, sign: Floats) -> None:
-        """Constraints, reactions ``lam`` and friction; ``mode`` (n_c, n_t), ``sign`` (d, n_t)."""
+    def add(
+        self, moment: Moment, found: Found, lam: Sequence[Dual], pressing: Sequence[Dual], mode: Any, sign: Floats
+    ) -> None:
+        """Constraints, reactions ``lam`` and friction; ``mode`` (n_c, n_t), ``sign`` (d, n_t).
+
+        ``pressing``: reactions that its load is of, which may be those of another joint.
+        """
         motions = [moment.form(form) for form in self.forms] + [motion_of(drive, moment) for drive in self.drives]
-        arguments = [m.position for m in motions] + [m.rate for m in motions] + [*lam, *self.numbers]
+        arguments = [m.position for m in motions] + [m.rate for m in motions] + [*pressing, *self.numbers]
         values = iter(self.function(arguments))
         m, n = len(lam), self.count
         phi = [next(values) for _ in range(m)]

@@ -11,6 +11,7 @@ from fricmb import stated
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
 from fricmb.scene import Body, Force, Gravity, MatrixElement, ModalBody, RigidBody, SpaceBody, modal_matrices
+from fricmb.scene._offset import CentreForce
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._found import Found
 from fricmb.sensitivity._functions import Function
@@ -78,6 +79,23 @@ class Pushes:
     def add(self, moment: Moment, found: Found) -> None:
         """The force on its body."""
         found.push(moment.form(self.form).row, self.value.at(moment))
+
+
+class Leans:
+    """The centre of a cone under a normal force that is an expression: an offset times what stands beside it."""
+
+    def __init__(self, part: CentreForce, seeds: Seeds) -> None:
+        self.form = part.local_coordinates()[0]
+        self.offset, self.pressing = seeds.dual(part.offset, part.slot), Given(part.per_offset, "", seeds)
+        self.seeded = bool(self.offset.slopes)
+
+    def is_linear(self, moment: Moment) -> bool:
+        """The normal force is an expression."""
+        return False
+
+    def add(self, moment: Moment, found: Found) -> None:
+        """The force on its body."""
+        found.push(moment.form(self.form).row, self.offset.times(self.pressing.at(moment)))
 
 
 class Vibrates:
@@ -198,6 +216,8 @@ def _masses(part: Body | RigidBody, seeds: Seeds) -> list[tuple[str, Dual]]:
 
 def acting(scene: Any, part: Any, index: dict[str, int], seeds: Seeds) -> Acting | None:
     """A part other than a contact as forces; None for one that only carries masses or a motion."""
+    if isinstance(part, CentreForce):
+        return Leans(part, seeds)
     if isinstance(part, Force):
         return Pushes(part, seeds)
     if isinstance(part, Gravity):

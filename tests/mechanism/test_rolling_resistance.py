@@ -9,6 +9,7 @@ import sympy
 from scipy.integrate import solve_ivp
 
 import fricmb as fm
+from tests.sensitivity.differences import worst
 
 M, R, J, G, ARM = 2.0, 0.1, 0.01, 9.81, 0.004
 METHODS = ["radau", "bdf"]
@@ -180,8 +181,34 @@ def test_the_part_beside_a_joint_follows_it():
 def test_what_cannot_be_is_refused_by_name():
     with pytest.raises(fm.SceneError, match="rolling_resistance must be"):
         wheel(arm=-1.0)
-    with pytest.raises(fm.SceneError, match="friction by the reaction of another joint is not covered"):
-        fm.simulate(wheel(), t_end=0.1, sensitivities=("floor_rolling.friction.mu_s",))
+
+
+def test_derivatives_are_those_of_the_closed_form():
+    """A wheel that rolls to rest by its resistance goes v^2/(2 d), and stops at v/d, with d in the ratio of the arm."""
+    v, name = 1.0, "floor_rolling.friction.mu_s"
+    scene = wheel(velocity=(v, 0.0), angular_velocity=-v / R)
+    d = ARM / R * G / (1 + J / (M * R**2))
+    sol = fm.simulate(scene, t_end=1.2 * v / d, rtol=1e-9, sensitivities=(name, "disc.velocity.x"))
+    assert sol.sensitivity("disc.x", name)[-1] == pytest.approx(-(v**2) / (2 * d) / ARM, rel=1e-7)
+    stop = next(e for e in sol.events if e.contact == "floor_rolling")
+    assert stop.sensitivity(name) == pytest.approx(-v / d / ARM, rel=1e-7)
+    spinning = ball((0, 0, 0), (0, 0, 3.0), spinning_resistance=SPIN)
+    sol = fm.simulate(spinning, t_end=2.0, rtol=1e-9, sensitivities=("cloth_spinning.friction.mu_s",))
+    (stop,) = (e for e in sol.events if e.contact == "cloth_spinning")
+    assert stop.sensitivity("cloth_spinning.friction.mu_s") == pytest.approx(-float(stop.t) / SPIN, rel=1e-7)
+
+
+def test_derivatives_are_those_of_differences_where_load_slip_and_resistance_hang_together():
+    """A disc that is thrown on a lean floor, slides, rolls on a spring, and turns round."""
+    slope = 0.05
+    scene = wheel(
+        slope, mu=0.15, velocity=(math.cos(slope), -math.sin(slope)),
+        more=(lambda disc: fm.Spring("k", disc, axis="x", stiffness=6.0),),
+    )  # fmt: skip
+    names = ("floor_rolling.friction.mu_s", "floor.friction.mu_s", "disc.mass", "k.stiffness")
+    errors = worst(scene, names, rtol=1e-8, t_end=2.5)
+    assert len(errors) == len(names)
+    assert max(errors.values()) < 100.0, errors
 
 
 def test_steady_motion_sees_the_load_of_the_other_joint():

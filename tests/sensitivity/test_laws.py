@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from tests.oracle.table import LAWS, SITUATIONS, case
 
-from .differences import said, shares_off
+from .differences import said, shares_off, worst
 
 #: Brings compiled code, and is refused.
 _LEFT_OUT = {"Contensou"}
@@ -49,3 +50,24 @@ def test_law_in_a_joint(name):
     off = shares_off(sol, names, t_end=2.0, steps=(5e-4,) if own else (2e-3, 2e-4))
     assert off
     assert max(off.values()) < max(said(sol), default=1e3 * _RTOL), (off, sol.stats.notes)
+
+
+def test_offset_under_a_normal_force_that_varies():
+    """Slip forward is slowed by ``(mu + offset) N(t)``; with reversals the derivative is that of differences."""
+    body, N = fm.Body("b", mass=2.0, velocity={"x": 5.0}), 10.0 * (1 + 0.3 * fm.t)
+    law = fm.laws.Offset(law=fm.laws.Coulomb(mu_s=0.4, mu_k=0.3), offset=0.2)
+    contact = fm.Contact("c", body, law=law, normal_force=N, axes="x")
+    sol = fm.simulate(fm.Scene("forward", [body, contact]), t_end=1.0, rtol=1e-9, sensitivities=("c.law.offset",))
+    assert sol.sensitivity("b.x.velocity", "c.law.offset")[-1] == pytest.approx(-10.0 * 1.15 / 2.0, rel=1e-9)
+    assert sol.sensitivity("b.x", "c.law.offset")[-1] == pytest.approx(-10.0 * (0.5 + 0.05) / 2.0, rel=1e-9)
+    pull = fm.Force("f", body, axis="x", value=16.0 * sympy.sin(3.0 * fm.t))
+    scene = fm.Scene("back", [body, contact, fm.Spring("k", body, axis="x", stiffness=20.0), pull])
+    errors = worst(scene, ("c.law.offset",), rtol=1e-8, t_end=3.0)
+    assert max(errors.values()) < 100.0, errors
+    plane = fm.Body("b", mass=2.0, axes="xy", velocity={"x": 1.0, "y": 0.5})
+    offset = fm.parameter("along", 0.1), fm.parameter("across", -0.05)
+    both = fm.laws.Offset(law=fm.laws.Coulomb(mu_s=0.3), offset=offset)
+    scene = fm.Scene("plane", [plane, fm.Contact("c", plane, law=both, normal_force=N, axes="xy")])
+    errors = worst(scene, ("along", "across"), rtol=1e-8, t_end=0.2, events=False)
+    assert len(errors) == 2
+    assert max(errors.values()) < 100.0, errors
