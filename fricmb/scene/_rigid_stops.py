@@ -8,7 +8,9 @@ from typing import Any, ClassVar
 from fricmb.errors import SceneError
 from fricmb.scene._axes import check_axis, direction
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._guided_way import along, guide_coordinates, is_on_guide, take_guide
 from fricmb.scene._joint import Joint
+from fricmb.scene._joints import Prismatic
 from fricmb.scene._one_coordinate import ANGLE, one_coordinate
 from fricmb.scene._restitution import check_restitution
 from fricmb.scene._rigid import angle_of
@@ -21,10 +23,12 @@ class _RigidLimits(Joint):
     """A coordinate between limits; each of them pushes only, and what meets it leaves with a part of its speed."""
 
     constrains: ClassVar[bool] = True
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axis")
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "axis", "guide")
     _: KW_ONLY
     axis: Any = None
     restitution: Any
+    guide: Any = None
+    angle: Any = None
 
     def __post_init__(self) -> None:
         self._check_axis()
@@ -35,6 +39,10 @@ class _RigidLimits(Joint):
 
     def _check_axis(self) -> None:
         """Refuse an axis that is not accepted, and take what a joint stands for."""
+        if isinstance(self.axis, Prismatic):
+            take_guide(self, self.axis)
+        if is_on_guide(self):
+            return
         b, axis = one_coordinate(self, self.a, self.b, self.axis)
         self._set("b", b)
         self._set("axis", axis if axis == ANGLE else check_axis(self, "axis", axis))
@@ -60,7 +68,9 @@ class _RigidLimits(Joint):
         raise NotImplementedError
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
-        """What is limited."""
+        """What is limited; along a guide as :func:`guide_coordinates`."""
+        if self.guide is not None:
+            return guide_coordinates(self)
         if self.axis == ANGLE:
             return (relative_angle(self, self.a, self.b),)
         return (direction(self, "axis", self.axis, self.a, self.b).form,)
@@ -72,8 +82,9 @@ class _RigidLimits(Joint):
     def sides(self) -> tuple[Joint, ...]:
         """One joint for each limit, "lower" and "upper" behind the name where there are two."""
         limits = zip((LowerSide, UpperSide), self.limits(), strict=True)
+        angle = 0.0 if self.guide is None else float(value_of(self.angle))
         found = tuple(
-            kind(self.name, self.a, self.b, of=self, limit=value_of(limit), ratio=self._scale())
+            kind(self.name, self.a, self.b, of=self, limit=value_of(limit), ratio=self._scale(), angle=angle)
             for kind, limit in limits
             if limit is not None
         )
@@ -92,6 +103,7 @@ class RigidSide(Joint):
     of: Any
     limit: Any
     ratio: Any
+    angle: Any
 
     def _label(self) -> str:
         found: str = self.of._label()
@@ -118,7 +130,11 @@ class RigidSide(Joint):
         return found
 
     def limited(self, x: tuple[Any, ...]) -> Any:
-        """The coordinate."""
+        """The coordinate; of three local ones the way along a guide."""
+        if len(x) == 3:
+            import sympy
+
+            return along(x, self.angle, sympy)
         return x[0] if len(x) == 1 else x[0] + self.ratio * x[1]
 
 

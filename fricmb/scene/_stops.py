@@ -9,16 +9,14 @@ from fricmb.errors import SceneError, shown
 from fricmb.scene._axes import check_axis, check_ends, direction
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
+from fricmb.scene._guided_way import along, along_rate, guide_coordinates, is_on_guide, take_guide
 from fricmb.scene._joints import Prismatic
-from fricmb.scene._one_coordinate import ANGLE, joint_ends, one_coordinate
+from fricmb.scene._one_coordinate import ANGLE, one_coordinate
 from fricmb.scene._part import GROUND, End
-from fricmb.scene._rigid import angle_of, plane_motion
+from fricmb.scene._rigid import angle_of
 from fricmb.scene._rigid_stops import RigidBacklash, RigidStop
 from fricmb.scene._turning import relative_angle
 from fricmb.values import value_of
-
-#: The axis of what is along a guide.
-GUIDE = "guide"
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,32 +73,18 @@ class _Touching(Element):
     def _check_axis(self) -> None:
         """Refuse an axis that is not accepted, and take what a joint stands for."""
         if isinstance(self.axis, Prismatic):
-            self._take_guide(self.axis)
-        if self.guide is not None:
-            self._set("axis", GUIDE)
-            self._set("angle", self._number("angle", self.angle))
+            take_guide(self, self.axis)
+        if is_on_guide(self):
             return
-        if self.angle is not None:
-            self._refuse("angle", self.angle, "left out: a guide brings it")
         b, axis = one_coordinate(self, self.a, self.b, self.axis)
         self._set("b", b)
         self._set("axis", axis if axis == ANGLE else check_axis(self, "axis", axis))
-
-    def _take_guide(self, guide: Prismatic) -> None:
-        """Ends, name and angle of a guide, along whose line the coordinate is."""
-        mine, other = joint_ends(self, self.a, self.b, guide)
-        if mine is not guide.a:
-            self._refuse("a", mine.end_name, f"the end of the guide {guide.name!r} that slides, {guide.a.end_name!r}")
-        for field, value in (("a", mine), ("b", other), ("guide", guide.name), ("angle", guide.angle)):
-            self._set(field, value)
 
     def coordinate(self, x: Any, rates: Any, functions: Any) -> tuple[Any, Any]:
         """What is limited, and its rate, of the local coordinates; ``functions``: NumPy or SymPy."""
         if self.guide is None:
             return x[0], rates[0]
-        cos, sin = functions.cos(x[2] + self.angle), functions.sin(x[2] + self.angle)
-        across = x[1] * cos - x[0] * sin
-        return x[0] * cos + x[1] * sin, rates[0] * cos + rates[1] * sin + across * rates[2]
+        return along(x, self.angle, functions), along_rate(x, rates, self.angle, functions)
 
     def _check_limits(self) -> None:
         """Refuse limits that are not accepted."""
@@ -112,8 +96,7 @@ class _Touching(Element):
     def local_coordinates(self) -> tuple[LinearForm, ...]:
         """What is limited; along a guide the distance of its points, and the angle of its line's body."""
         if self.guide is not None:
-            (ax, ay), (bx, by) = plane_motion(self, "a", self.a), plane_motion(self, "b", self.b)
-            return ax - bx, ay - by, angle_of(self, "b", self.b)
+            return guide_coordinates(self)
         if self.axis == ANGLE:
             return (relative_angle(self, self.a, self.b),)
         return (direction(self, "axis", self.axis, self.a, self.b).form,)
