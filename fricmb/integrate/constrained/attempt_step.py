@@ -17,6 +17,7 @@ from fricmb.integrate.constrained.between_stages import (
 from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
+from fricmb.integrate.constrained.force_jumps import jump_error
 from fricmb.integrate.constrained.held_force import unseen_force
 from fricmb.integrate.constrained.load_defect import load_defect
 from fricmb.integrate.constrained.load_kinks import find_kinks
@@ -194,6 +195,8 @@ def radau_step(
         knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
     error = max(error_of(c, y, st, h), between / asked(c))
     error = max(error, too_long(growth_of_slip(mech, k, y, st, h), order), unseen_force(mech, k, y, st, c, h))
+    if mech.elements.address.shape[0] > 0:
+        error = max(error, jump_error(mech, k, y, st, c, st.scale, h))
     if not error < 1e300:
         return reject(c, 0.4 * h)
     factor = step_factor(error, order, ONE_STEP_SAFETY)

@@ -17,6 +17,7 @@ from fricmb.integrate.constrained.bdf_history import Formula, put
 from fricmb.integrate.constrained.between_stages import growth_of_slip, passes_bend, weigh_ports
 from fricmb.integrate.constrained.element_bends import bend_within
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
+from fricmb.integrate.constrained.force_jumps import jump_error
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -230,6 +231,8 @@ def multistep(
         changes = changes or passes_bend(mech, k, y, end, one, c)
     if mech.bends.address.shape[0] > 0:
         changes = changes or bend_within(mech, k, y, st, c, h, IN_HISTORY) < 1.0
+    if mech.elements.address.shape[0] > 0:
+        changes = changes or jump_error(mech, k, y, st, c, one.scale, h) > 1.0
     if passed or not unique or changes:
         return HANDOVER
     for i in range(y.work.shape[0]):

@@ -25,19 +25,9 @@ def place_bodies(mech: Mech, k: Moving, t: float, q: Floats, v: Floats) -> None:
 
 
 @kernel
-def forces_at(mech: Mech, k: Moving, n: int, mode: Codes, f: Floats) -> None:
-    """Forces of elements and of normal-force laws on the n degrees of freedom at X; behind them loads.
-
-    What acts on places is brought to the degrees of freedom.  Loads are those of contacts, before max with 0; of
-    joints, whose reactions these are, and of what is open, 0.
-    """
-    place, port = mech.place, mech.port
-    k.fy[:] = 0.0
-    element_forces(mech.elements, mech.spread, k.s, k.fy)
-    for p in range(port.joint.shape[0]):
-        f[n + p] = load_at(mech, k, p) if port.joint[p] < 0 and mode[p] != OPEN else 0.0
-        if port.joint[p] < 0 and port.normal[p] == NORMAL_LAW:
-            scatter(k, port.normals, port.normals.x_start[p], f[n + p])
+def bring_to_dofs(mech: Mech, k: Moving, n: int, f: Floats) -> None:
+    """Forces on extended coordinates (``k.fy``), brought to the n degrees of freedom."""
+    place = mech.place
     for i in range(n):
         f[i] = k.fy[i]
     for c in range(place.address.shape[0]):
@@ -46,6 +36,23 @@ def forces_at(mech: Mech, k: Moving, n: int, mode: Codes, f: Floats) -> None:
         for r in range(place.first[c + 1] - place.first[c]):
             for i in range(count):
                 f[place.dof[d0 + i]] += k.grad[place.grad_start[c] + r * count + i] * k.fy[n + place.first[c] + r]
+
+
+@kernel
+def forces_at(mech: Mech, k: Moving, n: int, mode: Codes, f: Floats) -> None:
+    """Forces of elements and of normal-force laws on the n degrees of freedom at X; behind them loads.
+
+    What acts on places is brought to the degrees of freedom.  Loads are those of contacts, before max with 0; of
+    joints, whose reactions these are, and of what is open, 0.
+    """
+    port = mech.port
+    k.fy[:] = 0.0
+    element_forces(mech.elements, mech.spread, k.s, k.fy)
+    for p in range(port.joint.shape[0]):
+        f[n + p] = load_at(mech, k, p) if port.joint[p] < 0 and mode[p] != OPEN else 0.0
+        if port.joint[p] < 0 and port.normal[p] == NORMAL_LAW:
+            scatter(k, port.normals, port.normals.x_start[p], f[n + p])
+    bring_to_dofs(mech, k, n, f)
 
 
 @kernel

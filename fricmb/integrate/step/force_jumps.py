@@ -11,7 +11,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
 from fricmb.integrate.model.forces import Scratch, gather, set_instant
-from fricmb.integrate.model.problem_structs import Packed
+from fricmb.integrate.model.problem_structs import Packed, Spread, Table
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.step.one_step_room import Accuracy
@@ -21,18 +21,16 @@ HALVINGS = 10
 
 
 @kernel
-def put_arguments(packed: Packed, s: Scratch, t: float, q: Floats, v: Floats, x: Floats) -> None:
-    """Arguments of all elements at an instant, one element's after the other's."""
-    set_instant(packed.signals, s, t, q, v)
-    start = packed.elements.x_start
+def put_arguments(elements: Table, s: Scratch, x: Floats) -> None:
+    """Arguments of all elements at X, one element's after the other's."""
+    start = elements.x_start
     for k in range(start.shape[0] - 1):
-        gather(packed.elements, k, s.X, x[start[k] :])
+        gather(elements, k, s.X, x[start[k] :])
 
 
 @kernel
-def put_force(packed: Packed, s: Scratch, k: int, x: Floats, out: Floats) -> None:
+def put_force(elements: Table, s: Scratch, k: int, x: Floats, out: Floats) -> None:
     """Force of element k and its slopes, for its arguments."""
-    elements = packed.elements
     for a in range(x.shape[0]):
         s.x[a] = x[a]
     call(elements.address[k], s.x, 0, elements.p, elements.p_start[k], s.out, 0)
@@ -50,19 +48,19 @@ def change(a: Floats, b: Floats, n_f: int) -> float:
 
 
 @kernel
-def close_in(packed: Packed, s: Scratch, k: int, x: Floats2, f: Floats2, n_f: int) -> None:
+def close_in(elements: Table, s: Scratch, k: int, x: Floats2, f: Floats2, n_f: int) -> None:
     """Halve the way between the arguments ``x[0]`` and ``x[1]`` to where the force (rows of ``f``) changes most."""
     for _ in range(HALVINGS):
         for a in range(x.shape[1]):
             x[2, a] = 0.5 * (x[0, a] + x[1, a])
-        put_force(packed, s, k, x[2], f[2])
+        put_force(elements, s, k, x[2], f[2])
         half = 0 if change(f[1], f[2], n_f) > change(f[0], f[2], n_f) else 1
         x[half] = x[2]
         f[half] = f[2]
 
 
 @kernel
-def turns_over(packed: Packed, s: Scratch, k: int, first: Floats, last: Floats, f: Floats2, n_f: int) -> bool:
+def turns_over(elements: Table, s: Scratch, k: int, first: Floats, last: Floats, f: Floats2, n_f: int) -> bool:
     """Whether the force of element k changes with those of its arguments that change their signs.
 
     Others may have made it jump (where forces bend, steps end), beside a speed that is but round-off of rest.
@@ -71,51 +69,61 @@ def turns_over(packed: Packed, s: Scratch, k: int, first: Floats, last: Floats, 
     for a in range(x.shape[0]):
         if first[a] * last[a] < 0.0:
             x[a] = last[a]
-    put_force(packed, s, k, first, f[0])
-    put_force(packed, s, k, x, f[1])
+    put_force(elements, s, k, first, f[0])
+    put_force(elements, s, k, x, f[1])
     return change(f[0], f[1], n_f) > 0.0
 
 
 @kernel
-def jump_error(packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float) -> float:
-    """What jumps of elements' forces between y and the state at the end of a step leave of velocities, over tolerance.
+def find_jump(elements: Table, spread: Spread, s: Scratch, k: int, ends: Floats2, jump: Floats) -> bool:
+    """Jumps of the forces of element k between its arguments at two ends (``put_arguments``); False without any.
 
     A jump is what the slopes at both ends of a short piece of the way do not explain.
     """
+    first_x = elements.x_start[k]
+    n_x = elements.x_start[k + 1] - first_x
+    crosses = False
+    for a in range(first_x, first_x + n_x):
+        crosses = crosses or ends[0, a] * ends[1, a] < 0.0
+    if not crosses:
+        return False
+    x = np.zeros((3, n_x))
+    for a in range(n_x):
+        x[0, a], x[1, a] = ends[0, first_x + a], ends[1, first_x + a]
+    n_f = spread.f_start[k + 1] - spread.f_start[k]
+    f = np.zeros((3, n_f * (1 + n_x)))
+    if not turns_over(elements, s, k, x[0], x[1], f, n_f):
+        return False
+    put_force(elements, s, k, x[0], f[0])
+    put_force(elements, s, k, x[1], f[1])
+    close_in(elements, s, k, x, f, n_f)
+    for b in range(n_f):
+        jump[b] = f[1, b] - f[0, b]
+        for a in range(n_x):
+            at = n_f + b * n_x + a
+            jump[b] -= 0.5 * (f[0, at] + f[1, at]) * (x[1, a] - x[0, a])
+    return True
+
+
+@kernel
+def jump_error(packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float) -> float:
+    """What jumps of elements' forces between y and a step's end (t, q, v) leave of velocities, over tolerance."""
     elements, spread = packed.elements, packed.spread
     worst = 0.0
     n_e = elements.address.shape[0]
     if n_e == 0:
         return 0.0
-    ends = np.zeros((2, elements.x_start[n_e]))
-    put_arguments(packed, s, y.t, y.q, y.v, ends[0])
-    put_arguments(packed, s, t, q, v, ends[1])
+    ends, jump = np.zeros((2, elements.x_start[n_e])), np.zeros(spread.start.shape[0])
+    set_instant(packed.signals, s, y.t, y.q, y.v)
+    put_arguments(elements, s, ends[0])
+    set_instant(packed.signals, s, t, q, v)
+    put_arguments(elements, s, ends[1])
     for k in range(n_e):
-        first_x = elements.x_start[k]
-        n_x = elements.x_start[k + 1] - first_x
-        crosses = False
-        for a in range(first_x, first_x + n_x):
-            crosses = crosses or ends[0, a] * ends[1, a] < 0.0
-        if not crosses:
+        if not find_jump(elements, spread, s, k, ends, jump):
             continue
-        x = np.zeros((3, n_x))
-        for a in range(n_x):
-            x[0, a], x[1, a] = ends[0, first_x + a], ends[1, first_x + a]
-        n_f = spread.f_start[k + 1] - spread.f_start[k]
-        f = np.zeros((3, n_f * (1 + n_x)))
-        if not turns_over(packed, s, k, x[0], x[1], f, n_f):
-            continue
-        put_force(packed, s, k, x[0], f[0])
-        put_force(packed, s, k, x[1], f[1])
-        close_in(packed, s, k, x, f, n_f)
-        for b in range(n_f):
-            jump = f[1, b] - f[0, b]
-            for a in range(n_x):
-                at = n_f + b * n_x + a
-                jump -= 0.5 * (f[0, at] + f[1, at]) * (x[1, a] - x[0, a])
-            first = spread.f_start[k] + b
-            for j in range(spread.start[first], spread.start[first + 1]):
+        for b in range(spread.f_start[k], spread.f_start[k + 1]):
+            for j in range(spread.start[b], spread.start[b + 1]):
                 i = spread.dof[j]
-                push = abs(spread.coefficient[j] * jump) * packed.structure.mobility[i]
+                push = abs(spread.coefficient[j] * jump[b - spread.f_start[k]]) * packed.structure.mobility[i]
                 worst = max(worst, h * push / max(acc.v[i], abs(y.v[i]), acc.floor_v[i], 1e-290))
     return float(worst / acc.rtol)
