@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK
+from fricmb.integrate.run.told_once import told_once
+from fricmb.integrate.trajectory import Transitions
 
 
 @pytest.mark.parametrize("mu", [1e-7, 1e-5, 1e-2, 0.1, 1.0])
@@ -56,3 +60,62 @@ def test_a_short_stick_that_is_one_stays(rtol, method):
     sol = fm.simulate(scene, t_end=5.0, rtol=rtol, method=method)
     assert [e.kind for e in sol.events] == ["stick", "slip"]
     np.testing.assert_allclose(sol.events.t, [1.0, 1.0 + short / V], atol=1e-5 if rtol > 1e-9 else 1e-6)
+
+
+def thrown(start, omega, push, back, stiffness):
+    """A block that is thrown back as another body passes -0.1, and when that is (5,): times are those of a cosine."""
+    block = fm.Body("b", mass=1.0)
+    far = fm.Body("far", mass=1.0, position={"x": start}, velocity={"x": 1.0})
+    jump = sympy.Piecewise((push, fm.coordinate("far.x") > -0.1), (back, True))
+    parts = [
+        block,
+        far,
+        fm.Force("jump", block, axis="x", value=jump),
+        fm.Spring("swing", far, axis="x", stiffness=omega**2),
+        fm.Spring("k", block, axis="x", stiffness=stiffness),
+        fm.Contact("c", block, law=fm.laws.Coulomb(mu_s=0.5, mu_k=0.4), normal_force=1.0),
+    ]
+    size, phase = np.hypot(start, 1.0 / omega), np.arctan2(1.0 / omega, start)
+    return fm.Scene("thrown", parts), (np.arccos(-0.1 / size) + phase + 2.0 * np.pi * np.arange(5)) / omega
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_release_by_a_force_that_jumps_is_told_once(method):
+    """Let go by the force before the jump it set out to the other side, and turned round 3e-15 later."""
+    scene, passing = thrown(0.235, 18.276, 0.336, -1.26, 1.982)
+    sol = fm.simulate(scene, t_end=1.6, method=method)
+    assert [e.kind for e in sol.events] == ["slip", "stick"] * 4 + ["slip"]
+    np.testing.assert_allclose([e.t for e in sol.events if e.kind == "slip"], passing, rtol=1e-6)
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_step_that_ends_a_rounding_before_a_jump_goes_on(method):
+    """A step from there was cut at its own start, and tried again for ever."""
+    numbers = 0.3263040762290802, 6.733372708884099, 0.45064509371519856, -1.258579714902157, 1.6160096248055127
+    scene, passing = thrown(*numbers)
+    sol = fm.simulate(scene, t_end=6.0, method=method, time_limit=60)
+    assert sol.events[0].kind == "slip"
+    assert sol.events[0].t == pytest.approx(passing[0], rel=1e-7)
+
+
+def test_what_happens_at_one_instant_is_told_once():
+    """Of each contact by itself; what lasts is kept however short it is beside the run."""
+    slip, stick, reversal = EVENT_SLIP, EVENT_STICK, EVENT_REVERSAL
+
+    def told(*events):
+        t, contact, kind = (np.array(column) for column in zip(*events, strict=True))
+        found = told_once(Transitions(t=t, contact=contact, kind=kind), (0.0, 10.0))
+        return list(zip(found.t.tolist(), found.contact.tolist(), found.kind.tolist(), strict=True))
+
+    near = 1.0 + 1e-15
+    assert told((1.0, 0, slip), (near, 0, reversal), (2.0, 0, stick)) == [(1.0, 0, slip), (2.0, 0, stick)]
+    assert told((1.0, 0, reversal), (near, 0, stick)) == [(1.0, 0, stick)]
+    assert told((1.0, 0, reversal), (near, 0, reversal), (3.0, 0, stick)) == [(3.0, 0, stick)]
+    assert told((1.0, 0, slip), (1.0, 0, reversal), (near, 0, reversal)) == [(1.0, 0, slip)]
+    for events in (
+        [(1.0, 0, slip), (1.0, 1, reversal)],
+        [(1.0, 0, stick), (near, 0, slip)],
+        [(1.0, 0, slip), (1.0 + 1e-9, 0, reversal)],
+        [(1.0, 0, slip), (1.0 + 1e-12, 0, reversal), (1.0 + 1e-7, 0, stick)],
+    ):
+        assert told(*events) == events

@@ -59,6 +59,22 @@ def test_quakes_of_300_years_by_the_default_speed_of_rest(mass):
     assert not any("cannot lock" in note for note in sol.stats.notes)
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+@pytest.mark.parametrize(("mass", "inertia"), [(1e4, 3e-4), (100.0, 3e-6), (0.0, 2e-8)])
+def test_300_years_at_tight_tolerances_and_of_light_faults(mass, inertia, rtol):
+    """Balances of 3e7 N know slip of 1e-14 m/s by the law alone; ``inertia``: how much later mass lets it slip."""
+    slip, count = quasi_dynamic(300.0)
+    sol = fm.simulate(
+        fault(mass, v_rest=1e-20), t_end=300.0 * YEAR, rtol=rtol, initial={"state": {"c": [PSI]}}
+    )
+    assert quakes(sol) == count
+    assert sol["fault.x"][-1] == pytest.approx(slip, rel=inertia + rtol)
+    assert sol.audit().ok
+    force = STIFFNESS * (PLATE * sol.t + SHEAR / STIFFNESS - sol["fault.x"])
+    still = sol.velocity("fault.x") < 1e-3
+    assert np.abs(force + sol.force("c")[0])[still].max() < 30.0 * rtol * force.max()
+
+
 @pytest.mark.parametrize("v_rest", [1e-9, 1e-10, 1e-11])
 def test_a_speed_of_rest_near_that_of_the_drive_is_noted(v_rest):
     sol = fm.simulate(fault(1e4, v_rest=v_rest), t_end=300.0 * YEAR, initial={"state": {"c": [PSI]}})

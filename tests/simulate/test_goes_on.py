@@ -28,6 +28,29 @@ def test_a_run_cut_at_a_transition_joins_with_as_many(scene, t_end, method, rtol
         assert [(x.contact, x.kind) for x in fm.Solution.join([first, then]).events] == told, e
 
 
+def swung():
+    """A dry pendulum that a torque swings: its pin turns round under load without a stick."""
+    arm = fm.RigidBody("arm", mass=1.3, inertia=0.2, position=(0.7, 0.0), points={"pin": (-0.7, 0.0)})
+    law = fm.laws.Coulomb(mu_s=0.6, mu_k=0.5)
+    pin = fm.Revolute("pin", arm.point("pin"), radius=0.05, friction=law)
+    torque = fm.Torque("torque", arm, value=3.0 * sympy.sin(2.0 * fm.t))
+    return fm.Scene("swung", [arm, pin, fm.Gravity("g", acceleration={"y": -9.81}), torque])
+
+
+@pytest.mark.parametrize("short", [1e-10, 1e-12, 0.0, -1e-12])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_run_cut_just_short_of_a_reversal_tells_of_it_once(method, short):
+    """What slips on from what counts as rest begins there: it turned round three times before it had gone anywhere."""
+    one = fm.simulate(swung(), t_end=15.0, rtol=1e-8, method=method)
+    assert len(one.events) == 9
+    for e in one.events:
+        first = fm.simulate(swung(), t_end=e.t - short, rtol=1e-8, method=method)
+        then = fm.simulate(swung(), t_end=15.0, rtol=1e-8, method=method, initial=first)
+        both = fm.Solution.join([first, then])
+        assert len(both.events) == 9, e
+        assert both["arm.angle"][-1] == pytest.approx(one["arm.angle"][-1], rel=1e-7)
+
+
 def gripped(grip):
     """A body of mass 1 that a belt carries which slows down and turns round at t = 2; it rubs on the ground by 0.5."""
     a, belt = fm.Body("a", mass=1.0, velocity={"x": 0.2}), fm.Driven("belt", velocity={"x": 0.2 - 0.1 * fm.t})

@@ -22,7 +22,7 @@ from fricmb.integrate.constrained.recorder import Record, crowded
 from fricmb.integrate.constrained.singular_position import start_watch, starts_dependent
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import Instant, State
-from fricmb.integrate.constrained.transition import let_go, take_given
+from fricmb.integrate.constrained.transition import bring_to_rest, let_go, take_given
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import Differences, hand_over, is_slower, may_begin
@@ -75,8 +75,9 @@ def begin(
         if margins(mech, k, w, y, out, True) <= 0.0:
             return FAIL_MARGIN
         return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
-    # what sticks moves by nothing, not by the round-off of velocities that have been given or projected
-    if not (project_velocities(mech, k, w, y, False, True) and react(mech, k, w, y, False)):
+    # what sticks, or sets out from rest, moves by nothing: not by the round-off of velocities given or projected, nor
+    # by what a run that ended on the way into rest has left
+    if not (bring_to_rest(mech, k, w, y, part) and react(mech, k, w, y, False)):
         return FAIL_MODES
     grow(mech, c, out, k, y)
     out.top_slip = max(out.top_slip, reach * np.sqrt(most_light(mech, k, y)))

@@ -156,6 +156,9 @@ def advance(
             knot, contact = bend, -1
     if knot < 1.0 and (error <= 1.0 or knot * h < wanted) and (contact < 0 or knot < clock.found[0]):
         clock.knot = t + knot * h
+        if not clock.knot > t:
+            # a bend so near that no step ends before it: asked for again it would be as near
+            return end_round_off(packed, s, y, r, old, out, clock)
         return reject(clock, one, h)
     if contact < 0 and error <= 1.0:
         if end.fault > 0.0:

@@ -25,7 +25,8 @@ from fricmb.integrate.problem import (
     Ints,
     Problem,
 )
-from fricmb.integrate.trajectory import MotionSamples, Samples, Trajectory
+from fricmb.integrate.run.told_once import told_once
+from fricmb.integrate.trajectory import MotionSamples, Samples, Trajectory, Transitions
 
 _Samples = TypeVar("_Samples", bound=MotionSamples)
 
@@ -38,17 +39,19 @@ LONG = 0.5
 
 
 class WithoutTouches(Trajectory):
-    """A run in which contacts slip on where they only touched rest: ``contact``, ``begin``, ``end`` (k,) of each."""
+    """A run in which contacts slip on where they only touched rest: ``contact``, ``begin``, ``end`` (k,) of each.
 
-    def __init__(self, held: Trajectory, contact: Ints, begin: Floats, end: Floats) -> None:
+    ``told``: its transitions, of which those of the touches go.
+    """
+
+    def __init__(self, held: Trajectory, told: Transitions, contact: Ints, begin: Floats, end: Floats) -> None:
         self.held = held
         self.contact, self.begin, self.end_of_touch = contact, begin, end
-        kept = np.ones(held.transitions.t.size, dtype=bool)
+        kept = np.ones(told.t.size, dtype=bool)
         for c, first, last in zip(contact, begin, end, strict=True):
-            t, which = held.transitions.t, held.transitions.contact
-            kept &= (which != c) | (t < first) | (t > last)
-        t, which, kind = (getattr(held.transitions, name)[kept] for name in ("t", "contact", "kind"))
-        self.transitions = replace(held.transitions, t=t, contact=which, kind=kind)
+            kept &= (told.contact != c) | (told.t < first) | (told.t > last)
+        t, which, kind = (getattr(told, name)[kept] for name in ("t", "contact", "kind"))
+        self.transitions = replace(told, t=t, contact=which, kind=kind)
         self.counters, self.end, self.failure = held.counters, held.end, held.failure
         self.moving, self.instead, self.of_scene = held.moving, held.instead, held.of_scene
 
@@ -110,18 +113,27 @@ def is_continuous(contacts: Contacts) -> NDArray[np.bool_]:
 
 
 def without_touches(trajectory: Trajectory, row: Ints, continuous: NDArray[np.bool_], rtol: float) -> Trajectory:
-    """The run, or the same without its touches where it has some; ``row``: of its contacts among rows of slip."""
-    if not continuous.any():
-        return trajectory
+    """The run, or the same without its touches where it has some, and with what happens at one instant told once.
+
+    ``row``: of its contacts among rows of slip.
+    """
+    told = told_once(trajectory.transitions, trajectory.ends)
     found = [
         touch
-        for c in np.unique(trajectory.transitions.contact).tolist()
+        for c in np.unique(told.contact).tolist()
         if c < continuous.size and continuous[c]
-        for touch in _candidates(trajectory, c, rtol)
+        for touch in _candidates(told, trajectory.ends, c, rtol)
     ]
-    if not found:
-        return trajectory
     contact = np.array([touch.contact for touch in found], dtype=np.int64)
+    begin, end = np.array([touch.begin for touch in found]), np.array([touch.end for touch in found])
+    touches = _are_touches(trajectory, found, row, rtol) if found else np.zeros(0, dtype=bool)
+    if told is trajectory.transitions and not touches.any():
+        return trajectory
+    return WithoutTouches(trajectory, told, contact[touches], begin[touches], end[touches])
+
+
+def _are_touches(trajectory: Trajectory, found: list[Touch], row: Ints, rtol: float) -> NDArray[np.bool_]:
+    """Which of some short sticks are touches, (k,)."""
     begin, end = np.array([touch.begin for touch in found]), np.array([touch.end for touch in found])
     half = 0.5 * (end - begin)
     last = trajectory.ends[1]
@@ -130,14 +142,12 @@ def without_touches(trajectory: Trajectory, row: Ints, continuous: NDArray[np.bo
     ways = [trajectory.motion(np.array([getattr(touch, name) for touch in found])).g for name in ("before", "after")]
     fastest = _fastest(trajectory, row)
     touches = np.zeros(len(found), dtype=bool)
-    for i, c in enumerate(contact.tolist()):
+    for i, c in enumerate(touch.contact for touch in found):
         rows = slice(int(row[c]), int(row[c + 1]))
         size = max(float(np.linalg.norm(g[rows, i])) for g in deep)
         goes_on = float(ways[0][rows, i] @ ways[1][rows, i]) > 0.0
         touches[i] = goes_on and size <= DEEP * rtol * fastest[c]
-    if not touches.any():
-        return trajectory
-    return WithoutTouches(trajectory, contact[touches], begin[touches], end[touches])
+    return touches
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,11 +161,11 @@ class Touch:
     after: float
 
 
-def _candidates(trajectory: Trajectory, c: int, rtol: float) -> list[Touch]:
+def _candidates(told: Transitions, ends: tuple[float, float], c: int, rtol: float) -> list[Touch]:
     """Short sticks of contact c after a longer slip, and short slip back."""
-    mine = trajectory.transitions.contact == c
-    t, kind = trajectory.transitions.t[mine], trajectory.transitions.kind[mine]
-    first, last = trajectory.ends
+    mine = told.contact == c
+    t, kind = told.t[mine], told.kind[mine]
+    first, last = ends
     since, until = np.concatenate([[first], t[:-1]]), np.append(t[2:], [last, last])[: t.size]
     brief = np.diff(t, append=np.inf) < LONG * np.sqrt(rtol) * (t - since)
     then = np.append(kind[1:], -1)

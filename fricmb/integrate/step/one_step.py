@@ -11,7 +11,7 @@ from fricmb.integrate.model.forces import Scratch, normal_force, powers, set_ins
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import Floats
+from fricmb.integrate.problem import LAW_SMOOTH, Floats
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, is_exact, widest
 from fricmb.integrate.step.stage_predictor import start_at_rest, start_on_last
 from fricmb.integrate.step.stages import Stages, solve_stages
@@ -20,6 +20,22 @@ from fricmb.integrate.step.step_matrix import prepare
 
 #: Part of the round-off of velocities that a step is solved to.
 BARE = 0.1
+
+
+@kernel
+def slip_way(packed: Packed, acc: Accuracy, y: State, k: int, h: float) -> float:
+    """Size of the way that contact k slips: that of the positions, or what a step h from y may add.
+
+    In a step that is long beside it, slip that velocities do not show moves a body, and its springs, by more than the
+    tolerance of positions.
+    """
+    way = 0.0
+    for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
+        here = h * abs(y.g[a])
+        for i in range(y.q.shape[0]):
+            here += abs(packed.ports.W[i, a]) * (acc.q[i] + h * (acc.floor_v[i] + h * abs(y.a[i])))
+        way = max(way, here)
+    return way
 
 
 @kernel
@@ -42,6 +58,9 @@ def newton_tolerances(
     n_c = acc.r.shape[0]
     for k in range(n_c):
         tol[k] = relative * max(acc.r[k], 1e-8 * moving, acc.noise, 1e-290)
+        if packed.ports.law[k] == LAW_SMOOTH:
+            tol[k] = min(tol[k], relative * slip_way(packed, acc, y, k, h) / h)
+            continue
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
             for i in range(scale.shape[0]):
                 tol[k] = max(tol[k], BARE * abs(packed.ports.W[i, a]) * acc.grain[i])

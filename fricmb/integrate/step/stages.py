@@ -16,7 +16,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.model.forces import Scratch, belt_velocity, normal_force, set_instant, structure_force
 from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.problem import Codes, Complexes2, Floats, Floats2, Problem
+from fricmb.integrate.problem import LAW_SMOOTH, Codes, Complexes2, Floats, Floats2, Problem
 from fricmb.integrate.step.contact_convergence import share_noise
 from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.contact_unknowns import PortState
@@ -160,6 +160,34 @@ def stiffness(packed: Packed, fac: Factor, hA: Floats2) -> float:
     return most / STIFF
 
 
+@kernel
+def follow_slip(packed: Packed, s: Scratch, st: Stages, w: PortState, mode: Codes) -> None:
+    """Velocities of what smooth laws hold more firmly than inertia does, by the slip that has been solved for.
+
+    By the sum of forces they are known to the round-off of forces times h/m, which such a law would turn into a force
+    that is quite wrong: the balance of 3e7 N tells 1e-9 m/s, at which rock creeps, only of what is heavy.  The bodies
+    of a contact take their parts of the difference by how easily they move.
+    """
+    ports, mobility = packed.ports, packed.structure.mobility
+    mi, n = w.Fin.shape[1], mobility.shape[0]
+    for k in range(mode.shape[0]):
+        if ports.law[k] != LAW_SMOOTH:
+            continue
+        for a in range(ports.row[k], ports.row[k + 1]):
+            ease, own = 0.0, a - ports.row[k]
+            for b in range(n):
+                ease += mobility[b] * ports.W[b, a] ** 2
+            for i in range(st.V.shape[0]):
+                if ease == 0.0 or w.G[i * mi + a, i * mi + a] * w.L[i, k, own, own] > -1.0:
+                    continue
+                set_instant(packed.signals, s, st.t[i], st.Q[i], st.V[i])
+                off = w.g[i, a] + belt_velocity(ports, s, n, a)
+                for b in range(n):
+                    off -= ports.W[b, a] * st.V[i, b]
+                for b in range(n):
+                    st.V[i, b] += mobility[b] * ports.W[b, a] * off / ease
+
+
 @block
 def solve_stages(
     packed: Packed,
@@ -239,6 +267,7 @@ def solve_stages(
         last = change
         if iteration == 11:
             return -1
+    follow_slip(packed, s, st, w, mode)
     sound = 0.0
     for i in range(n_s):
         for a in range(n):

@@ -1,0 +1,55 @@
+"""What happens at one instant is told once: slip that sets out to the wrong side, or turns round as it comes to rest.
+
+A contact that a jump of force releases may be let go by the force before the jump and turn round behind it, and
+round-off of slip may change its sign just before it ends.  Between two such transitions nothing has moved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, Floats, Ints
+from fricmb.integrate.trajectory import Transitions
+
+#: One instant, as a part of the run, and of the time until the contact's next transition.
+AT_ONCE, BRIEF = 1e-12, 1e-6
+#: What two transitions of a contact at one instant are together; none where slip goes on as before.
+_TOGETHER = {
+    (EVENT_SLIP, EVENT_REVERSAL): EVENT_SLIP,
+    (EVENT_REVERSAL, EVENT_STICK): EVENT_STICK,
+    (EVENT_REVERSAL, EVENT_REVERSAL): None,
+}
+
+
+def told_once(transitions: Transitions, ends: tuple[float, float]) -> Transitions:
+    """The same transitions where none are at one instant; ``ends`` of the run."""
+    if transitions.t.size < 2 or not (np.diff(np.sort(transitions.t)) <= AT_ONCE * (ends[1] - ends[0])).any():
+        return transitions
+    kept, kind = np.ones(transitions.t.size, dtype=bool), transitions.kind.copy()
+    for c in np.unique(transitions.contact):
+        _join(np.flatnonzero(transitions.contact == c), transitions.t, ends, kept, kind)
+    if kept.all():
+        return transitions
+    return replace(transitions, t=transitions.t[kept], contact=transitions.contact[kept], kind=kind[kept])
+
+
+def _join(mine: Ints, t: Floats, ends: tuple[float, float], kept: NDArray[np.bool_], kind: Ints) -> None:
+    """Join those of one contact, at the places ``mine``: the first of two stays, as what both are, or neither."""
+    told: list[int] = []
+    for i, following in zip(mine.tolist(), [*t[mine[1:]].tolist(), ends[1]], strict=True):
+        told.append(i)
+        if len(told) < 2:
+            continue
+        first, apart = told[-2], t[i] - t[told[-2]]
+        pair = int(kind[first]), int(kind[i])
+        if pair not in _TOGETHER or not apart <= min(AT_ONCE * (ends[1] - ends[0]), BRIEF * (following - t[i])):
+            continue
+        both = _TOGETHER[pair]
+        kept[told.pop()] = False
+        if both is None:
+            kept[told.pop()] = False
+        else:
+            kind[first] = both
