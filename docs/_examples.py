@@ -159,6 +159,16 @@ sol = fm.simulate(scene, t_end=3.0)
 print(sol.touches("ends").begin.round(4), sol.touches("ends").side)
 figure = scene.draw()
 """,
+    "ImpactLaw": """
+lower = fm.Body("lower", mass=1.0, axes="y", position={"y": 1.0}, velocity={"y": -1.0})
+upper = fm.Body("upper", mass=2.0, axes="y", position={"y": 2.0}, velocity={"y": -1.0})
+floor = fm.Stop("floor", lower, axis="y", lower=0.0, restitution=0.5)
+touch = fm.Stop("touch", upper, lower, axis="y", lower=1.0, restitution=1.0)
+for law in ("newton", "poisson"):
+    scene = fm.Scene("two balls", [lower, upper, floor, touch, fm.ImpactLaw("impacts", law=law)])
+    sol = fm.simulate(scene, t_end=1.5)
+    print(law, sol.impulse("floor").normal, sol.impulse("touch").normal)
+""",
     "Backlash": """
 import sympy
 

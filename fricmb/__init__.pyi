@@ -36,6 +36,7 @@ from .scene import Fixed as Fixed
 from .scene import Force as Force
 from .scene import Gear as Gear
 from .scene import Gravity as Gravity
+from .scene import ImpactLaw as ImpactLaw
 from .scene import Joint as Joint
 from .scene import MatrixElement as MatrixElement
 from .scene import ModalBody as ModalBody

@@ -15,6 +15,7 @@ from fricmb.field._statements import Statements
 from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
+from fricmb.scene import impact_law
 
 #: Momentum that may be missing of an impact, and velocities by which its law may be missed, beside the largest.
 MOMENTUM, LAW = 1e-12, 1e-9
@@ -25,6 +26,7 @@ class Impacts:
 
     def __init__(self, statements: Statements, units: Units, gathered: Gathered, rows: Samples) -> None:
         self.statements, self.units, self.gathered, self.rows = statements, units, gathered, rows
+        self.poisson = impact_law(statements.scene.parts) == "poisson"
         self.rigid = {joint.name: joint for joint in statements.joints if joint.impact is not None}
 
     def look(self, events: Any) -> Ints:
@@ -91,7 +93,10 @@ class Impacts:
         ends = any(abs(rest - t) <= ROUND_OFF * abs(t) for rest in rests.get((hit.contact, hit.side), ()))
         wanted = 0.0 if ends else -e * min(a, 0.0)
         size = abs(a) + speed + self._grain(joint, before)
-        self.gathered.add("law of impact", [abs(b - wanted) / (LAW * size)], t, hit.contact)
+        # of impulses that are shared Poisson's law says no speed of a contact: it may leave, and does not go in
+        shared = self.poisson and (hit.others > 0 or len(rates) > 1)
+        missed = max(-b, 0.0) if shared else abs(b - wanted)
+        self.gathered.add("law of impact", [missed / (LAW * size)], t, hit.contact)
         if len(rates) == 1 or ends:
             return
         slip_before, slip, along = rates[1]
@@ -99,6 +104,8 @@ class Impacts:
             mu = float(self.statements.contacts[joint.contact].law.numeric().slip_limit())
         over = max(abs(along) - mu * hit.impulse, 0.0) / (LAW * hit.impulse)
         self.gathered.add("cone in impacts", [over], t, hit.contact)
+        if self.poisson:  # slip may turn round between the two phases
+            return
         xi = slip + e_t * slip_before
         sticks = abs(xi) <= LAW * (abs(slip_before) + size) * LIMIT
         against = abs(along + np.sign(xi) * mu * hit.impulse) / (LAW * hit.impulse)

@@ -145,6 +145,8 @@ class Mechanism:
     slip : Templates
         Of every contact that is no joint the form of its slip velocity (address 0; one form an entry), of others an
         empty one.
+    poisson : bool
+        Whether impacts obey Poisson's law in place of Newton's.
     """
 
     n: int
@@ -158,6 +160,7 @@ class Mechanism:
     joints: Joints
     slip: Templates
     least_mass: Floats = field(default_factory=lambda: _f(0))
+    poisson: bool = False
 
     @property
     def has_impacts(self) -> bool:

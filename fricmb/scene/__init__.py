@@ -14,6 +14,7 @@ from fricmb.scene._expressions import Uses, check_expression, expression_uses
 from fricmb.scene._force import Force
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._gear import Gear
+from fricmb.scene._impact_law import ImpactLaw, impact_law
 from fricmb.scene._joint import Joint
 from fricmb.scene._joints import Fixed, Prismatic, Revolute, Rod
 from fricmb.scene._matrix import MatrixElement
@@ -56,6 +57,7 @@ __all__ = [
     "Gravity",
     "Ground",
     "GroundPoint",
+    "ImpactLaw",
     "Joint",
     "LinearForm",
     "Loop",
@@ -92,6 +94,7 @@ __all__ = [
     "direction",
     "expression_uses",
     "ground_point",
+    "impact_law",
     "modal_matrices",
     "parameter",
     "parameter_unit",

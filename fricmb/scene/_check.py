@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fricmb.errors import SceneError, UnknownNameError, shown, unknown_name
 from fricmb.scene._expressions import Uses
+from fricmb.scene._impact_law import check_impact_law
 from fricmb.scene._matrix import MatrixElement
 from fricmb.scene._part import GROUND, End, Ground, Part
 from fricmb.scene._space_body import SpaceBody
@@ -34,6 +35,7 @@ def check_scene(scene: Scene) -> None:
                 _check_end(scene, part, end, label)
     if any(isinstance(part, SpaceBody) for part in scene.parts):
         _check_gravity(scene)
+    check_impact_law(scene)
     values: dict[str, float] = {}
     for part in scene.parts:
         uses = part.uses()

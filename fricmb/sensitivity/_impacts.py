@@ -22,6 +22,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
+from fricmb.scene import impact_law
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._found import Held, at, total
 from fricmb.sensitivity._happenings import Happening
@@ -165,9 +166,14 @@ class Impacts:
 
 
 def check_open(piece: Any, struck: Mapping[str, Struck]) -> None:
-    """Refuse runs in which something stays on a surface that it bounces on."""
+    """Refuse runs in which something stays on a surface that it bounces on, and impacts by Poisson's law."""
     if not struck:
         return
+    if impact_law(piece.mechanics.placed.parts) != "newton":
+        raise SceneError(
+            f"sensitivities: {next(iter(struck))!r} bounces by Poisson's law; there are derivatives where surfaces with"
+            " restitution bounce by Newton's"
+        )
     rows = piece.rows()
     reactions = piece.mechanics.reactions(rows)
     for name in struck:

@@ -24,6 +24,7 @@ from fricmb.scene import (
     ModalBody,
     RigidBody,
     SpaceBody,
+    impact_law,
     topology,
 )
 from fricmb.system import _motions
@@ -88,6 +89,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         joints=joints.build(n_y, n_u),
         slip=contacts.slip_table(n_y, n_u),
         least_mass=_least_mass(parts, index, n),
+        poisson=impact_law(scene.parts) == "poisson",
     )
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from fricmb.errors import unknown_name
-from fricmb.integrate.mechanism import Mechanism
+from fricmb.integrate.mechanism import RIGID, Mechanism
 from fricmb.integrate.model.table_values import _each
-from fricmb.integrate.problem import OPEN, Floats, Start
+from fricmb.integrate.problem import OPEN, Codes, Floats, Start
 from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._system import System
 from fricmb.system._tables import Row
@@ -111,9 +111,27 @@ class MechanismSystem(System):
         rubs = np.flatnonzero((joints.hands_over != 0) & (joints.port >= 0))
         opened[:, rubs] |= (samples.mode[joints.port[rubs]] == OPEN).T
         # friction tells the direction of slip also where velocities are round-off
-        found = complete_open(self.problem, opened, samples.t, q, v, z, samples.mode.T, force, still=np.inf)
-        lam = self._least_norm(samples, found[3])
+        mode = samples.mode.T
+        lam = complete_open(self.problem, opened, samples.t, q, v, z, mode, force, still=np.inf)[3]
+        while self._open_what_pulls(opened, lam):
+            lam = complete_open(self.problem, opened, samples.t, q, v, z, mode, force, still=np.inf)[3]
+        lam = self._least_norm(samples, lam)
         return {name: lam[a:b] for name, (a, b) in zip(joints.names, pairwise(joints.row), strict=True)}
+
+    def _open_what_pulls(self, opened: Codes, lam: Floats) -> bool:
+        """Mark as open (n_t, n_j) the rigid joint that would pull most at each time; whether there was any.
+
+        What leaves at once behind an impact without restitution is neither away yet nor leaves with a speed.
+        """
+        joints = self.mechanism.joints
+        rigid = np.flatnonzero((joints.hands_over == RIGID) & (joints.port < 0))
+        if not rigid.size:
+            return False
+        force = np.where(opened[:, rigid] == 0, lam[joints.row[rigid]].T, 0.0)
+        worst = force.argmin(axis=1)
+        pulls = np.flatnonzero(force.min(axis=1) < 0.0)
+        opened[pulls, rigid[worst[pulls]]] = 1
+        return bool(pulls.size)
 
     def _directions(self, samples: MotionSamples) -> Floats:
         """Unit vectors of slip (m_p, n_t): against friction, or along the slip velocity where there is none."""

@@ -101,6 +101,14 @@ def test_an_unknown_name_of_an_impulse_lists_those_there_are():
         fm.simulate(scene(), t_end=1.0).impulse("end")
 
 
+def test_what_leaves_at_once_is_not_pulled():
+    """Without restitution the block stands at the stop for an instant, and the spring takes it away."""
+    sol = fm.simulate(scene(0.0), t_end=3.0)
+    assert sol.reaction("ends").min() >= 0.0
+    assert np.abs(sol.reaction("ends")).max() == 0.0
+    assert sol.audit().ok
+
+
 @pytest.mark.parametrize(
     ("column", "check"), [("normal", "momentum in impacts"), ("loss", "loss of impacts")]
 )  # fmt: skip

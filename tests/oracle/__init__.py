@@ -10,7 +10,7 @@ of itself (``define_force``, ``define_rate``, ``define_coefficient``).
 ``judge``     the error of a run of fricmb over its tolerance and the growth of errors
 ``table``     every law, five situations;  ``random_scenes``  scenes from seeds;  ``known``  cells that still fail
 ``inputs``    fast and brief functions of time;  ``feet``, ``driven``, ``drives``, ``groups``  more kinds of scenes
-``impacts``   scenes with impacts;  ``struck``, ``bounces``, ``struck_judge``  a program of their own and its judge
+``impacts``   scenes with impacts;  ``struck``, ``hits``, ``bounces``, ``struck_judge``  their program and judge
 ``machines``  several parts in a row
 ``units``     scenes in other units, and beside idle bodies;  ``drawn``  what draws them
 """

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
+from .hits import Instant
 from .problem import OPEN, SLIP, STICK, OracleError
 from .struck import NONE, Bouncing, Impact, Modes, Struck, Surface, still
 
@@ -178,6 +179,8 @@ class Program(Modes):
             self.motion.impacts.append(Impact(t, self.p.surfaces[i].name, -rates[i]))
             self.hits[i].append(t)
         left, ending = self.ending(hit)
+        if ending:
+            self.motion.ends.append(t + left)
         members, rested = sorted({*members, *ending}), [self.rests(i) for i in range(self.k)]
         self.y = y.copy()
         self.y[self.n :] = self.behind(members, ending)
@@ -195,90 +198,40 @@ class Program(Modes):
     def ending(self, hit: list[int]) -> tuple[float, frozenset[int]]:
         """Time left of a series and the surfaces that come to rest with it; none where none does."""
         for i in hit:
-            if len(self.hits[i]) < 3:
+            if len(self.hits[i]) < 4:
                 continue
-            first, second, third = self.hits[i][-3:]
-            d, e = second - first, third - second
-            if e < SHORT and e < 0.999 * d:
-                ratio = e / d
+            c, d, e = np.diff(self.hits[i][-4:])
+            if min(c, d) <= 0.0:
+                continue
+            ratio, before = float(e / d), float(d / c)
+            second = self.hits[i][-2]
+            if e < SHORT and ratio < 0.999 and abs(ratio - before) < 0.3 * before:
                 lately = [j for j in range(self.k) if self.hits[j] and self.hits[j][-1] >= second]
-                return e * ratio / (1.0 - ratio), frozenset(lately)
+                return float(e) * ratio / (1.0 - ratio), frozenset(lately)
         return 0.0, frozenset()
 
     def behind(self, members: list[int], ending: frozenset[int]) -> np.ndarray:
-        """Velocities by Newton's and Moreau's law; what comes to rest is not thrown back."""
+        """Velocities by the law of impact; what comes to rest is not thrown back."""
         t, q, v = self.t, self.y[: self.n], self.y[self.n :]
         normals = np.array([self.p.surfaces[i].row(q) for i in members])
         alongs = np.array([np.zeros(self.n) if s.along is None else s.along(q) for s in self.taken(members)])
         rates = np.array([self.speeds(t, self.y, i)[1:] for i in members])
         e = np.array([0.0 if i in ending else self.p.surfaces[i].e for i in members])
         e_t = np.array([0.0 if i in ending else self.p.surfaces[i].e_t for i in members])
-        aim = np.stack([-e * np.minimum(rates[:, 0], 0.0), -e_t * rates[:, 1]], axis=1)
-        mu = np.array([s.mu_k for s in self.taken(members)])
-        size = float(np.abs(rates).max()) + 1e-300
-        found: list[np.ndarray] = []
-        for doing in product(*(("hold", "stick", "on", "back", "free") if m else ("hold", "free") for m in mu)):
-            after = self.tried(doing, normals, alongs, rates, aim, mu, size)
-            if after is not None and all(np.abs(after - other).max() > 1e-6 * size for other in found):
-                found.append(after)
-        if len(found) != 1:
-            raise OracleError(f"{len(found)} solutions of the law of impact at t = {t}")
-        loss = float(v @ self.p.M @ v - (v + found[0]) @ self.p.M @ (v + found[0]))
-        if loss < 0.0 and all(s.moves is still for s in self.taken(members)) and -loss > 1e-9 * float(v @ v):
+        inside = Instant(
+            normals=normals, alongs=alongs, rates=rates, mu=np.array([s.mu_k for s in self.taken(members)]),
+            inverse=self.inverse,
+        )  # fmt: skip
+        after = v + (inside.poisson(e) if self.p.poisson else inside.newton(e, e_t))
+        gain = float(after @ self.p.M @ after - v @ self.p.M @ v)
+        still_here = all(s.moves is still and s.slides(t)[0] == 0.0 for s in self.taken(members))
+        if still_here and gain > 1e-9 * float(v @ v):
             raise OracleError(f"an impact gains energy at t = {t}")
-        return np.asarray(v + found[0])
+        return np.asarray(after)
 
     def taken(self, members: list[int]) -> list[Surface]:
         """These surfaces."""
         return [self.p.surfaces[i] for i in members]
-
-    def tried(
-        self, doing: tuple[str, ...], normals: np.ndarray, alongs: np.ndarray, rates: np.ndarray, aim: np.ndarray,
-        mu: np.ndarray, size: float,
-    ) -> np.ndarray | None:  # fmt: skip
-        """The jump of velocities where nothing of it contradicts; "hold" is what slips without friction."""
-        columns, rows, wanted, owners = [], [], [], []
-        for k, what in enumerate(doing):
-            if what == "free" or (what == "hold" and mu[k] > 0.0):
-                if what == "free":
-                    continue
-                return None
-            sign = {"on": 1.0, "back": -1.0}.get(what, 0.0)
-            columns.append(normals[k] - sign * mu[k] * alongs[k])
-            rows.append(normals[k])
-            wanted.append(aim[k, 0] - rates[k, 0])
-            owners.append((k, 0))
-            if what == "stick":
-                columns.append(alongs[k])
-                rows.append(alongs[k])
-                wanted.append(aim[k, 1] - rates[k, 1])
-                owners.append((k, 1))
-        push, jump = np.zeros((len(doing), 2)), np.zeros(self.n)
-        if rows:
-            A, B = np.array(rows), np.array(columns).T
-            try:
-                impulse = self.solved(A @ self.inverse @ B, np.array(wanted))
-            except np.linalg.LinAlgError:
-                return None
-            jump = self.inverse @ (B @ impulse)
-            for owner, value in zip(owners, impulse, strict=True):
-                push[owner] = value
-        xi = np.stack([rates[:, 0] + normals @ jump, rates[:, 1] + alongs @ jump], axis=1) - aim
-        small, little = 1e-11 * size, 1e-11 * (np.abs(push).max() + 1e-300)
-        stuck = [k for k, what in enumerate(doing) if what == "stick"]
-        most, takes = float((mu * push[:, 0])[stuck].sum()), abs(float(push[stuck, 1].sum()))
-        if stuck and takes > most + little:
-            return None
-        if len(stuck) == 1 and takes > most + little:
-            return None
-        for k, what in enumerate(doing):
-            if what == "free" and xi[k, 0] < -small:
-                return None
-            if what != "free" and push[k, 0] < -little:
-                return None
-            if what in ("on", "back") and xi[k, 1] * {"on": 1.0, "back": -1.0}[what] < -small:
-                return None
-        return jump
 
     def settle(self, free: frozenset[int], gone: frozenset[int], shut: frozenset[int] = frozenset()) -> None:
         """Modes that fit from here on; ``free`` is not held any longer, ``gone`` does not stick, ``shut`` is held."""
@@ -302,9 +255,19 @@ class Program(Modes):
         differ = any(np.abs(item[1] - best[0][1]).max() > 1e-6 * (1.0 + np.abs(item[1]).max()) for item in found)
         if several or (differ and not static):
             raise OracleError(f"several consistent sets of modes at t = {t}")
-        _, _, self.modes, self.signs = best[0]
+        _, a, self.modes, self.signs = best[0]
+        self.check_shares(a)
         for i in range(self.k):
             self.zero[i] = self.speeds(t, y, i)[0] if self.modes[i] == OPEN and lies[i] else 0.0
+
+    def check_shares(self, a: np.ndarray) -> None:
+        """An error where several dry parts at rest hold something together, with more friction at rest than in slip."""
+        v = self.y[self.n :]
+        calm = [abs(float(d.row @ v)) <= NONE >= abs(float(d.row @ a)) for d in self.p.dries]
+        stay = [i for i, rests in enumerate(calm) if rests]
+        odd = [i for i in stay if self.modes[self.k + i] == SLIP and self.p.dries[i].static > self.p.dries[i].kinetic]
+        if odd and len(stay) > 1:
+            raise OracleError(f"shares of dry friction at rest at t = {self.t}")
 
     def candidates(self, free: frozenset[int], gone: frozenset[int]) -> Iterator[tuple[list[int], list[float]]]:
         """All sets of modes that velocities allow."""

@@ -93,7 +93,8 @@ def noted(path: Path | None, found: Found) -> None:
 
 #: Modules whose text decides what the oracle says of given numbers.
 DECIDING = (
-    "problem", "laws", "loads", "instant", "motion", "slow", "turning", "run", "struck", "bounces", "struck_judge",
+    "problem", "laws", "loads", "instant", "motion", "slow", "turning", "run", "struck", "hits", "bounces",
+    "struck_judge",
 )  # fmt: skip
 
 

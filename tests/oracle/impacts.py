@@ -37,6 +37,12 @@ def dry_of(rng: Generator, size: float) -> list[float]:
     return [0.0, 0.0] if rng.random() < 0.33 else [round(size * mu, 4) for mu in limits(rng, 0.1, 0.8)]
 
 
+def poisson(rng: Generator) -> Drawn:
+    """The same by Poisson's law, without restitution along slip."""
+    drawn = impacts(rng)
+    return Drawn("poisson", "impacts", {**drawn.n, "e_t": 0.0, "poisson": True})
+
+
 # -- blocks in line ---------------------------------------------------------------------------------------------
 def draw_blocks(rng: Generator) -> dict[str, Any]:
     """One to three blocks with springs, loads and dry friction; stops, play and bumpers."""
@@ -327,7 +333,11 @@ SITUATIONS: dict[str, tuple[Draw, Callable[[dict[str, Any]], Hard]]] = {
 
 def impacts_case(n: dict[str, Any]) -> Hard:
     """Both forms."""
-    return replace(SITUATIONS[n["situation"]][1](n), name=n["situation"])
+    case = replace(SITUATIONS[n["situation"]][1](n), name=n["situation"])
+    if not n.get("poisson"):
+        return case
+    scene = fm.Scene(case.scene.name, [*case.scene.parts, fm.ImpactLaw("impacts", law="poisson")])
+    return replace(case, scene=scene, problem=replace(case.problem, poisson=True))
 
 
 MAKERS = {"impacts": impacts_case}

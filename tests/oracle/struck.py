@@ -75,6 +75,8 @@ class Struck:
     dries: tuple[Dry, ...] = ()
     longest: float = np.inf
     scale: float = 1.0
+    poisson: bool = False
+    """Whether impulses are given back in place of speeds."""
 
 
 @dataclass(frozen=True)
@@ -88,10 +90,14 @@ class Impact:
 
 @dataclass
 class Bouncing(Motion):
-    """A motion with impacts; ``rests``: when and which surface has come to rest, and is pressed on."""
+    """A motion with impacts; ``rests``: when and which surface has come to rest, and is pressed on.
+
+    ``ends``: when series of impacts are over.
+    """
 
     impacts: list[Impact] = field(default_factory=list)
     rests: list[tuple[float, str]] = field(default_factory=list)
+    ends: list[float] = field(default_factory=list)
 
 
 class Modes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,10 +11,12 @@ import numpy as np
 from .bounces import Program, bounced
 from .judge import BAR, DELTA, UNRULY, Case, Outcome, Truth, Verdict, scale_of
 from .problem import OracleError
-from .struck import Bouncing, Struck
+from .struck import Bouncing, Impact, Struck
 
 #: Impacts slower than some speed between these are not compared one by one.
 SLOW = (1e-3, 3e-2)
+#: Impacts so shortly before the end of a series, in parts of the run, are not compared either.
+LATE = 1e-5
 #: Rests that are over sooner, in parts of the run, are not looked at; of those that last distances and rates are less.
 LASTS, NEAR = 1e-3, 2e-9
 
@@ -40,11 +43,10 @@ class Known(Truth):
         """Errors of motion and of times, over rtol and growth; impacts and rests too many or missing."""
         off, wrong = self.off(found, BAR * rtol * self.growth), 0
         span, why = self.case.problem.t_end, []
-        mine = hits(self.motion, self.slow)
-        theirs: dict[str, list[float]] = {}
-        for (name, t), approach in zip(found.impacts, found.approach, strict=True):
-            if approach > self.slow:
-                theirs.setdefault(name, []).append(t)
+        rests = self.motion.ends
+        mine = hits(self.motion.impacts, self.slow, rests, LATE * span)
+        heard = [Impact(t, name, v) for (name, t), v in zip(found.impacts, found.approach, strict=True)]
+        theirs = hits(heard, self.slow, rests, LATE * span)
         for name in mine.keys() | theirs.keys():
             a, b = mine.get(name, []), theirs.get(name, [])
             if len(a) != len(b):
@@ -96,11 +98,11 @@ def away(t: np.ndarray, events: list[float], distance: float) -> Any:
     return np.array([all(abs(s - e) > distance for e in events) for s in t])
 
 
-def hits(motion: Bouncing, slow: float) -> dict[str, list[float]]:
-    """Times of impacts faster than that, surface by surface."""
+def hits(impacts: list[Impact], slow: float, rests: Iterable[float] = (), late: float = 0.0) -> dict[str, list[float]]:
+    """Times of impacts faster than that, and not so shortly before the end of a series."""
     out: dict[str, list[float]] = {}
-    for hit in motion.impacts:
-        if hit.approach > slow:
+    for hit in impacts:
+        if hit.approach > slow and not any(0.0 <= t - hit.t < late for t in rests):
             out.setdefault(hit.surface, []).append(hit.t)
     return out
 
@@ -139,7 +141,7 @@ def known(case: Hard, n: int = 97) -> Known:
         except OracleError as error:
             marginal = str(error)
             break
-        a, b = hits(found, slow), hits(other, slow)
+        a, b = hits(found.impacts, slow), hits(other.impacts, slow)
         if {k: len(v) for k, v in a.items()} != {k: len(v) for k, v in b.items()}:
             marginal = "impacts hang on the sixth digit"
             break

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import fricmb as fm
 from tests.oracle.bounces import bounced
 from tests.oracle.campaign import make
 from tests.oracle.impacts import flat, pendulum, table
@@ -98,9 +99,23 @@ def test_a_pendulum_with_dry_friction_rests_on_its_stop():
     assert abs(found.rests[0][0] - 3.358532583895605) < 1e-9
 
 
-@pytest.mark.parametrize("seed", [*SEEDS.values(), *FOUND])
-def test_impacts_are_as_the_oracle_says(seed):
-    true = make({}, generate("impacts", seed)).truth()
+#: The same by Poisson's law.
+POISSON = (5, 10, 14)
+
+
+def test_what_is_far_away_does_not_rest_with_others():
+    """Dry friction holds all blocks behind the last impact: no acceleration says how long a hop is there."""
+    case = make({}, generate("poisson", 24))
+    sol = fm.simulate(case.scene, t_end=1.0)
+    assert {event.side for event in sol.events.of(kind="rest")} <= {"lower"}
+    assert np.abs(sol["b0.x"]).max() < case.problem.surfaces[0].gap(np.zeros(3)) + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed"), [*(("impacts", n) for n in (*SEEDS.values(), *FOUND)), *(("poisson", n) for n in POISSON)]
+)
+def test_impacts_are_as_the_oracle_says(kind, seed):
+    true = make({}, generate(kind, seed)).truth()
     assert not true.marginal
     verdicts = {method: judge(true, method) for method in METHODS}
     assert {method: verdict.kind for method, verdict in verdicts.items()} == dict.fromkeys(METHODS, "right"), verdicts

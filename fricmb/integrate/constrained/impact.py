@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.constrained.impact_law import Answer, Hit, solve_impact
+from fricmb.integrate.constrained.impact_law import Answer, Hit, solve_by_poisson, solve_impact
 from fricmb.integrate.constrained.impact_log import ImpactLog, Outcome
 from fricmb.integrate.constrained.impact_rest import Bounces, Hop, Leaving
 from fricmb.integrate.constrained.impact_resume import put_state, resume, tell_changes
@@ -80,6 +80,7 @@ class Impacts:
         touched = s.touched(rate)
         if (touched & ~s.rigid).any() or not touched.any() or self._piles_up(float(y.t), int(touched.sum())):
             return FAIL_HIT
+        self._bounces.begin(float(y.t))
         members, falls = np.flatnonzero(touched | s.held), s.pressed()
         opened = self.joints.dropped.copy()
         put_state(y, before)
@@ -130,7 +131,7 @@ class Impacts:
         """Velocities, modes and reactions behind the impact with coefficients e of the members; some are held."""
         s, y = self.surfaces, self._workspace.y
         hit, push, reaction, held = self._hit(members, e, forced)
-        answer = solve_impact(hit)
+        answer = (solve_by_poisson if self.surfaces.mechanism.poisson else solve_impact)(hit)
         if answer is None:
             names = ", ".join(repr(self.joints.names[j]) for j in members)
             self.failure = f"no impulses satisfy the law of impact at t = {float(y.t):.10g} for {names} together"
@@ -166,7 +167,7 @@ class Impacts:
         tangential[along] = len(members) + np.arange(along.size)
         hit = Hit(
             D=A @ push, rate=before, normal=np.arange(len(members)), tangential=tangential, e=e,
-            e_t=self.joints.tangential[members], mu=mu, forced=np.isin(members, forced),
+            e_t=self.joints.tangential[members], mu=mu, forced=np.isin(members, forced), given=np.zeros(len(members)),
         )  # fmt: skip
         return hit, push, reaction, held
 
@@ -191,7 +192,8 @@ class Impacts:
         if lost.sum() < -GAIN * scale:
             self.failure = (
                 f"the impact at t = {float(y.t):.10g} would gain the energy {-lost.sum():.3g}: Newton's law of"
-                " impact does with this friction; with tangential_restitution equal to restitution it never does"
+                " impact does with this friction; fm.ImpactLaw with law='poisson' never does, nor does"
+                " tangential_restitution equal to restitution"
             )
             return False
         owner = self.joints.owners(held)

@@ -7,12 +7,15 @@ Nonsmooth Mechanics and Applications, Springer 1988): with ``xi = gamma+ + e gam
     gamma+ = gamma- + D Lambda,                      D = W M^-1 W^T on the velocities that joints allow.
 
 What is held has gamma_N- = 0, so that its own e does not act.
+
+Poisson's law (F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, chapter 8) is the
+same problem twice: with e = 0, then from there on with impulses ``e Lambda_N`` of the first phase that act at least.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -20,8 +23,11 @@ import numpy as np
 
 from fricmb.integrate.problem import Floats, Ints
 
-#: What a contact does in an impact: takes no impulse; takes one without slip, or with slip one way or the other.
+#: What a contact does in an impact: takes no impulse; takes one without slip, or with slip one way or the other; has
+#: the impulse that is given and no more, likewise.
 FREE, STICKS, FORWARD, BACKWARD = 0, 1, 2, -2
+LEAVES, LEAVES_FORWARD, LEAVES_BACKWARD = 3, 4, -4
+PRESSED, SLIPPING = (STICKS, FORWARD, BACKWARD), (FORWARD, BACKWARD, LEAVES_FORWARD, LEAVES_BACKWARD)
 #: Round-off of velocities and impulses beside the largest.
 ROUND_OFF = 1e-11
 #: So many combinations are all tried, and other solutions are counted; of more the first that fits is taken.
@@ -44,6 +50,8 @@ class Hit:
         Coefficients of restitution and friction.
     forced : (k,) bool
         What comes to rest with others whatever impulse that takes.
+    given : (k,)
+        Normal impulses that act at least.
     """
 
     D: Floats
@@ -54,6 +62,7 @@ class Hit:
     e_t: Floats
     mu: Floats
     forced: Any
+    given: Floats
 
     @property
     def target(self) -> Floats:
@@ -74,11 +83,30 @@ class Answer:
     others: bool
 
 
+def solve_by_poisson(hit: Hit) -> Answer | None:
+    """The impulses of both phases together; None as of :func:`solve_impact`."""
+    first = solve_impact(replace(hit, e=np.zeros_like(hit.e), e_t=np.zeros_like(hit.e_t)))
+    if first is None:
+        return None
+    given = np.where(hit.forced, 0.0, hit.e * first.impulse[hit.normal])
+    rate = first.rate.copy()
+    rate[hit.normal] = np.where(first.impulse[hit.normal] > 0.0, np.maximum(rate[hit.normal], 0.0), rate[hit.normal])
+    second = solve_impact(
+        replace(hit, rate=rate, e=np.zeros_like(hit.e), e_t=np.zeros_like(hit.e_t), given=given)
+    )
+    if second is None:
+        return None
+    return Answer(
+        impulse=first.impulse + second.impulse, rate=second.rate, others=first.others or second.others
+    )
+
+
 def solve_impact(hit: Hit) -> Answer | None:
     """The impulses; None where none fit (or where there are too many contacts to try all combinations)."""
     found: list[Answer] = []
-    size = float(np.abs(hit.rate).max(initial=0.0))
-    count = int(np.prod([2.0 if t < 0 else 4.0 for t in hit.tangential]))
+    size = float(np.abs(hit.rate).max(initial=0.0)) + float(np.abs(hit.D[:, hit.normal] @ hit.given).max(initial=0.0))
+    rubs = np.where(hit.given > 0.0, 6.0, 4.0)
+    count = int(np.prod(np.where(hit.tangential < 0, 2.0, rubs)))
     if count > MOST:
         return _pivoted(hit)
     for doing in _combinations(hit):
@@ -96,36 +124,41 @@ def solve_impact(hit: Hit) -> Answer | None:
 
 def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
     """What each contact may do; first that all take an impulse and stick."""
-    every = ((STICKS, FREE) if t < 0 else (STICKS, FORWARD, BACKWARD, FREE) for t in hit.tangential)
+    leaving = (LEAVES, LEAVES_FORWARD, LEAVES_BACKWARD)
+    every = (
+        (STICKS, FREE) if t < 0 else (*PRESSED, *(leaving if given > 0.0 else (FREE,)))
+        for t, given in zip(hit.tangential, hit.given, strict=True)
+    )
     return product(*((STICKS,) if forced else may for may, forced in zip(every, hit.forced, strict=True)))
 
 
 def _try(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
     """The impulses of one combination, where they contradict nothing."""
     r, columns, rows = hit.rate.size, [], []
+    target, impulse = hit.target, np.zeros(r)
+    impulse[hit.normal] = hit.given
     for i, what in enumerate(doing):
-        if what == FREE:
-            continue
         column = np.zeros(r)
         column[hit.normal[i]] = 1.0
-        if what in (FORWARD, BACKWARD):
+        if what in SLIPPING:
             column[hit.tangential[i]] = -hit.mu[i] * np.sign(what)
-        columns.append(column)
-        rows.append(hit.normal[i])
-        if what == STICKS and hit.tangential[i] >= 0:
+            impulse[hit.tangential[i]] = column[hit.tangential[i]] * hit.given[i]
+        if what in PRESSED:
+            columns.append(column)
+            rows.append(hit.normal[i])
+        if what in (STICKS, LEAVES) and hit.tangential[i] >= 0:
             along = np.zeros(r)
             along[hit.tangential[i]] = 1.0
             columns.append(along)
             rows.append(hit.tangential[i])
-    target, impulse = hit.target, np.zeros(r)
     if rows:
         B = np.stack(columns, axis=1)
         A = hit.D[rows] @ B
-        b = target[rows] - hit.rate[rows]
+        b = target[rows] - (hit.rate + hit.D @ impulse)[rows]
         u = _solution(A, b, size)
         if u is None:
             return None
-        impulse = B @ u
+        impulse += B @ u
     after = hit.rate + hit.D @ impulse
     return _checked(hit, doing, impulse, after, target, size)
 
@@ -150,19 +183,17 @@ def _checked(
     force = ROUND_OFF * float(np.abs(impulse).max(initial=0.0))
     for i, what in enumerate(doing):
         a, b = int(hit.normal[i]), int(hit.tangential[i])
-        if what == FREE:
-            if xi[a] < -small:
-                return None
+        if what not in PRESSED and xi[a] < -small:
+            return None
+        if what == FREE or hit.forced[i]:
             continue
-        if hit.forced[i]:
-            continue
-        if impulse[a] < -force:
+        if impulse[a] < hit.given[i] - force:
             return None
         if b < 0:
             continue
-        if what == STICKS and abs(impulse[b]) > hit.mu[i] * impulse[a] + force:
+        if what in (STICKS, LEAVES) and abs(impulse[b]) > hit.mu[i] * impulse[a] + force:
             return None
-        if what in (FORWARD, BACKWARD) and xi[b] * np.sign(what) < -small:
+        if what in SLIPPING and xi[b] * np.sign(what) < -small:
             return None
     return Answer(impulse=impulse, rate=after, others=False)
 
@@ -188,11 +219,13 @@ def _first_wrong(hit: Hit, doing: list[int], size: float) -> int | None:
     """The first contact that contradicts what it does."""
     on = [i for i, what in enumerate(doing) if what != FREE]
     rows, target, impulse = hit.normal[on], hit.target, np.zeros(hit.rate.size)
+    impulse[hit.normal] = hit.given
     if on:
-        impulse[rows] = np.linalg.lstsq(hit.D[np.ix_(rows, rows)], target[rows] - hit.rate[rows], rcond=1e-11)[0]
+        before = (hit.rate + hit.D @ impulse)[rows]
+        impulse[rows] += np.linalg.lstsq(hit.D[np.ix_(rows, rows)], target[rows] - before, rcond=1e-11)[0]
     xi = hit.rate + hit.D @ impulse - target
     for i, what in enumerate(doing):
         a = int(hit.normal[i])
-        if (impulse[a] < 0.0) if what != FREE else (xi[a] < -ROUND_OFF * size):
+        if (impulse[a] < hit.given[i]) if what != FREE else (xi[a] < -ROUND_OFF * size):
             return i
     return None

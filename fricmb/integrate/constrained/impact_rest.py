@@ -26,6 +26,8 @@ SHORT = 3e-5
 CALM = 3e-3
 #: Roundings of the time by which an impact is located.
 LOCATED = 16.0
+#: Time until a further contact is met, in those between the last two impacts, within which it comes to rest with them.
+NEXT = 10.0
 #: Height of a hop beside the round-off of distances, below which there is none.
 SEEN = 1e3
 
@@ -84,6 +86,11 @@ class Bounces:
         self._t: Floats = np.full(n, -np.inf)
         self._falls: Floats = np.zeros(n)
         self._count = np.zeros(n, np.int64)
+        self._latest, self._since = t_start, 0.0
+
+    def begin(self, t: float) -> None:
+        """An impact of any of them at t."""
+        self._latest, self._since = t, t - self._latest
 
     def among_others(self, leaving: Leaving, gap: float, ratio: float, pace: float) -> Hop:
         """The hop of a contact that others have thrown up, or that is on its way back, while these come to rest.
@@ -94,7 +101,7 @@ class Bounces:
         if not leaving.rises > 0.0:
             return Hop(ends=False)
         T = hop_of(gap, leaving.speed, leaving.rises) / (1.0 - min(max(ratio, leaving.e), 0.99))
-        ends = SHORT * leaving.size / max(leaving.rises, pace) >= T
+        ends = SHORT * leaving.size / max(leaving.rises, pace) >= T and NEXT * self._since >= T
         bound = T + self._rtol * (leaving.t - self._t_start)
         return Hop(ends=bool(ends), left=T, bound=bound)
 

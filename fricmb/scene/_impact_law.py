@@ -1,0 +1,91 @@
+"""The law by which velocities change in impacts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from fricmb.errors import SceneError
+from fricmb.scene._joint import Joint
+from fricmb.scene._part import Part
+from fricmb.values import is_one_of, value_of
+
+if TYPE_CHECKING:
+    from fricmb.scene._scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class ImpactLaw(Part):
+    """What the coefficients of restitution of a scene mean.  Without one it is Newton's law.
+
+    Parameters
+    ----------
+    name : str
+        Unique in a scene, without dots.
+    law : str
+        "newton": of velocities.  What is hit leaves with ``e`` times the speed of its approach.  "poisson": of
+        impulses.  In a first phase what is hit is brought to rest; in a second one each contact gives back ``e`` times
+        the normal impulse that it took in the first.
+
+    Raises
+    ------
+    SceneError
+        If the law is another one; by a scene, if it holds two of these, or ``tangential_restitution`` beside "poisson".
+
+    Notes
+    -----
+    A single contact without friction has the same impacts by both.  With friction that changes the direction of slip
+    within an impact, Newton's law may gain energy, at which a run ends with an error; Poisson's does not.  Where
+    several contacts are hit or held together they differ: by Newton's law what is held stays so unless it is thrown
+    up, by Poisson's it gives back a part of its impulse as well.
+
+    Each phase obeys Coulomb's law by the slip at its end, ``-Lambda_T in mu Lambda_N Sgn(gamma_T)`` (F. Pfeiffer and
+    C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, chapter 8, without restitution along the slip):
+
+        compression   0 <= gamma_N complementary to Lambda_N >= 0
+        expansion     0 <= gamma_N complementary to Lambda_N - e Lambda_N(compression) >= 0
+
+    Examples
+    --------
+    A ball of twice the mass of the one that it rests on hits with it a floor: by Newton's law both stay in touch, by
+    Poisson's the upper one leaves with the speed of the approach.
+
+    >>> import fricmb as fm
+    >>> a = fm.Body("a", mass=1.0, position={"y": 1.0}, velocity={"y": -1.0}, axes="y")
+    >>> b = fm.Body("b", mass=2.0, position={"y": 2.0}, velocity={"y": -1.0}, axes="y")
+    >>> floor = fm.Stop("floor", a, axis="y", lower=0.0, restitution=0.5)
+    >>> touch = fm.Stop("touch", b, a, axis="y", lower=1.0, restitution=1.0)
+    >>> for law in ("newton", "poisson"):
+    ...     scene = fm.Scene("balls", [a, b, floor, touch, fm.ImpactLaw("impacts", law=law)])
+    ...     print([float(round(v, 12)) for v in fm.simulate(scene, t_end=1.5).v[:, -1]])
+    [0.5, 0.5]
+    [0.0, 1.0]
+    """
+
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "law")
+    _: KW_ONLY
+    law: str = "newton"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not is_one_of(self.law, "newton", "poisson"):
+            self._refuse("law", self.law, "'newton' or 'poisson'")
+
+
+def impact_law(parts: Iterable[Part]) -> str:
+    """The law of impact of these parts."""
+    return next((part.law for part in parts if isinstance(part, ImpactLaw)), "newton")
+
+
+def check_impact_law(scene: Scene) -> None:
+    """At most one law, that all contacts can obey."""
+    laws = [part for part in scene.parts if isinstance(part, ImpactLaw)]
+    if len(laws) > 1:
+        raise SceneError(f"Scene {scene.name!r}: parts hold two laws of impact, {laws[0].name!r} and {laws[1].name!r}")
+    if not laws or laws[0].law != "poisson":
+        return
+    for part in scene.parts:
+        given = getattr(part, "tangential_restitution", None) if isinstance(part, Joint) else None
+        if given is not None and float(value_of(given)) != 0.0:
+            part._refuse("tangential_restitution", given, "left out or 0 beside a law of impact by Poisson")
