@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy
 
 import fricmb as fm
 from fricmb._simulate._mechanics import prepare
@@ -95,3 +96,24 @@ def test_without_prescribed_loads_a_run_takes_few_steps():
     body = next(p for p in puck.parts if isinstance(p, fm.Body))
     pulse = fm.Force("pulse", body, axis=next(iter(body.axes)), value=1e-3 * fm.t**2)
     assert fm.simulate(fm.Scene("pulse", [*puck.parts, pulse]), t_end=1.0, rtol=1e-4, method="radau").stats.n_steps > 90
+
+
+def held():
+    """A block on dry ground under a force that jumps forty times and swings between."""
+    t = np.linspace(0.0, 8.0, 41)
+    block, force = fm.Body("b", mass=1.0), fm.Signal(t, np.sin(3.0 * np.arange(41.0)), kind="hold")
+    return fm.Scene("held", [
+        block, fm.Spring("k", block, axis="x", stiffness=4.0), fm.Force("f", block, axis="x", value=force),
+        fm.Force("g", block, axis="x", value=0.2 * sympy.sin(50 * fm.t)),
+        fm.Contact("c", block, law=fm.laws.Coulomb(mu_s=0.9, mu_k=0.7), normal_force=1.0),
+    ])  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_space_for_rows_may_end_where_forces_jump(method, monkeypatch):
+    """Where a step to a jump filled it the jump was not gone through: what rested stopped, and rows were missing."""
+    scene, how = held(), {"t_end": 8.0, "rtol": 1e-6, "method": method}
+    alone = motion(fm.simulate(scene, **how))
+    for size in range(64, 84):
+        monkeypatch.setattr(run_setup, "CHUNK", size)
+        assert np.array_equal(motion(fm.simulate(scene, **how)), alone), size

@@ -43,8 +43,8 @@ def arrive(packed: Packed, s: Scratch, y: State, r: Rest, old: Before, out: Rows
 
 @kernel
 def crowded(out: Rows, n_s: int, nc: int) -> bool:
-    """Whether the rows of one more step might not find space."""
-    return bool(out.used[0] + 2 * n_s + 4 > out.kind.shape[0] or out.used[1] + nc > out.event.shape[0])
+    """Whether the rows of one more step, its transitions and those of a breakpoint at its end might not find space."""
+    return bool(out.used[0] + 2 * n_s + 4 > out.kind.shape[0] or out.used[1] + 2 * nc + 2 > out.event.shape[0])
 
 
 @run_entry
@@ -60,8 +60,6 @@ def drive(
     stop = set_window(clock, s.window, y.t)
     begun = ticks()
     while True:
-        if crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
-            return FULL
         seen = longest_from(edge, limit, y.t)
         left = min(stop - y.t, kink_from(edge, limit, y.t, seen))
         clock.longest = min(clock.bound, seen)
@@ -70,6 +68,9 @@ def drive(
             stop = set_window(clock, s.window, y.t)
             one.last_h = 0.0
             past.on = 0
+        elif crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
+            # not on a stop: where the loop begins anew it would be taken for one behind, and what jumps there for motion
+            return FULL
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, min(left, OF_BDF * seen))
             if code == ACCEPTED and is_slower(past, max(clock.usual, clock.wanted)):

@@ -39,7 +39,9 @@ def rows(problem: Problem, capacity: int, further: int = 0) -> Rows:
     kinds = np.zeros(capacity, np.int8)
     modes = np.zeros((capacity, problem.n_c), np.int8)
     values = np.zeros((capacity, sum(widths(problem)) + further))
-    return room(Rows(values, kinds, modes, np.zeros((capacity, 3)), np.zeros(2, np.int64)))
+    # however few rows are: those of a step and of a breakpoint at its end
+    events = np.zeros((capacity + 2 * problem.n_c + 2, 3))
+    return room(Rows(values, kinds, modes, events, np.zeros(2, np.int64)))
 
 
 @kernel
