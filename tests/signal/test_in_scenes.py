@@ -12,6 +12,8 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 from scipy.optimize import brentq
 
 import fricmb as fm
+from fricmb.integrate.methods import radau
+from fricmb.integrate.methods.radau import Radau
 
 DRY = fm.laws.Coulomb(mu_s=1.0, mu_k=0.8)
 #: Spring of the block.
@@ -106,6 +108,32 @@ def test_as_a_program_of_its_own_between_the_samples(kind, method):
     assert [e.t for e in sol.events] == pytest.approx([at for _, at in events], abs=2e-8)
     assert sol["b.x"][-1] == pytest.approx(x, abs=2e-8)
     assert sol.audit().ok
+
+
+def test_many_values_on_lines_take_few_stages(monkeypatch):
+    """Steps from value to value are so short that three stages do what six do; cubics and other loads keep theirs."""
+    taken, choose = [], radau.stages_for
+    monkeypatch.setattr(radau, "stages_for", lambda *given: taken.append(choose(*given)) or taken[-1])
+    t = np.linspace(0.0, 2.5, 2001)
+    y = push(t)
+    line = lambda s, i: y[i] + (y[i + 1] - y[i]) / (t[i + 1] - t[i]) * (s - t[i])  # noqa: E731
+    x, events = solved_from_sample_to_sample(t, line, K)
+    scene, fine = block((t, y)), np.linspace(0.0, 2.5, 7001)
+    for rtol in (1e-6, 1e-8):
+        for method in ("radau", "bdf"):
+            sol = fm.simulate(scene, t_end=2.5, rtol=rtol, method=method)
+            assert [e.kind for e in sol.events] == [kind for kind, _ in events]
+            assert [e.t for e in sol.events] == pytest.approx([at for _, at in events], abs=rtol)
+            assert sol["b.x"][-1] == pytest.approx(x, abs=0.1 * rtol)
+            assert sol.audit().ok
+            # between the nodes, too
+            how = {"t_end": 2.5, "t_eval": fine, "rtol": rtol}
+            few, more = fm.simulate(scene, method=method, **how), fm.simulate(scene, method=Radau(stages=7), **how)
+            assert np.abs(few.velocity("b.x") - more.velocity("b.x")).max() < rtol
+    for load, stages in ((fm.Signal(t, y), 3), (fm.Signal(t, y, kind="cubic"), 6), (fm.Signal(t, y) + FORMULA, 6)):
+        taken.clear()
+        fm.simulate(block(load), t_end=2.5, rtol=1e-6, method="radau")
+        assert taken == [stages]
 
 
 @pytest.mark.parametrize("method", ["radau", "bdf"])

@@ -69,7 +69,7 @@ def drive(
             one.last_h = 0.0
             past.on = 0
         elif crowded(out, one.tab.c.shape[0], y.mode.shape[0]):
-            # not on a stop: where the loop begins anew it would be taken for one behind, and what jumps there for motion
+            # not on a stop: the loop that begins anew would take it for one behind, and what jumps there for motion
             return FULL
         elif past.on == 1:
             code = bdf_step(packed, s, y, end, multi, acc, past, guard, out, min(left, OF_BDF * seen))
