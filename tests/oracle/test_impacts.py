@@ -24,6 +24,7 @@ FOUND = {
     60: "the same where both are thrown up",
     177: "the same on a table that moves on",
     12: "corners in turn: rest of one of them between two impacts of the other",
+    2044: "corners that come to rest in turn: one was pulled down, the other one fell through the floor",
 }
 
 

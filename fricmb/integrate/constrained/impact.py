@@ -101,7 +101,8 @@ class Impacts:
             put_state(before, y)
             self.joints.dropped[:] = opened
             e[ends] = 0.0
-            code, outcome = self._apply(members, e, touched, tuple(others))
+            forced = tuple({*others, *members[ends].tolist()}) if others else ()
+            code, outcome = self._apply(members, e, touched, forced)
             if code != DONE or outcome is None:
                 return code
         # what is left in touch by an impact may bear nothing: its round-off is that of the impulse over the run

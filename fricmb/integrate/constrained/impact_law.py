@@ -117,6 +117,10 @@ def solve_impact(hit: Hit) -> Answer | None:
             found.append(answer)
         if count > ALL:
             break
+    if not found and hit.forced.any():  # no friction fits what has to come to rest: it sticks
+        free = replace(hit, mu=np.where(hit.forced, 1e300, hit.mu))
+        held = _try(free, tuple([STICKS] * hit.normal.size), size)
+        found = [] if held is None else [held]
     if not found:
         return None
     return Answer(impulse=found[0].impulse, rate=found[0].rate, others=len(found) > 1)
@@ -129,7 +133,9 @@ def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
         (STICKS, FREE) if t < 0 else (*PRESSED, *(leaving if given > 0.0 else (FREE,)))
         for t, given in zip(hit.tangential, hit.given, strict=True)
     )
-    return product(*((STICKS,) if forced else may for may, forced in zip(every, hit.forced, strict=True)))
+    pairs = zip(every, hit.forced, strict=True)
+    kept = (tuple(what for what in may if what in PRESSED) if forced else may for may, forced in pairs)
+    return product(*kept)
 
 
 def _try(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
@@ -185,13 +191,13 @@ def _checked(
         a, b = int(hit.normal[i]), int(hit.tangential[i])
         if what not in PRESSED and xi[a] < -small:
             return None
-        if what == FREE or hit.forced[i]:
+        if what == FREE:
             continue
-        if impulse[a] < hit.given[i] - force:
+        if impulse[a] < hit.given[i] - force and not hit.forced[i]:
             return None
         if b < 0:
             continue
-        if what in (STICKS, LEAVES) and abs(impulse[b]) > hit.mu[i] * impulse[a] + force:
+        if what in (STICKS, LEAVES) and abs(impulse[b]) > hit.mu[i] * max(impulse[a], 0.0) + force:
             return None
         if what in SLIPPING and xi[b] * np.sign(what) < -small:
             return None
