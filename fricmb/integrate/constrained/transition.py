@@ -103,7 +103,9 @@ def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
     y.work[-1] += kinetic_energy(mech, y) - had
     row = mech.port.row
     for i in range(y.mode.shape[0]):
-        if y.mode[i] == STICK and magnitude(row, i, y.g) > 1e-11 * size:
+        # in a plane what slips has turned with the jump
+        turned = y.mode[i] == STICK or (y.mode[i] == SLIP and plane(mech, i))
+        if turned and magnitude(row, i, y.g) > 1e-11 * size:
             y.mode[i] = SLIP
             point_along(row, i, y.g, 1.0, y.n)
     turn_with_slip(mech, k, y, size, -1)
