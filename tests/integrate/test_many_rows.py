@@ -1,4 +1,4 @@
-"""Scenes without joints and with many rows of contacts: solved in the band, against steps condensed to the contacts."""
+"""Scenes without joints in the band, with many rows of contacts and few, against steps condensed to the contacts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import sympy
 
 import fricmb as fm
 from fricmb.integrate import OneStepMethod
-from fricmb.integrate.methods import radau as methods
+from fricmb.integrate.constrained.problem_structs import mech_of
 from fricmb.integrate.methods.radau import in_a_band
 from fricmb.integrate.step.tableau import radau
 from fricmb.system import build
@@ -96,13 +96,30 @@ def test_more_contacts_set_out_than_directions_are_found_for():
     assert (np.abs(found.q - true.q).max(axis=1) < 1e-6 * np.abs(true.q).max(axis=1)).all()
 
 
-def test_few_contacts_on_many_modes_stay_condensed():
+def test_few_contacts_on_many_modes_are_a_border():
+    """Without joints: a band of all unknowns would be as wide as there are modes."""
+    sizes = mech_of(build(pad(4, 400)).problem).order.sizes
+    assert sizes[:2].tolist() == [400, 0]
+    assert sizes[7] == 8
+    assert mech_of(build(bar(16, STRIBECK)).problem).order.sizes[7] == 0
+    assert mech_of(build(fm.models.slider_crank()).problem).order.sizes[7] == 0
+
+
+def test_radau_takes_the_band_from_three_rows_on():
+    """Unless they are few beside many modes, where condensed steps are faster."""
+    assert in_a_band(build(pad(2, 10)).problem, None)
     assert not in_a_band(build(pad(4, 400)).problem, None)
-    assert not in_a_band(build(pad(18, 44)).problem, 4)  # an even number of stages
+    assert not in_a_band(build(fm.models.brake4dof()).problem, None)
+    assert in_a_band(build(fm.models.stick_slip_chain(3)).problem, None)
 
 
-def test_one_contact_whose_law_has_many_states_is_condensed():
-    """A plate as good as fixed, whose joint of twenty sliders is shaken: in a band it stopped."""
+def test_even_numbers_of_stages_are_condensed():
+    assert in_a_band(build(pad(18, 44)).problem, None)
+    assert not in_a_band(build(pad(18, 44)).problem, 4)
+
+
+def test_one_contact_whose_law_has_many_states():
+    """A plate as good as fixed, whose joint of twenty sliders is shaken."""
     n = 20
     law = fm.laws.Iwan(stiffness=(1.0,) * n, limits=tuple((np.arange(n) + 0.5) / n), corner=1e-3)
     plate, shaker = fm.Body("plate", mass=1e9), fm.Driven("shaker", position={"x": 0.9 * sympy.sin(6.0 * fm.t)})
@@ -114,11 +131,26 @@ def test_one_contact_whose_law_has_many_states_is_condensed():
     assert np.diff(sol.energy.friction_loss)[0] == pytest.approx(loss, rel=1e-2)
 
 
-def test_a_run_that_stops_in_a_band_is_condensed_and_says_so(monkeypatch):
-    """Points of a pad that land together are nearly redundant, which the band does not get through."""
-    monkeypatch.setattr(methods, "FEW", 8)
+def test_points_that_land_together_are_run_through():
+    """Points of a pad, nearly redundant in stick."""
     scene = fm.models.pad_rotor(3, 4, 4, speed=0.2, mu_s=0.5, mu_k=0.4)
     sol = fm.simulate(scene, t_end=0.025, rtol=1e-5, method="radau")
-    assert any("steps in a band stopped at t = 0.0" in note for note in sol.stats.notes)
     assert sol.t[-1] == 0.025
     assert np.abs(sol.energy.residual).max() < 1e-7
+
+
+def test_a_run_that_creeps_in_a_band_is_condensed_and_says_so():
+    """Rate-and-state friction at rest goes with the logarithm of slip speeds of 1e-9: no one slope serves a step."""
+    belt, parts, bodies = fm.Driven("belt", velocity={"x": 0.3}), [], []
+    for i in range(3):
+        body = fm.Body(f"b{i}", mass=1.0, velocity={"x": 0.3})
+        law = fm.laws.RateAndState.example()
+        contact = fm.Contact(f"c{i}", body, belt, law=law, normal_force=2.0)
+        parts += [body, fm.Spring(f"k{i}", body, axis="x", stiffness=10.0 + i), contact]
+        parts += [fm.Spring(f"t{i}", last, body, axis="x", stiffness=1.0) for last in bodies[-1:]]
+        bodies.append(body)
+    scene = fm.Scene("s", [belt, *parts])
+    sol = fm.simulate(scene, t_end=6.0, rtol=1e-2, method="radau")
+    assert any("steps in a band stopped at t = 0." in note for note in sol.stats.notes)
+    assert sol.t[-1] == 6.0
+    assert sol.stats.n_steps < 500

@@ -11,6 +11,7 @@ import pytest
 import fricmb as fm
 from fricmb import models
 from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
+from fricmb.integrate.constrained import step_trajectory
 from fricmb.integrate.output.row_trajectory import RowTrajectory
 
 TIMES = np.linspace(0.0, 30.0, 61)
@@ -33,6 +34,12 @@ def integrated(monkeypatch):
             calls.append("rows")
         return within(self, *arguments)
 
+    def steps(*arguments):
+        calls.append("steps")
+        return powers(*arguments)
+
+    powers = step_trajectory.integrate_powers
+    monkeypatch.setattr(step_trajectory, "integrate_powers", steps)
     monkeypatch.setattr(SingleRun, "_energies", single)
     monkeypatch.setattr(RowTrajectory, "_fill", rows)
     return calls

@@ -47,9 +47,18 @@ from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.friction_cone import stick_limit
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, Codes
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, STICK, Codes
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, DONE, FAIL_MARGIN, FAIL_SINGULAR, FAIL_STEP, REJECTED
+from fricmb.integrate.run.outcomes import (
+    ACCEPTED,
+    CHANGED,
+    DONE,
+    FAIL_CREEP,
+    FAIL_MARGIN,
+    FAIL_SINGULAR,
+    FAIL_STEP,
+    REJECTED,
+)
 from fricmb.integrate.step.knots import NOWHERE, SLIGHT
 from fricmb.integrate.step.slip_growth import too_long
 from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ONE_STEP_SAFETY, ladder, next_step, step_factor
@@ -110,14 +119,18 @@ def arrive(
 
 
 @kernel
-def set_restart(mech: Mech, c: Control, y: State) -> None:
-    """First step behind a change of modes, if that before it is a trifle: slip that came to rest there asked for that.
+def set_restart(mech: Mech, c: Control, y: State, lets_go: bool) -> None:
+    """First step behind a change of modes: no longer than the last that began slip, where something ``lets_go``.
 
-    Steps get as short as round-off on the way to rest, and Newton's changes at such ones are nothing else.
+    And longer than that before it, if that is a trifle: slip that came to rest there asked for that.  Steps get as
+    short as round-off on the way to rest, and Newton's changes at such ones are nothing else.
     """
     rate = weighed(mech, y.a)
     if rate > 0.0:
         c.h = max(c.h, RESTART * min(weighed(mech, c.v) / rate, c.longest))
+    if lets_go:
+        c.h = min(c.h, c.setting_out)
+    c.sets_out = 1 if lets_go else 0
 
 
 @kernel
@@ -153,6 +166,20 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     return far
 
 
+#: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.
+VAIN, VAIN_PART = 200, 0.25
+
+
+@kernel
+def creeps(c: Control, y: State) -> bool:
+    """Whether a scene without joints is to be left to steps that are condensed to the contacts.
+
+    Those solve with the slopes of laws at every stage: of a law that is steep as a logarithm near rest there is no one
+    slope for a whole step.
+    """
+    return bool(not has_joints(y) and c.counts[5] > VAIN and c.counts[5] > VAIN_PART * c.counts[0])
+
+
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
@@ -182,7 +209,8 @@ def radau_step(
     if not solved:
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
-        return reject(c, 0.4 * h)
+        c.counts[5] += 1
+        return FAIL_CREEP if creeps(c, y) else reject(c, 0.4 * h)
     bring_up_to_date(mech, k, y, st, h)
     find_kinks(mech, k, y, st, out)
     weigh_ports(mech, k, y, st, c, h)
@@ -234,6 +262,9 @@ def radau_step(
     if worst < 0 and (h < left or factor < 1.0):
         c.wanted = h * min(5.0, max(0.3, factor))
         c.h = next_step(c, h, c.wanted)
+    if c.sets_out == 1:
+        c.setting_out = c.wanted
+        c.sets_out = 0
     if near_singular(c, out, h):
         return FAIL_SINGULAR
     if worst >= 2 * y.mode.shape[0] + mech.joint.port.shape[0]:
@@ -250,7 +281,8 @@ def radau_step(
         c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1
         c.growth = np.inf
+        lets_go = worst < 2 * y.mode.shape[0] and y.mode[worst // 2] == STICK
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
-        set_restart(mech, c, y)
+        set_restart(mech, c, y, lets_go)
         return CHANGED if code == DONE else code
     return ACCEPTED

@@ -34,7 +34,8 @@ class Control(Layout):
     of ``between_stages``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
     was to be where it was cut; ``knot`` when the next step has to end, since a law or an element bends then (not
-    ahead: whenever it likes).
+    ahead: whenever it likes); ``setting_out`` step that was right where something last let go, to be known anew
+    from a step that ``sets_out``.
     """
 
     rtol: float
@@ -61,6 +62,8 @@ class Control(Layout):
     growth: float
     wanted: float
     knot: float
+    setting_out: float
+    sets_out: int
 
 
 def control_of(problem: Problem, st: Stages) -> Control:
@@ -70,7 +73,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         0.0, 0.0, np.zeros(n), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf,
+        np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf, np.inf, 0,
     )  # fmt: skip
 
 
@@ -82,6 +85,8 @@ def asked(c: Control) -> float:
 
 #: Relative round-off of positions.
 ROUND_OFF = 2.3e-16
+#: Newton's iterations stop at this part of the tolerance, and at this part of what counts as 1.
+KAPPA, FINEST = 1e-3, 1e-14
 
 
 @kernel
@@ -104,7 +109,8 @@ def measure(mech: Mech, c: Control, y: State, h: float, scale: Floats) -> None:
         if i < scale.shape[0] and j < scale.shape[0]:
             # a stiff spring turns the round-off of positions into velocities, which is no error of a step
             rate = np.sqrt(abs(linear.K[e]) / c.mass[i])
-            scale[i] = max(scale[i], ROUND_OFF * rate * min(rate * h, 1.0) * c.q[j] / asked(c))
+            noise = ROUND_OFF * rate * min(rate * h, 1.0) * c.q[j]
+            scale[i] = max(scale[i], noise / max(asked(c), FINEST / KAPPA))
 
 
 @kernel
@@ -171,8 +177,6 @@ def remember(c: Control, y: State, st: Stages, h: float) -> None:
     c.last_h = h
 
 
-#: Newton's iterations stop at this part of the tolerance.
-KAPPA = 1e-3
 #: With factors of a step of another length they stop at this part of that: their own would gain as much in one more.
 STRICTER = 1e-3
 #: Without joints factors serve steps that differ in length by this part: while a transition is located most do, and
@@ -201,7 +205,7 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
     accuracy = KAPPA * asked(c) * (1.0 if c.made == h else STRICTER)
-    used = iterate_stages(mech, k, y, st, h, c.made, max(accuracy, 1e-14))
+    used = iterate_stages(mech, k, y, st, h, c.made, max(accuracy, FINEST))
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
     return used > 0

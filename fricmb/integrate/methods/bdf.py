@@ -15,7 +15,7 @@ from fricmb.integrate.methods.backward_differences import differences
 from fricmb.integrate.methods.bdf_stability import guard_of, spectrum
 from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.one_step import run_one_step
-from fricmb.integrate.methods.radau import condensed_after, in_a_band, stopped_in_a_band
+from fricmb.integrate.methods.radau import bdf_in_a_band, condensed_after, stopped_in_a_band
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import drive
@@ -78,7 +78,7 @@ class Bdf(Integrator):
         memory: float | None = None,
     ) -> Trajectory:
         """See :class:`Integrator`."""
-        if in_a_band(problem, self.stages):
+        if bdf_in_a_band(problem, self.stages):
             from fricmb.integrate import constrained
 
             count = self.stages or constrained.stages_for(problem, tolerance.rtol)
