@@ -105,3 +105,10 @@ def test_a_flank_that_lets_go_is_no_pull():
     assert len(lets_go) >= 1
     assert np.allclose(np.abs(np.sin(200.0 * lets_go)), 0.02 / (1e-3 * 2e-3 * 200.0**2), rtol=0, atol=1e-6)
     assert sol.audit().ok
+
+
+def test_gears_without_restitution_pass_their_audit():
+    """Flanks that are left as soon as they are hit never pull, not even for the instant."""
+    sol = fm.simulate(fm.models.gear_rattle(restitution=0.0), t_end=0.3)
+    assert len(sol.events.of(kind="rest")) > 5
+    assert sol.audit().ok, sol.audit()
