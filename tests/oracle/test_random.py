@@ -38,6 +38,7 @@ FOUND = {
     ("plane", 3001): "exact structure: slip that turns round beside rest was taken to end there",
     ("line", 3006): "exact structure: no step without a scale where springs alone are held by a varying normal force",
     ("inputs", 13): "Taylor steps: modes that stand still let go and stuck where a load bends, by round-off",
+    ("inputs", 500094): "the place of ground that moves as a bell was summed to more digits than a sum has: a minute",
     ("line", 150502): "exact structure: slip that a step left between its nodes was taken for a belt that has jumped",
     ("modes", 31027): "slip that begins without a jump of its acceleration ended, and began again, 2e-12 later",
     ("modes", 31387): "the same where two contacts rub",
