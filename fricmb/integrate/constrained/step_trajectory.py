@@ -251,7 +251,7 @@ def complete_at(
     power = np.zeros((count, nc + 2))
     mech = mech_of(problem)
     solid = np.ascontiguousarray
-    still = solid(np.broadcast_to(_still(v) if still is None else still, t.shape), float)
+    still = np.array(np.broadcast_to(_still(v) if still is None else still, t.shape), float)  # no view: it is read-only
     with evaluation(problem) as workspace:
         instants(
             mech, workspace.k, workspace.w, workspace.y, solid(t), q, v, z, solid(mode, np.int8), solid(force, float),
