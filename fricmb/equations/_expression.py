@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import sympy
 
 from fricmb.equations import _code
 from fricmb.equations._element import parameter_source
 from fricmb.equations._inputs import series_in, time_inputs, whole_tape
+from fricmb.equations._place import integrate, quadrature_kernel
 from fricmb.equations._split import affine, split
-from fricmb.integrate.signals.pieces import LOWEST
 from fricmb.signal._symbols import Series
 
 
@@ -70,10 +69,10 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
     if given != "rate":
         outputs = [value + offset, slope(value, t), slope(slope(value, t), t)]
     else:
-        integral = integrate(value, t)
+        integral = integrate(value, t, switching_functions(value))
         if integral is None and not switches(value, t, parameters) and not value.has(Series):
             facts = {"closed": True, "switches": [], "inputs": time_inputs(value, t, parameters)}
-            return facts, _quadrature_kernel(value, t, [*parameters, offset], title)
+            return facts, quadrature_kernel(value, t, [*parameters, offset], title)
         closed = integral is not None
         outputs = [offset if integral is None else integral + offset, value, slope(value, t)]
     for expression in outputs:
@@ -89,86 +88,6 @@ def derive_signal(value: Any, given: str, t: Any, parameters: Sequence[Any], tit
     return facts, _code.kernel([t], [*parameters, offset], outputs, title)
 
 
-def _quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str) -> str:
-    """The integral by Gauss's formula on 2, 4, 8, ... panels, until it no longer changes."""
-    rate = [value, sympy.diff(value, t)]
-    for expression in rate:
-        _code.check(expression, title)
-    rename, reads = _code.read_arguments([t], parameters, [*rate, t])
-    plain = [expression.xreplace(rename) for expression in rate]
-    nodes, weights = np.polynomial.legendre.leggauss(10)
-    there = sympy.Symbol("there", real=True)
-    lines = [
-        *reads,
-        *_code.body(plain, ["out[1]", "out[2]"]),
-        f"nodes = {tuple(nodes.tolist())!r}",
-        f"weights = {tuple(weights.tolist())!r}",
-        "panels, total, size = 2, 0.0, 0.0",
-        "for _ in range(18):",
-        "    before, total, size, half = total, 0.0, 0.0, 0.5*x0/panels",
-        "    for panel in range(panels):",
-        "        for node in range(10):",
-        "            there = half*(2.0*panel + 1.0 + nodes[node])",
-        *("            " + line for line in _code.body([plain[0].xreplace({rename[t]: there})], ["part"])),
-        "            total += weights[node]*half*part",
-        "            size += abs(weights[node]*half*part)",
-        "    if panels > 4 and abs(total - before) <= 4e-16*sqrt(panels)*size:",  # sums of many have more round-off
-        "        break",
-        "    panels *= 2",
-        f"out[0] = total + p[{len(parameters) - 1}]",
-    ]
-    return _code.module(title, lines)
-
-
-def integrate(value: Any, t: Any) -> Any | None:
-    """Integral from 0 to t by the quick methods, or None.
-
-    Of what switches without end, as ``Abs(sin(t))`` does, SymPy knows integrals of the pieces; put together they jump.
-    """
-    if value.has(Series):
-        return _integral_of_series(value, t)
-    if not all(function.is_polynomial(t) for function in switching_functions(value) if function.has(t)):
-        return None
-    plain = sympy.piecewise_fold(value.rewrite(sympy.Heaviside, sympy.Piecewise).replace(sympy.Heaviside, _step))
-    try:
-        result = sympy.integrate(plain, t, risch=False, meijerg=False, heurisch=False)
-    except (NotImplementedError, ValueError, TypeError, AttributeError, RecursionError):
-        return None
-    if result.has(sympy.Integral, sympy.nan, sympy.zoo):
-        return None
-    result = _in_doubles(result)
-    start = result.subs(t, 0)
-    return None if start.has(sympy.nan, sympy.zoo, sympy.oo) else result - start
-
-
-def _in_doubles(value: Any) -> Any:
-    """``log(cosh(u))`` and ``log(tanh(u) + 1)``, of integrals of what is engaged, as what stays finite for large u."""
-    u = sympy.Wild("u")
-
-    def soft(u: Any) -> Any:
-        return sympy.log(1 + sympy.exp(-2 * sympy.Abs(u))) - sympy.log(2)
-
-    value = value.replace(sympy.log(sympy.cosh(u)), lambda u: sympy.Abs(u) + soft(u))
-    return value.replace(sympy.log(sympy.tanh(u) + 1), lambda u: -soft(u) - sympy.Max(0, -2 * u))
-
-
-def _integral_of_series(value: Any, t: Any) -> Any | None:
-    """Of a sum of series, each with a constant factor, and of what else has an integral."""
-    found, rest = sympy.S.Zero, sympy.S.Zero
-    for term in sympy.Add.make_args(sympy.expand(value)):
-        factor, core = term.as_independent(t, as_Add=False)
-        if isinstance(core, Series) and core.args[2] > LOWEST:
-            x, table, order = core.args
-            whole = Series(x, table, order - 1)
-            found += factor / sympy.diff(x, t) * (whole - whole.xreplace({t: sympy.S.Zero}))
-        elif core.has(Series):
-            return None
-        else:
-            rest += term
-    other = sympy.S.Zero if rest == 0 else integrate(rest, t)
-    return None if other is None else found + other
-
-
 def without_mod(value: Any) -> Any:
     """An expression in whose remainders steps are written as such."""
     return value.replace(sympy.Mod, lambda a, b: a - b * sympy.floor(a / b))
@@ -178,10 +97,6 @@ def slope(value: Any, t: Any) -> Any:
     """Derivative by t between jumps: steps are level."""
     steps = {step: sympy.Dummy(real=True) for step in value.atoms(sympy.floor, sympy.ceiling)}
     return sympy.diff(value.xreplace(steps), t).xreplace({dummy: step for step, dummy in steps.items()})
-
-
-def _step(argument: Any, *_: Any) -> Any:
-    return sympy.Piecewise((1, argument >= 0), (0, True))
 
 
 def time_switches(value: Any, parameters: Sequence[Any]) -> list[dict[str, Any]]:

@@ -7,20 +7,21 @@ import fricmb as fm
 from fricmb import laws
 
 CASES = [(name, d) for name in laws.names for d in getattr(laws, name).example().dimensions]
-def scene_of(law, d):
-    """1: a block on a belt; 2: a swinging puck; 3: a disc that slides and spins."""
+def scene_of(law, d, speed=1.0):
+    """1: a block on a belt; 2: a swinging puck; 3: a disc that slides and spins; ``speed``: part of their speeds."""
     if d == 3:
         body = fm.ModalBody(
             "m", frequencies=(0.0, 0.0, 0.0), damping_ratios=0.0, masses=(1.0, 1.0, 0.5), axes="xyz",
-            shapes={"sole": np.eye(3)}, velocity={"mode1": 0.3, "mode2": 0.1, "mode3": 0.2},
+            shapes={"sole": np.eye(3)},
+            velocity={"mode1": 0.3 * speed, "mode2": 0.1 * speed, "mode3": 0.2 * speed},
         )  # fmt: skip
         contact = fm.Contact("sole", body.point("sole"), law=law, normal_force=1.0, axes="xyz")
         return fm.Scene("disc", [body, contact])
     if d == 2:
-        puck = fm.Body("m", mass=1.0, axes="xy", velocity={"x": 0.3, "y": 0.4})
+        puck = fm.Body("m", mass=1.0, axes="xy", velocity={"x": 0.3 * speed, "y": 0.4 * speed})
         springs = [fm.Spring(f"k{c}", puck, axis=c, stiffness=k) for c, k in (("x", 50.0), ("y", 80.0))]
         return fm.Scene("puck", [puck, *springs, fm.Contact("sole", puck, law=law, normal_force=1.0)])
-    block, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.1})
+    block, belt = fm.Body("m", mass=1.0), fm.Driven("belt", velocity={"x": 0.1 * speed})
     spring = fm.Spring("k", block, axis="x", stiffness=100.0)
     return fm.Scene("belt", [block, belt, spring, fm.Contact("sole", block, belt, law=law, normal_force=10.0)])
 
@@ -32,3 +33,14 @@ def test_law_runs_and_its_energy_balances(name, d):
     assert np.isfinite(sol.force("sole")).all()
     if not sol.state("sole").size:
         assert (np.diff(sol.energy.friction_loss) >= -1e-9).all()
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
+@pytest.mark.parametrize(("name", "d"), CASES)
+def test_nothing_moves_where_nothing_acts(name, d, method):
+    """Nothing has a size here: whatever is measured by the largest so far is measured by 0."""
+    sol = fm.simulate(scene_of(getattr(laws, name).example(), d, speed=0.0), t_end=3.0, method=method)
+    assert not sol.q.any()
+    assert not sol.v.any()
+    assert not sol.events
+    assert sol.stats.n_steps < 60

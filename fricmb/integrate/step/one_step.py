@@ -59,7 +59,8 @@ def newton_tolerances(
     for k in range(n_c):
         tol[k] = relative * max(acc.r[k], 1e-8 * moving, acc.noise, 1e-290)
         if packed.ports.law[k] == LAW_SMOOTH:
-            tol[k] = min(tol[k], relative * slip_way(packed, acc, y, k, h) / h)
+            # of what has not moved the way is 0
+            tol[k] = min(tol[k], max(relative * slip_way(packed, acc, y, k, h) / h, 1e-290))
             continue
         for a in range(packed.ports.row[k], packed.ports.row[k + 1]):
             for i in range(scale.shape[0]):
