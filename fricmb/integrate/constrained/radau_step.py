@@ -237,10 +237,12 @@ def error_of(c: Control, y: State, st: Stages, h: float) -> float:
     """
     last, tab = 0.0, st.tab
     for i in range(y.v.shape[0]):
-        high = by_line(tab.top[0], y.v[i], st.V, i)
+        # where a load has just passed the cone, the acceleration that sizes go by is still 0
+        size = max(st.scale[i], largest_in_step(y.v[i], st.V, i))
+        high = abs(by_line(tab.top[0], y.v[i], st.V, i)) / size
         # a position that has only begun to move is measured by what its velocity brings within the step
-        size = max(c.q[i], largest_in_step(y.q[i], st.Q, i), h * st.scale[i])
-        last = max(last, abs(high) / st.scale[i], abs(by_line(tab.top[0], y.q[i], st.Q, i)) / size)
+        size = max(c.q[i], largest_in_step(y.q[i], st.Q, i), h * size)
+        last = max(last, high, abs(by_line(tab.top[0], y.q[i], st.Q, i)) / size)
     for a in range(y.z.shape[0]):
         size = max(c.z[a], largest_in_step(y.z[a], st.z, a), c.noise_z[a], 1e-290)
         last = max(last, abs(by_line(tab.top[0], y.z[a], st.z, a)) / size)
