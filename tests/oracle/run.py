@@ -399,14 +399,23 @@ class Run:
                 if -top.fun > tiny:
                     return float(brentq(value, top.x, times[k + 1], xtol=1e-15, rtol=8.9e-16))
                 return float(times[k])
-            around = (column[k - 1], right)
-            if k > 0 and column[k] < min(around) and column[k] < 0.3 * max(around):
-                low = minimize_scalar(
-                    value, bounds=(times[k - 1], times[k + 1]), method="bounded", options={"xatol": 1e-12}
-                )
-                if low.fun < -tiny:
-                    return float(brentq(value, times[k - 1], low.x, xtol=1e-15, rtol=8.9e-16))
+            low = self.lowest(value, times, column, k)
+            if low is not None and value(low) < -tiny:
+                return float(brentq(value, times[max(k - 1, 0)], low, xtol=1e-15, rtol=8.9e-16))
         return None
+
+    def lowest(self, value: Any, times: np.ndarray, column: np.ndarray, k: int) -> float | None:
+        """Where the margin is lowest about sample k, where it may be lower than at all samples.
+
+        At the ends of a step it may be lowest between the last sample of one and the first of the next.
+        """
+        a, b, here = max(k - 1, 0), k + 1, column[k]
+        if k == len(times) - 2 and column[b] < here:
+            a, here = k, column[b]
+        if here > min(column[a], column[b]) or here >= 0.3 * max(column[a], column[b]):
+            return None
+        found = minimize_scalar(value, bounds=(times[a], times[b]), method="bounded", options={"xatol": 1e-12})
+        return float(found.x)
 
 
 def solve(problem: Problem, rtol: float = 1e-11) -> Motion:
