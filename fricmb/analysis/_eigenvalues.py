@@ -16,6 +16,7 @@ from fricmb.analysis._errors import AnalysisError, Floats, checked_kind, checked
 from fricmb.analysis._steady import SteadySliding, checked_speeds, steady_sliding
 from fricmb.analysis._track import NEUTRAL, Complexes, Pairs, checked_values, follow, refine
 from fricmb.errors import shown
+from fricmb.integrate.run.one_thread import one_thread
 from fricmb.scene import parameter_unit
 from fricmb.values import DIMENSIONS, Units
 
@@ -182,9 +183,10 @@ def complex_eigenvalues(
         dofs[:] = [steady.system.dof_names[i] for i in steady.free]
         return steady.eigenpairs()
 
-    found = follow(solve, grid)
-    critical = crossings(solve, grid, found)
-    fine, between = refine(solve, grid, found, [c.value for c in critical])
+    with one_thread():
+        found = follow(solve, grid)
+        critical = crossings(solve, grid, found)
+        fine, between = refine(solve, grid, found, [c.value for c in critical])
     eigenvalues = np.array([pairs[0] for pairs in found])
     vectors = np.array([pairs[1] for pairs in found])[:, :, : len(dofs)]
     limit = 1e-12 * max(float(np.abs(eigenvalues).max(initial=0.0)), 1e-300)
@@ -292,7 +294,8 @@ def stability_map(
     unstable = np.zeros((first.size, second.size), dtype=np.int64)
     for i, a in enumerate(first.tolist()):
         for j, b in enumerate(second.tolist()):
-            found = steady_at(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
+            with one_thread():
+                found = steady_at(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
             found = found[np.abs(found.imag) <= top]
             if not found.size:
                 continue

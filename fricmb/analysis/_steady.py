@@ -173,7 +173,7 @@ def steady_sliding(scene: Scene, *, speeds: Mapping[str, float] | None = None) -
     at = linearise(system, q, v, z)
     _check(system, at, q, v, z, free)
     moves = [i for i, name in enumerate(system.dof_names) if name in held]
-    pull = np.linalg.solve(system.problem.linear.M, at.force) if v.size else at.force
+    pull = np.linalg.solve(system.problem.linear.M, at.force) if moves else at.force
     return SteadySliding(
         scene=scene,
         system=system,

@@ -93,7 +93,11 @@ def match(known: Pairs, new: Pairs) -> tuple[NDArray[np.int64], float]:
     similar = np.abs(known[1].conj() @ new[1].T) ** 2
     scale = max(float(np.abs(known[0]).max()), 1e-300)
     distance = np.abs(known[0][:, None] - new[0]) / scale
-    rows, columns = linear_sum_assignment(1.0 - similar + 4.0 * distance)
+    cost = 1.0 - similar + 4.0 * distance
+    # the cheapest of each, where no two want the same, is the assignment itself
+    rows, columns = np.arange(len(cost)), np.argmin(cost, axis=1)
+    if np.unique(columns).size < rows.size:
+        rows, columns = linear_sum_assignment(cost)
     order = np.full(known[0].size, -1, np.int64)
     order[rows] = columns
     return order, float(similar[rows, columns].min())
