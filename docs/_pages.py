@@ -32,13 +32,15 @@ DIMENSIONS = {
     "v0": "length/time", "u0": "length/time", "table": "length/time", "rotor_velocity": "modal",
     "frequency": "rad/time", "spin": "rad/time", "angular_velocity": "rad/time", "rates": "rad/time",
     "turning": "rad/time", "thickness": "length", "bearing_stiffness": "force length/rad",
-    "bearing_damping": "force length time/rad",
+    "bearing_damping": "force length time/rad", "guide_stiffness": "force/length",
+    "guide_damping": "force time/length", "waviness": "length", "direction": "rad", "rate": "rad/time",
+    "sleeve_mass": "mass", "sleeve_inertia": "mass length^2", "loose_mass": "mass", "force": "force",
 }  # fmt: skip
 NUMBERS = [
     "mu", "mu_s", "mu_k", "delta", "Omega1", "Omega2", "mass_ratio", "ratio", "pad_damping", "rotor_damping",
     "damping_ratio", "split", "modal_mass", "case", "n", "n_pad_modes", "n_rotor_modes", "n_contacts",
     "nodal_diameters", "law", "laws", "pressure", "modes", "conicity", "slope",
-    "restitution",
+    "restitution", "lifted",
 ]  # fmt: skip
 DIMENSIONS |= dict.fromkeys(NUMBERS, "")
 # Where a model means something else by a name.
@@ -54,6 +56,12 @@ OTHERWISE = {
     ("belt_drive", "load"): "force length",
     ("drive_train", "speed"): "rad/time",
     ("gear_rattle", "amplitude"): "rad",
+    ("oscillating_table", "amplitude"): "length",
+    ("vibrating_incline", "amplitude"): "length",
+    ("vibrating_incline", "slope"): "rad",
+    ("impact_damper", "gap"): "length",
+    ("newtons_cradle", "gap"): "length",
+    ("woodpecker", "stiffness"): "force length/rad",
     ("drive_train", "stiffness"): "force length/rad",
     ("drive_train", "damping"): "force length time/rad",
     ("sprag_slip", "stiffness"): "force length/rad",

@@ -18,13 +18,18 @@ from fricmb.models.bouncing_ball import bouncing_ball
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
 from fricmb.models.drive_train import drive_train
+from fricmb.models.dropped_disc import dropped_disc
 from fricmb.models.dry_ball_joint import dry_ball_joint
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
 from fricmb.models.gear_rattle import gear_rattle
 from fricmb.models.heavy_top import heavy_top
+from fricmb.models.impact_damper import impact_damper
 from fricmb.models.minimal_flutter import minimal_flutter
+from fricmb.models.newtons_cradle import newtons_cradle
+from fricmb.models.oscillating_table import oscillating_table
+from fricmb.models.pad_lift_off import pad_lift_off
 from fricmb.models.pad_rotor import pad_rotor
 from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
@@ -37,9 +42,11 @@ from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
+from fricmb.models.vibrating_incline import vibrating_incline
 from fricmb.models.wheel_on_slope import wheel_on_slope
 from fricmb.models.wheelset import wheelset
 from fricmb.models.wobbling_disc_brake import wobbling_disc_brake
+from fricmb.models.woodpecker import woodpecker
 
 __all__ = [
     "Model",
@@ -55,13 +62,18 @@ __all__ = [
     "car_axis",
     "catalogue",
     "drive_train",
+    "dropped_disc",
     "dry_ball_joint",
     "dry_pendulum",
     "four_bar",
     "friction_oscillator",
     "gear_rattle",
     "heavy_top",
+    "impact_damper",
     "minimal_flutter",
+    "newtons_cradle",
+    "oscillating_table",
+    "pad_lift_off",
     "pad_rotor",
     "painleve_rod",
     "planar_oscillator",
@@ -74,7 +86,9 @@ __all__ = [
     "sprag_slip",
     "stick_slip_chain",
     "turntable",
+    "vibrating_incline",
     "wheel_on_slope",
     "wheelset",
     "wobbling_disc_brake",
+    "woodpecker",
 ]

@@ -19,13 +19,18 @@ from fricmb.models.bouncing_ball import bouncing_ball
 from fricmb.models.brake4dof import brake4dof
 from fricmb.models.car_axis import car_axis
 from fricmb.models.drive_train import drive_train
+from fricmb.models.dropped_disc import dropped_disc
 from fricmb.models.dry_ball_joint import dry_ball_joint
 from fricmb.models.dry_pendulum import dry_pendulum
 from fricmb.models.four_bar import four_bar
 from fricmb.models.friction_oscillator import friction_oscillator
 from fricmb.models.gear_rattle import gear_rattle
 from fricmb.models.heavy_top import heavy_top
+from fricmb.models.impact_damper import impact_damper
 from fricmb.models.minimal_flutter import minimal_flutter
+from fricmb.models.newtons_cradle import newtons_cradle
+from fricmb.models.oscillating_table import oscillating_table
+from fricmb.models.pad_lift_off import pad_lift_off
 from fricmb.models.pad_rotor import pad_rotor
 from fricmb.models.painleve_rod import painleve_rod
 from fricmb.models.planar_oscillator import planar_oscillator
@@ -38,9 +43,11 @@ from fricmb.models.slider_crank import slider_crank
 from fricmb.models.sprag_slip import sprag_slip
 from fricmb.models.stick_slip_chain import stick_slip_chain
 from fricmb.models.turntable import turntable
+from fricmb.models.vibrating_incline import vibrating_incline
 from fricmb.models.wheel_on_slope import wheel_on_slope
 from fricmb.models.wheelset import wheelset
 from fricmb.models.wobbling_disc_brake import wobbling_disc_brake
+from fricmb.models.woodpecker import woodpecker
 from fricmb.values import DIMENSIONLESS, SI, Units
 
 
@@ -98,6 +105,13 @@ _MODELS = (
     Model(build=bouncing_ball, t_end=3.0, units=SI),
     Model(build=rocking_block, t_end=4.0, units=SI),
     Model(build=gear_rattle, t_end=0.2, units=SI),
+    Model(build=oscillating_table, t_end=2.0, units=SI),
+    Model(build=impact_damper, t_end=10.0, units=SI),
+    Model(build=newtons_cradle, t_end=3.0, units=SI),
+    Model(build=woodpecker, t_end=0.75, units=SI),
+    Model(build=vibrating_incline, t_end=0.5, units=SI),
+    Model(build=dropped_disc, t_end=2.5, units=SI),
+    Model(build=pad_lift_off, t_end=0.1, units=SI),
     Model(build=heavy_top, t_end=1.0, units=SI),
     Model(build=rising_top, t_end=6.0, units=SI),
     Model(build=billiard, t_end=1.0, units=SI),

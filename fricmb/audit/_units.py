@@ -63,8 +63,12 @@ def units_of(rows: Samples, scale: Floats, rtol: float, atol: Any = None) -> Uni
         floor = np.asarray(atol, dtype=float)
         low, high = np.split(floor if floor.size == 2 * len(q) else np.repeat(np.resize(floor, 2), len(q)), 2)
         q, v = np.maximum(q, low), np.maximum(v, high)
-    loss = rtol * _largest(rows.friction_loss)
-    return Units(q=q, v=v, z=rtol * _largest(rows.z), F=rtol * _largest(rows.F * scale), loss=loss, rtol=rtol)
+    # a contact that is open all the time has no size of its own, and the round-off of the others
+    F, loss = (
+        np.maximum(rtol * size, ROUND_OFF * size.max(initial=0.0))
+        for size in (_largest(rows.F * scale), _largest(rows.friction_loss))
+    )
+    return Units(q=q, v=v, z=rtol * _largest(rows.z), F=F, loss=loss, rtol=rtol)
 
 
 def at_rest(units: Units, statements: Statements, rows: Samples) -> Units:
