@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import gzip
-import shutil
 import tempfile
 import warnings
-import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from fricmb._files._text import unpack
 from fricmb.errors import FileError, FricmbError, SceneError, shown
 
 Reader = Callable[..., Any]
@@ -29,14 +27,14 @@ class Formats:
     readers : dict of str to callable
         By format; the first argument is the path.
     endings : dict of str to str
-    unpack : tuple of str
+    packed : tuple of str
         Formats whose readers open packed files (gz) themselves, for what stands beside them is packed, too.
     """
 
     who: str
     readers: Mapping[str, Reader]
     endings: Mapping[str, str]
-    unpack: tuple[str, ...] = ()
+    packed: tuple[str, ...] = ()
 
     def checked(self, path: Any, format: Any) -> Path:
         """The path, and a format that there is."""
@@ -62,17 +60,17 @@ class Formats:
         if kind is None:
             known = ", ".join(self.readers)
             raise FileError(f"{file}: its ending is of no format that is read; say format=, one of {known}")
-        return one_sentence(file, self.readers[kind], *arguments, unpack=kind not in self.unpack)
+        return one_sentence(file, self.readers[kind], *arguments, packed=kind in self.packed)
 
 
-def one_sentence(file: Path, reader: Reader, *arguments: Any, unpack: bool = True) -> Any:
+def one_sentence(file: Path, reader: Reader, *arguments: Any, packed: bool = False) -> Any:
     """What a reader finds in a file; an error of a library becomes a FileError that names the file."""
     if not file.is_file():
         raise FileError(f"{file}: there is no such file")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of libraries: what they doubt is checked, or an error follows
-            if unpack and file.suffix == ".gz":
+            if not packed and file.suffix == ".gz":
                 return _unpacked(file, reader, arguments)
             return reader(file, *arguments)
     except FricmbError as error:
@@ -92,11 +90,8 @@ def _on_one_line(error: FricmbError) -> FricmbError:
 def _unpacked(file: Path, reader: Reader, arguments: tuple[Any, ...]) -> Any:
     with tempfile.TemporaryDirectory() as folder:
         plain = Path(folder) / file.stem
-        try:
-            with gzip.open(file, "rb") as packed, plain.open("wb") as target:
-                shutil.copyfileobj(packed, target)
-        except (OSError, EOFError, zlib.error) as error:
-            raise FileError(f"{file}: expected a whole packed file, gz ({error})") from error
+        with plain.open("wb") as target:
+            unpack(file, target)
         try:
             return reader(plain, *arguments)
         except FileError as error:

@@ -56,7 +56,8 @@ def matrix_market(path: Path) -> Any:
 def _sizes(path: Path, number: int, line: str, width: int) -> list[int]:
     words = line.split()
     if len(words) != width or not all(word.isdecimal() for word in words) or not 0 < int(words[0]) <= MOST:
-        raise FileError(f"{path}: line {number}: expected {width} sizes, got {line.strip()[:40]!r}")
+        accepted = f"{width} sizes, rows from 1 to {MOST}"
+        raise FileError(f"{path}: line {number}: expected {accepted}, got {line.strip()[:40]!r}")
     return [int(word) for word in words]
 
 

@@ -29,7 +29,7 @@ FORMATS = Formats(
         ".pch": "nastran", ".dmig": "nastran", ".full": "ansys", ".mtx": "abaqus", ".sim": "abaqus",
         ".sti": "calculix", ".mas": "calculix", ".dof": "calculix",
     },
-    unpack=("abaqus", "calculix"),
+    packed=("abaqus", "calculix"),
 )  # fmt: skip
 
 

@@ -94,6 +94,9 @@ def _axis(direction: Any) -> str:
 
 def _function(path: Path, number: int, held: Mapping[str, Any]) -> TimeSeries | Frf:
     x, values = np.asarray(held["x"], dtype=float), np.asarray(held["data"])
+    said = int(held.get("num_pts", values.size))
+    if said > values.size:
+        raise FileError(f"{path}: function {number}: it announces {said} values, got {values.size}")
     if x.shape != values.shape:
         raise FileError(f"{path}: function {number}: expected {x.size} values, got {values.size}")
     where: dict[str, Any] = {"node": int(held["rsp_node"]), "axis": _axis(held["rsp_dir"])}
