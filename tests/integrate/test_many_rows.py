@@ -105,12 +105,36 @@ def test_few_contacts_on_many_modes_are_a_border():
     assert mech_of(build(fm.models.slider_crank()).problem).order.sizes[7] == 0
 
 
-def test_radau_takes_the_band_from_three_rows_on():
-    """Unless they are few beside many modes, where condensed steps are faster."""
-    assert in_a_band(build(pad(2, 10)).problem, None)
-    assert not in_a_band(build(pad(4, 400)).problem, None)
-    assert not in_a_band(build(fm.models.brake4dof()).problem, None)
-    assert in_a_band(build(fm.models.stick_slip_chain(3)).problem, None)
+def test_radau_takes_the_band():
+    """Few contacts or many, on many modes or on few; but with nonlinear elements many alone."""
+    for scene in (pad(2, 10), pad(4, 400), fm.models.brake4dof(), fm.models.stick_slip_chain(3)):
+        assert in_a_band(build(scene).problem, None)
+    block = fm.Body("m", mass=1.0)
+    cubic = fm.Force("k", block, axis="x", value=-fm.coordinate("m.x") ** 3)
+    assert not in_a_band(build(fm.Scene("s", [block, cubic])).problem, None)
+
+
+@pytest.mark.parametrize(
+    ("law", "mass"),
+    [
+        pytest.param(STRIBECK, 1.0, id="a law that falls"),
+        pytest.param(LUGRE, 1.0, id="a state"),
+        pytest.param(STRIBECK, 1e-3, id="a stiff tip"),
+    ],
+)
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_one_contact_against_condensed_steps(law, mass, rtol):
+    """Where friction alone is not linear, iterations that leave the structure out find what all of it gives."""
+    belt, block = fm.Driven("belt", velocity={"x": 0.1 + 0.05 * sympy.sin(2.0 * fm.t)}), fm.Body("m", mass=1.0)
+    tip = fm.Body("tip", mass=mass)
+    parts = [fm.Spring("k", block, axis="x", stiffness=1.0), fm.Spring("stiff", block, tip, axis="x", stiffness=100.0)]
+    scene = fm.Scene("s", [belt, block, tip, *parts, fm.Contact("c", block, belt, law=law, normal_force=1.0)])
+    t = np.linspace(0.0, 10.0, 101)
+    true = fm.simulate(scene, t_end=10.0, t_eval=t, rtol=1e-11, method=Condensed())
+    found = fm.simulate(scene, t_end=10.0, t_eval=t, rtol=rtol, method="radau")
+    assert [e.kind for e in found.events] == [e.kind for e in true.events]
+    for a, b in ((found.q[:1], true.q[:1]), (found.v[:1], true.v[:1])):
+        assert (np.abs(a - b).max(axis=1) < rtol * np.abs(b).max(axis=1)).all()
 
 
 def test_even_numbers_of_stages_are_condensed():

@@ -73,6 +73,13 @@ def solve_complex(ab: Complexes, pivots: Pivots, sizes: Pivots, b: Complexes) ->
 
 
 @entry
+def solve_border(ab: Complexes, pivots: Pivots, sizes: Pivots, b: Complexes) -> int:
+    """Solve with factors that are there, b being 0 but for the border."""
+    solve_band(ab, pivots, sizes, b, True)
+    return 0
+
+
+@entry
 def factor_of(error: float, order: float) -> float:
     """By what a step may change."""
     return step_factor(error, order, 0.9)
@@ -260,6 +267,10 @@ def test_a_band_with_a_border_is_solved_as_a_full_matrix(n, half, border):
     load_lapack()
     put_down(matrix, sizes, ab)
     assert solve_complex(ab, pivots, sizes, x)
+    np.testing.assert_allclose(x, solve(matrix, b), rtol=1e-9, atol=1e-9)
+    b[:n] = 0.0
+    x = b.copy()
+    solve_border(ab, pivots, sizes, x)
     np.testing.assert_allclose(x, solve(matrix, b), rtol=1e-9, atol=1e-9)
     matrix[:, -1] = 0.0
     ab[:] = 0.0

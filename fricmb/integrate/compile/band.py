@@ -75,15 +75,21 @@ def factor_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots) -> bool:
         solve_plain(ab, pivots, sizes, line)
         for r in range(border):
             row = ab[below + r * n : below + (r + 1) * n]
-            at = corner + c * int(sizes[CORNER + 3]) + 2 * int(sizes[CORNER + 1]) + r - c
+            at, total = corner + c * int(sizes[CORNER + 3]) + 2 * int(sizes[CORNER + 1]) + r - c, 0.0 * ab[0]
             for i in range(n):
-                ab[at] -= row[i] * line[i]
+                total += row[i] * line[i]
+            ab[at] -= total
     return factor_plain(ab[corner:], pivots[n:], sizes[CORNER:])
 
 
 @kernel
-def solve_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes) -> None:
-    """Overwrite b (n,) by the solution for the matrix whose factors are in ``ab``."""
+def solve_band(
+    ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats | Complexes, alone: bool = False
+) -> None:
+    """Overwrite b (n,) by the solution for the matrix whose factors are in ``ab``.
+
+    ``alone``: of b nothing but what belongs to the border is not 0, where there is one.
+    """
     border, n = int(sizes[CORNER]), int(sizes[0])
     if border == 0:
         solve_plain(ab, pivots, sizes, b)
@@ -91,11 +97,13 @@ def solve_band(ab: Floats | Complexes, pivots: Pivots, sizes: Pivots, b: Floats 
     right = n * int(sizes[3])
     below, corner = right + border * n, right + 2 * border * n
     first, last = b[:n], b[n:]
-    solve_plain(ab, pivots, sizes, first)
-    for r in range(border):
-        row = ab[below + r * n : below + (r + 1) * n]
-        for i in range(n):
-            last[r] -= row[i] * first[i]
+    if not alone:
+        solve_plain(ab, pivots, sizes, first)
+        for r in range(border):
+            row, total = ab[below + r * n : below + (r + 1) * n], 0.0 * b[0]
+            for i in range(n):
+                total += row[i] * first[i]
+            last[r] -= total
     solve_plain(ab[corner:], pivots[n:], sizes[CORNER:], last)
     for c in range(border):
         line, x = ab[right + c * n : right + (c + 1) * n], last[c]

@@ -144,6 +144,8 @@ def reject(c: Control, h: float) -> int:
 
 #: Rate of convergence up to which the Jacobian of a step serves the next one.
 KEPT = 0.001
+#: The same where further iterations are of friction alone, and cost less than factors.
+KEPT_PLAIN = 0.01
 
 
 @kernel
@@ -158,12 +160,12 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
 
     With joints it turns with the bodies; near rest it turns with the directions of slip.
     """
-    if has_joints(y) or c.made == 0.0 or st.turns.near > 0 or not st.found <= KEPT:
+    if has_joints(y) or c.made == 0.0 or not st.found <= (KEPT_PLAIN if st.plain == 1 else KEPT):
         return False
-    far = True
+    same = st.plain == 1 or st.turns.near == 0
     for p in range(y.mode.shape[0]):
-        far = far and not nears_rest(mech, k, y, p, h)
-    return far
+        same = same and nears_rest(mech, k, y, p, h) == (k.form[p] == 1)
+    return same
 
 
 #: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.

@@ -25,7 +25,8 @@ from fricmb.integrate.constrained.radau_step import Control, last_stage, measure
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import may_have_passed, near_singular, way_left
 from fricmb.integrate.constrained.slip_rows import keep_held
-from fricmb.integrate.constrained.stages import Stages, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained.stage_newton import iterate_stages
+from fricmb.integrate.constrained.stages import Stages, factor_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch

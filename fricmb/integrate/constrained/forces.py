@@ -202,6 +202,36 @@ def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) 
 
 
 @kernel
+def forces_on_signals(mech: Mech, k: Moving, F: Floats) -> None:
+    """Forces on signals, ``k.fu``, at X: of a linear structure and contacts under given loads alone."""
+    linear, port = mech.linear, mech.port
+    n_y, n_u = k.ddy.shape[0], k.s.ddu.shape[0]
+    X, fu = k.s.X, k.fu
+    for i in range(n_u):
+        fu[i] = linear.f[n_y + i]
+    for e in range(linear.K.shape[0]):
+        if linear.Ki[e] >= n_y:
+            i, j = linear.Ki[e], linear.Kj[e]
+            x = X[1 + j + (n_y if j >= n_y else 0)]
+            if linear.tie.shape[0] > 0:
+                x -= linear.tie[e] * X[1 + i + n_y]
+            fu[i - n_y] -= linear.K[e] * x
+    for i in range(n_y, linear.alone.shape[0]):
+        fu[i - n_y] -= linear.alone[i] * X[1 + i + n_y]
+    for e in range(linear.C.shape[0]):
+        if linear.Ci[e] >= n_y:
+            j = linear.Cj[e]
+            fu[linear.Ci[e] - n_y] -= linear.C[e] * X[1 + n_y + j + (n_u if j >= n_y else 0)]
+    for c in range(port.joint.shape[0]):
+        for a in range(port.row[c], port.row[c + 1]):
+            form = port.slip.x_start[c] + 2 * (a - port.row[c])
+            for j in range(port.slip.form_start[form], port.slip.form_start[form + 1]):
+                i = port.slip.form_index[j] - 1 - 2 * n_y
+                if i >= 0:
+                    fu[i] += F[a] * port.slip.form_coefficient[j]
+
+
+@kernel
 def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) -> None:
     """Reactions and friction of joints; also the constraints and their rates, ``k.phi`` and ``k.phi_rate``."""
     joint = mech.joint
@@ -236,6 +266,15 @@ def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Fl
                 force += k.out[at + i * n_x + a] * F[first + i]
             if force != 0.0:
                 scatter(k, table, a0 + a, force)
+
+
+@kernel
+def contact_slip(mech: Mech, k: Moving, g: Floats) -> None:
+    """Slip velocities of contacts that are no joints."""
+    port = mech.port
+    for c in range(port.joint.shape[0]):
+        for a in range(port.row[c], port.row[c + 1] if port.joint[c] < 0 else port.row[c]):
+            g[a] = value_of_form(k, port.slip, port.slip.x_start[c] + 2 * (a - port.row[c]) + 1) - port.w[a]
 
 
 @kernel

@@ -37,6 +37,15 @@ def keep(mech: Mech, w: Instant, y: State) -> None:
             w.kept = 0
 
 
+@kernel
+def all_stick(y: State) -> bool:
+    """Whether nothing slips, is open or follows a smooth law."""
+    stick = True
+    for c in range(y.mode.shape[0]):
+        stick = stick and y.mode[c] == STICK
+    return stick
+
+
 @block
 def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -> bool:
     """Factor the matrix of the instant; False where it is singular.
@@ -44,6 +53,8 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -
     ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
     """
     order = mech.order
+    if friction == STUCK and all_stick(y):
+        friction = ALL  # the same matrix, and the one that is kept
     if friction == ALL and serves_again(w, y):
         return True
     w.kept = 0

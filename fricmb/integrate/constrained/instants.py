@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.constrained.accelerations import react
-from fricmb.integrate.constrained.forces import call_joint, forces, move
+from fricmb.integrate.constrained.forces import call_joint, contact_slip, forces, move
 from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -80,7 +80,10 @@ def follow(mech: Mech, k: Moving, y: State, small: float) -> None:
     if not some:
         return
     move(mech, k, y.t, y.q, y.v)
-    forces(mech, k, y.lam, y.F, y.N, y.g)
+    if y.lam.shape[0] > 0:
+        forces(mech, k, y.lam, y.F, y.N, y.g)
+    else:
+        contact_slip(mech, k, y.g)
     for c in range(y.mode.shape[0]):
         if y.mode[c] == SLIP and plane(mech, c) and magnitude(mech.port.row, c, y.g) > small:
             point_along(mech.port.row, c, y.g, 1.0, y.n)

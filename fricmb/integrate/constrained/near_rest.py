@@ -92,7 +92,7 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
         for i in range(tab.lam.shape[0]):
             st.w[i, :] = 0.0
             st.w[i, row] = 1.0
-            solve_system(mech, st, i)
+            solve_system(mech, st, i, False)
             turns.answer[k, i] = st.w[i]
             for q in range(near):
                 turn = across(mech, turns, q, st.w[i])

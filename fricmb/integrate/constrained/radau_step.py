@@ -8,13 +8,14 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.accelerations import powers, react
-from fricmb.integrate.constrained.forces import forces, move
+from fricmb.integrate.constrained.forces import forces, forces_on_signals, move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
-from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, factor_stages, iterate_stages, linearise
+from fricmb.integrate.constrained.stage_newton import iterate_stages
+from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, empty_slot, factor_stages, linearise, slot_for
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
@@ -151,14 +152,16 @@ def predict_stages(c: Control, y: State, st: Stages, h: float) -> None:
         if before > 0.0:
             line_at(st.tab, c.ahead[i], c.weight[i])
     for i in range(c.ahead.shape[0]):
-        at = 0
+        at, weight = 0, c.weight[i]
         old = before > 0.0 and c.ahead[i] <= 4.0
         for start, part in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.z)):
-            for a in range(start.shape[0]):
-                value = 0.0 if old else start[a]
-                for j in range(c.weight.shape[1] if old else 0):
-                    value += c.weight[i, j] * c.old[j, at + a]
-                part[i, a] = value
+            line = part[i]
+            for a in range(line.shape[0]):
+                line[a] = 0.0 if old else start[a]
+            for j in range(weight.shape[0] if old else 0):
+                values, share = c.old[j], weight[j]
+                for a in range(line.shape[0]):
+                    line[a] += share * values[at + a]
             at += start.shape[0]
         for a in range(0 if old else y.v.shape[0]):
             st.V[i, a] += st.tab.c[i] * h * y.a[a]
@@ -191,13 +194,17 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     if c.made == 0.0:
         choose_forms(mech, k, y, st, h)
         linearise(mech, k, y, st)
+        st.lengths[:] = 0.0
         c.counts[3] += 1
-    if not abs(c.made - h) <= (0.0 if has_joints(y) else ALIKE * h):
-        c.counts[4] += 1
-        if not factor_stages(mech, st, h):
-            c.made = 0.0
-            return False
-        c.made = h
+    apart = 0.0 if has_joints(y) else ALIKE * h
+    if not abs(c.made - h) <= apart:
+        if not slot_for(st, h, apart):
+            c.counts[4] += 1
+            empty_slot(st)
+            if not factor_stages(mech, st, h):
+                c.made = 0.0
+                return False
+        c.made = st.lengths[st.slot]
         prepare_turns(mech, st)
     measure(mech, c, y, h, st.scale)
     measure_states(c, y, h, st)
@@ -310,7 +317,10 @@ def stage_powers(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     """Powers at stage i, whose slip and loads are up to date, into ``c.power[i]``."""
     move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
     if k.s.ddu.shape[0] > 0:  # forces on signals
-        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
+        if st.plain == 1:
+            forces_on_signals(mech, k, st.F[i])
+        else:
+            forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     powers(mech, k, st.F[i], st.g[i], st.N[i], c.power[i])
 
 

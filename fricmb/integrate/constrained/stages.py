@@ -23,14 +23,12 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, mech_of
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.structure import mechanism_of
-from fricmb.integrate.constrained.turning import Turns, correct_turns, spread_of_stages, turns_of
+from fricmb.integrate.constrained.turning import Turns, turns_of
 from fricmb.integrate.problem import (
-    LAW_CONSTANT,
-    LAW_SMOOTH,
     NORMAL_CONSTANT,
-    SLIP,
     Complexes,
     Complexes2,
+    Complexes3,
     Floats,
     Floats2,
     Pivots,
@@ -41,11 +39,15 @@ from fricmb.integrate.step.tableau import Tableau
 
 
 class Stages(Layout):
-    """Values at the stages (s, .), residuals and changes (s, size), factored matrices (l, .) and pivots.
+    """Values at the stages (s, .), residuals and changes (s, size), factored matrices and pivots.
+
+    Factors are kept for several steps, ``lengths`` (slots,), 0 where there are none: ``real`` (slots, .), ``pairs``
+    (slots, l, .); those in use are of ``slot``.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved;
-    ``fresh`` 1 where N and g are those of the values there, but for a change that is nothing.
+    ``fresh`` 1 where N and g are those of the values there, but for a change that is nothing; ``plain`` 1 where
+    friction alone is not linear, and its loads are given.
     """
 
     tab: Tableau
@@ -59,9 +61,11 @@ class Stages(Layout):
     g: Floats2
     R: Floats2
     L: Layers
-    real: Floats
-    pairs: Complexes2
+    real: Floats2
+    pairs: Complexes3
     pivots: Pivots
+    lengths: Floats
+    slot: int
     x: Floats
     w: Complexes2
     line: Complexes
@@ -72,6 +76,11 @@ class Stages(Layout):
     turns: Turns
     felt: Felt
     fresh: int
+    plain: int
+
+
+#: Steps whose factors are kept at most, and bytes for them: without joints a ladder of steps comes back to the same.
+SLOTS, SLOT_BYTES = 16, 2e6
 
 
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
@@ -79,14 +88,28 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
     size, band = len(order.place), length_of(order.sizes)
     nc, rows, nz, count = problem.n_c, problem.m, problem.n_z, len(tab.lam)
+    slots = 1
+    if problem.mechanism is None and s > 1:
+        slots = int(np.clip(SLOT_BYTES / max(16.0 * (count + 1) * band, 1.0), 1, SLOTS))
     return Stages(
         tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
-        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros(band),
-        np.zeros((count, band), complex), np.zeros(count * size, np.int32), np.zeros(size),
+        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros((slots, band)),
+        np.zeros((slots, count, band), complex), np.zeros(slots * count * size, np.int32), np.zeros(slots), 0,
+        np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
-        turns_of(problem, tab, size), felt_of(problem, s), 0,
+        turns_of(problem, tab, size), felt_of(problem, s), 0, int(is_plain(problem)),
     )  # fmt: skip
+
+
+def is_plain(problem: Problem) -> bool:
+    """Whether the equations of a step are linear but for friction, under loads that do not follow the motion."""
+    given = bool((problem.contacts.normal == NORMAL_CONSTANT).all())
+    if problem.mechanism is not None or not given or problem.elements.table.address.size:
+        return False
+    slip = mechanism_of(problem).slip
+    of_rate = np.repeat(np.arange(len(slip.form_start) - 1) % 2 == 1, np.diff(slip.form_start))
+    return not (of_rate & (slip.form_index >= 1) & (slip.form_index <= problem.n)).any()
 
 
 @block
@@ -108,28 +131,61 @@ def linearise(mech: Mech, k: Moving, y: State, st: Stages) -> None:
         add(mech.order, L.A0, i, i, 1.0)
 
 
+@kernel
+def slot_for(st: Stages, h: float, apart: float) -> bool:
+    """Choose the slot whose factors are of the step nearest to h; whether that is no further than ``apart``."""
+    nearest = st.slot
+    for k in range(st.lengths.shape[0]):
+        if abs(st.lengths[k] - h) < abs(st.lengths[nearest] - h):
+            nearest = k
+    if st.lengths[nearest] > 0.0 and abs(st.lengths[nearest] - h) <= apart:
+        st.slot = nearest
+        return True
+    return False
+
+
+@kernel
+def empty_slot(st: Stages) -> None:
+    """Choose the slot after the one in use, whose factors are the oldest."""
+    st.slot = (st.slot + 1) % st.lengths.shape[0]
+
+
 @block
 def factor_stages(mech: Mech, st: Stages, h: float) -> bool:
-    """Factor the real and the complex systems for a step h."""
-    order, L, tab = mech.order, st.L, st.tab
+    """Factor the real and the complex systems for a step h, into the slot in use."""
+    order, L, tab, slot = mech.order, st.L, st.tab, st.slot
     size = order.place.shape[0]
+    st.lengths[slot] = 0.0
     for i in range(tab.lam.shape[0]):
-        pivots = st.pivots[i * size : (i + 1) * size]
+        first = (slot * tab.lam.shape[0] + i) * size
+        pivots = st.pivots[first : first + size]
         if tab.lam[i].imag == 0.0:
-            up, down = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real
-            for j in range(st.real.shape[0]):
-                st.real[j] = up * L.A0[j] + L.A1[j] + down * L.A2[j]
-            if not factor_band(st.real, pivots, order.sizes):
+            up, down, real = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real, st.real[slot]
+            for j in range(real.shape[0]):
+                real[j] = up * L.A0[j] + L.A1[j] + down * L.A2[j]
+            if not factor_band(real, pivots, order.sizes):
                 return False
         else:
             shift = h * tab.lam[i]
             inverse = 1.0 / shift
-            pair = st.pairs[i]
-            for j in range(st.real.shape[0]):
+            pair = st.pairs[slot, i]
+            for j in range(pair.shape[0]):
                 pair[j] = inverse * L.A0[j] + L.A1[j] + shift * L.A2[j]
             if not factor_band(pair, pivots, order.sizes):
                 return False
+    st.lengths[slot] = h
     return True
+
+
+@kernel
+def accelerations_at(y: State, st: Stages, h: float, i: int) -> None:
+    """Accelerations of stage i from the velocities, into ``st.acc``."""
+    acc = st.acc
+    acc[:] = 0.0
+    for j in range(st.tab.c.shape[0]):
+        rate, V = st.Ainv[i, j] / h, st.V[j]
+        for a in range(y.v.shape[0]):
+            acc[a] += rate * (V[a] - y.v[a])
 
 
 @block
@@ -138,13 +194,8 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
     r = st.R[i]
     s = st.tab.c.shape[0]
-    for a in range(n):
-        st.acc[a] = 0.0
-        st.Q[i, a] = y.q[a]
-        for j in range(s):
-            st.acc[a] += st.Ainv[i, j] * (st.V[j, a] - y.v[a])
-            st.Q[i, a] += h * st.tab.A[i, j] * st.V[j, a]
-        st.acc[a] /= h
+    accelerations_at(y, st, h, i)
+    stage_positions(y, st, h, i)
     move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
     forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     pull_back(mech, k, st.x)
@@ -164,166 +215,37 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
 
 
 @kernel
-def solve_system(mech: Mech, st: Stages, i: int) -> None:
-    """Overwrite ``st.w[i]`` by the solution of system i, whose factors are there."""
-    place, w = mech.order.place, st.w[i]
-    pivots = st.pivots[i * place.shape[0] : (i + 1) * place.shape[0]]
+def solve_system(mech: Mech, st: Stages, i: int, alone: bool) -> None:
+    """Overwrite ``st.w[i]`` by the solution of system i, whose factors are there; ``alone``: rows of motion are 0."""
+    place, w, slot = mech.order.place, st.w[i], st.slot
+    first = (slot * st.w.shape[0] + i) * place.shape[0]
+    pivots = st.pivots[first : first + place.shape[0]]
     if st.tab.lam[i].imag == 0.0:
         for a in range(place.shape[0]):
             st.x[place[a]] = w[a].real
-        solve_band(st.real, pivots, mech.order.sizes, st.x)
+        solve_band(st.real[slot], pivots, mech.order.sizes, st.x, alone)
         for a in range(place.shape[0]):
             w[a] = st.x[place[a]]
         return
     for a in range(place.shape[0]):
         st.line[place[a]] = w[a]
-    solve_band(st.pairs[i], pivots, mech.order.sizes, st.line)
+    solve_band(st.pairs[slot, i], pivots, mech.order.sizes, st.line, alone)
     for a in range(place.shape[0]):
         w[a] = st.line[place[a]]
-
-
-@block
-def newton_change(mech: Mech, st: Stages) -> None:
-    """Solve for the changes of all unknowns: R is overwritten."""
-    tab = st.tab
-    size, s = mech.order.place.shape[0], tab.c.shape[0]
-    for i in range(tab.lam.shape[0]):
-        for a in range(size):
-            real = imaginary = 0.0
-            for j in range(s):
-                real += tab.Tinv[i, j].real * st.R[j, a]
-                imaginary += tab.Tinv[i, j].imag * st.R[j, a]
-            st.w[i, a] = complex(real, imaginary)
-        solve_system(mech, st, i)
-    for j in range(s):
-        for a in range(size):
-            total = 0.0
-            for i in range(tab.lam.shape[0]):
-                total += tab.T[j, i].real * st.w[i, a].real - tab.T[j, i].imag * st.w[i, a].imag
-            st.R[j, a] = total
-
-
-#: Newton's iterations in a step before it is given up.
-ITERATIONS = 12
-#: Part by which a change of a state counts beside one of a velocity: most iterations more are for states alone.
-STATES = 0.1
-#: Round-off of velocities in a Newton change, beside what the kinetic energy at the stages could bring.
-NOISE = 1e-15
-
-
-@kernel
-def is_noise(mech: Mech, st: Stages) -> bool:
-    """Whether the last changes of velocities are round-off: one that hardly moves has that of those it is tied to.
-
-    A short step begins so near its solution that nothing converges any more.
-    """
-    energy = 0.0
-    for i in range(st.V.shape[0]):
-        for a in range(st.V.shape[1]):
-            energy = max(energy, mech.mass[a] * st.V[i, a] ** 2)
-    for i in range(st.V.shape[0]):
-        for a in range(st.V.shape[1]):
-            if not abs(st.R[i, a]) <= NOISE * np.sqrt(energy / mech.mass[a]):
-                return False
-    return True
-
-
-#: Round-off of a solution with factors, where forces of the structure over a step are no more than inertia.
-ROUND_OFF = 1e-14
-
-
-@kernel
-def is_linear(mech: Mech, y: State) -> bool:
-    """Whether the equations of a step are linear: in stick, and in slip along a line under one force."""
-    port, linear = mech.port, mech.elements.address.shape[0] == 0 and mech.joint.n_x.shape[0] == 0
-    for c in range(y.mode.shape[0]):
-        slips = y.mode[c] == SLIP and (port.law[c] != LAW_CONSTANT or port.row[c + 1] - port.row[c] > 1)
-        linear = linear and not slips and port.normal[c] == NORMAL_CONSTANT and port.law[c] != LAW_SMOOTH
-        linear = linear and port.soft[c] == 0.0
-    return bool(linear and mech.place.address.shape[0] == 0)
-
-
-@kernel
-def left_by_factors(mech: Mech, y: State, h: float, made: float) -> float:
-    """Part of a change that its solution by factors may leave in a step h; 1 where equations are not linear.
-
-    Stiff springs and dampers, whose forces over a step are far above those of inertia, take digits from soft motion.
-    Those made for a step of another length leave what the matrices differ by: powers of h up to the second.
-    """
-    if not is_linear(mech, y):
-        return 1.0
-    linear, stiff = mech.linear, 1.0
-    n = mech.mass.shape[0]
-    for e in range(linear.K.shape[0]):
-        i = linear.Ki[e]
-        stiff = max(stiff, h * h * abs(linear.K[e]) / mech.mass[i] if i < n else 0.0)
-    for e in range(linear.C.shape[0]):
-        i = linear.Ci[e]
-        stiff = max(stiff, h * abs(linear.C[e]) / mech.mass[i] if i < n else 0.0)
-    return ROUND_OFF * stiff + 4.0 * abs(1.0 - made / h)
-
-
-@block
-def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: float, accuracy: float) -> int:
-    """Newton from the values in ``st`` until changes of velocities and states are below ``accuracy`` of their sizes.
-
-    Returns the number of iterations, or 0 where they do not converge.  ``made``: length of the step of the factors.
-    """
-    tab = st.tab
-    s = tab.c.shape[0]
-    last = np.inf
-    exact = left_by_factors(mech, y, h, made)
-    st.found, st.fresh = 1.0, 0
-    for iteration in range(ITERATIONS):
-        for i in range(s):
-            stage_residual(mech, k, y, st, h, i)
-        if st.turns.near > 0:
-            spread_of_stages(mech, st.turns, st.F, st.g)
-        newton_change(mech, st)
-        if st.turns.near > 0:
-            correct_turns(mech, st.turns, tab, st.R, st.w)
-        change, sound = 0.0, 0.0
-        for i in range(s):
-            for a in range(st.R.shape[1]):
-                sound += 0.0 * st.R[i, a]
-            for a in range(st.scale.shape[0]):
-                change = max(change, abs(st.R[i, a]) / st.scale[a])
-            for a in range(st.z.shape[1]):
-                off = abs(st.R[i, st.R.shape[1] - st.z.shape[1] + a])
-                change = max(change, STATES * off / st.felt.size[a])
-            at = 0
-            for part in (st.V, st.lam, st.F, st.z):
-                for a in range(part.shape[1]):
-                    part[i, a] -= st.R[i, at + a]
-                at += part.shape[1]
-        if not (change < 1e30 and sound == 0.0):
-            return 0
-        rate = change / last if iteration > 0 else exact
-        if iteration > 0 or exact < 1.0:
-            st.found = rate
-        if change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
-            st.fresh = 1 if change <= accuracy else 0
-            for i in range(s):
-                stage_positions(y, st, h, i)
-            return iteration + 1
-        if iteration > 0 and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
-            if not is_noise(mech, st):
-                return 0
-            for i in range(s):
-                stage_positions(y, st, h, i)
-            return iteration + 1
-        last = change
-    return 0
 
 
 @kernel
 def stage_positions(y: State, st: Stages, h: float, i: int) -> None:
     """Q of stage i from the velocities."""
+    Q = st.Q[i]
     for a in range(y.q.shape[0]):
-        value = 0.0
-        for j in range(st.tab.c.shape[0]):
-            value += st.tab.A[i, j] * st.V[j, a]
-        st.Q[i, a] = y.q[a] + h * value
+        Q[a] = 0.0
+    for j in range(st.tab.c.shape[0]):
+        share, V = h * st.tab.A[i, j], st.V[j]
+        for a in range(y.q.shape[0]):
+            Q[a] += share * V[a]
+    for a in range(y.q.shape[0]):
+        Q[a] += y.q[a]
 
 
 @kernel

@@ -14,25 +14,19 @@ from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
 
-#: Rows of contacts (slip, normal forces that vary) below which steps of BDF, and of ``radau``, are condensed to them.
-FEW, VERY_FEW = 16, 3
-#: Degrees of freedom a row up to which ``radau`` is faster in a band; beyond, structures are dense beside few rows.
-FREE = 4
+#: Rows of contacts (slip, normal forces that vary) below which steps of BDF are condensed to them.
+FEW = 16
 
 
 def in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``radau`` solves steps for all unknowns in a band: with joints, and with three rows of contacts or more.
+    """Whether ``radau`` solves steps for all unknowns in a band: with joints, and nearly everything without.
 
-    With one contact steps that are condensed to it are faster by half, and so they are with few contacts on many modes.
-    Condensed are those of an even number of stages; and, with few contacts, scenes with nonlinear elements: that what
-    rests lets go where forces jump is known to condensed steps alone.
+    Condensed to the contacts are steps of an even number of stages, and, with few contacts, those of scenes with
+    nonlinear elements: that what rests lets go where forces jump is known to condensed steps alone.
     """
     if problem.mechanism is None and stages is not None and stages % 2 == 0:
         return False
-    if bdf_in_a_band(problem, stages):
-        return True
-    rows = problem.m + problem.n_v
-    return bool(not problem.elements.table.address.size and rows >= VERY_FEW and problem.n <= FREE * rows)
+    return not problem.elements.table.address.size or bdf_in_a_band(problem, stages)
 
 
 def bdf_in_a_band(problem: Problem, stages: int | None) -> bool:

@@ -32,8 +32,19 @@ def magnitude(row: Ints, k: int, x: Floats) -> float:
     first = row[k]
     if row[k + 1] - first == 1:
         return float(abs(x[first]))
-    size = np.hypot(x[first], x[first + 1])
-    return float(size if row[k + 1] - first == 2 else np.hypot(size, x[first + 2]))
+    size = hypotenuse(x[first], x[first + 1])
+    return float(size if row[k + 1] - first == 2 else hypotenuse(size, x[first + 2]))
+
+
+#: Squares within which a root of their sum has lost no digits.
+TINY, HUGE = 1e-280, 1e280
+
+
+@kernel
+def hypotenuse(a: float, b: float) -> float:
+    """Root of a^2 + b^2 as ``np.hypot`` has it, whose call costs as much as the law of a contact."""
+    square = a * a + b * b
+    return float(np.sqrt(square) if TINY < square < HUGE else np.hypot(a, b))
 
 
 @kernel
