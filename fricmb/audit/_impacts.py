@@ -26,7 +26,8 @@ class Impacts:
 
     def __init__(self, statements: Statements, units: Units, gathered: Gathered, rows: Samples) -> None:
         self.statements, self.units, self.gathered, self.rows = statements, units, gathered, rows
-        self.poisson = impact_law(statements.scene.parts) == "poisson"
+        law = impact_law(statements.scene.parts)
+        self.poisson, self.in_turn = law.law == "poisson", law.several == "in_turn"
         self.rigid = {joint.name: joint for joint in statements.joints if joint.impact is not None}
 
     def look(self, events: Any) -> Ints:
@@ -93,8 +94,10 @@ class Impacts:
         ends = any(abs(rest - t) <= ROUND_OFF * abs(t) for rest in rests.get((hit.contact, hit.side), ()))
         wanted = 0.0 if ends else -e * min(a, 0.0)
         size = abs(a) + speed + self._grain(joint, before)
-        # of impulses that are shared Poisson's law says no speed of a contact: it may leave, and does not go in
-        shared = self.poisson and (hit.others > 0 or len(rates) > 1)
+        # of impulses that are shared Poisson's law says no speed of a contact: it may leave, and does not go in; nor
+        # does any law of several impacts in turn, of which the sum is kept
+        several = self.in_turn and hit.others > 0
+        shared = several or (self.poisson and (hit.others > 0 or len(rates) > 1))
         missed = max(-b, 0.0) if shared else abs(b - wanted)
         self.gathered.add("law of impact", [missed / (LAW * size)], t, hit.contact)
         if len(rates) == 1 or ends:
@@ -104,7 +107,7 @@ class Impacts:
             mu = float(self.statements.contacts[joint.contact].law.numeric().slip_limit())
         over = max(abs(along) - mu * hit.impulse, 0.0) / (LAW * hit.impulse)
         self.gathered.add("cone in impacts", [over], t, hit.contact)
-        if self.poisson:  # slip may turn round between the two phases
+        if self.poisson or several:  # slip may turn round between the two phases
             return
         xi = slip + e_t * slip_before
         sticks = abs(xi) <= LAW * (abs(slip_before) + size) * LIMIT

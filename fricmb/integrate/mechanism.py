@@ -147,6 +147,8 @@ class Mechanism:
         empty one.
     poisson : bool
         Whether impacts obey Poisson's law in place of Newton's.
+    in_turn : bool
+        Whether impacts at one instant are taken one after another.
     """
 
     n: int
@@ -161,6 +163,7 @@ class Mechanism:
     slip: Templates
     least_mass: Floats = field(default_factory=lambda: _f(0))
     poisson: bool = False
+    in_turn: bool = False
 
     @property
     def has_impacts(self) -> bool:

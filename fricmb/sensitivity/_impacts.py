@@ -169,10 +169,12 @@ def check_open(piece: Any, struck: Mapping[str, Struck]) -> None:
     """Refuse runs in which something stays on a surface that it bounces on, and impacts by Poisson's law."""
     if not struck:
         return
-    if impact_law(piece.mechanics.placed.parts) != "newton":
+    law = impact_law(piece.mechanics.placed.parts)
+    if law.law != "newton" or law.several != "together":
+        other = "by Poisson's law" if law.law != "newton" else "in turn with others"
         raise SceneError(
-            f"sensitivities: {next(iter(struck))!r} bounces by Poisson's law; there are derivatives where surfaces with"
-            " restitution bounce by Newton's"
+            f"sensitivities: {next(iter(struck))!r} bounces {other}; there are derivatives where surfaces with"
+            " restitution bounce by Newton's law together"
         )
     rows = piece.rows()
     reactions = piece.mechanics.reactions(rows)

@@ -89,7 +89,8 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         joints=joints.build(n_y, n_u),
         slip=contacts.slip_table(n_y, n_u),
         least_mass=_least_mass(parts, index, n),
-        poisson=impact_law(scene.parts) == "poisson",
+        poisson=impact_law(scene.parts).law == "poisson",
+        in_turn=impact_law(scene.parts).several == "in_turn",
     )
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)

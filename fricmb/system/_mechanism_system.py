@@ -107,9 +107,10 @@ class MechanismSystem(System):
         for k in range(count if joints.hands_over.any() else 0):
             now = v[k] if rigid else np.zeros_like(v[k])
             opened[k] = away(self.problem, Start(t=float(samples.t[k]), q=q[k], v=now, z=z[k]))
-        # just after a contact has opened it is no distance away yet, but its friction knows
+        # just after a contact has opened it is no distance away yet, and where bounces end it is held while there is
+        # still the height of the last of them: its friction knows
         rubs = np.flatnonzero((joints.hands_over != 0) & (joints.port >= 0))
-        opened[:, rubs] |= (samples.mode[joints.port[rubs]] == OPEN).T
+        opened[:, rubs] = (samples.mode[joints.port[rubs]] == OPEN).T
         # friction tells the direction of slip also where velocities are round-off
         mode = samples.mode.T
         lam = complete_open(self.problem, opened, samples.t, q, v, z, mode, force, still=np.inf)[3]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.constrained.impact_in_turn import solve_in_turn
 from fricmb.integrate.constrained.impact_law import Answer, Hit, solve_by_poisson, solve_impact
 from fricmb.integrate.constrained.impact_log import ImpactLog, Outcome
 from fricmb.integrate.constrained.impact_rest import Bounces, Hop, Leaving
@@ -132,7 +133,8 @@ class Impacts:
         """Velocities, modes and reactions behind the impact with coefficients e of the members; some are held."""
         s, y = self.surfaces, self._workspace.y
         hit, push, reaction, held = self._hit(members, e, forced)
-        answer = (solve_by_poisson if self.surfaces.mechanism.poisson else solve_impact)(hit)
+        law = solve_by_poisson if s.mechanism.poisson else solve_impact
+        answer = solve_in_turn(hit, law) if s.mechanism.in_turn else law(hit)
         if answer is None:
             names = ", ".join(repr(self.joints.names[j]) for j in members)
             self.failure = f"no impulses satisfy the law of impact at t = {float(y.t):.10g} for {names} together"

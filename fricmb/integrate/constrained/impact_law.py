@@ -103,6 +103,8 @@ def solve_by_poisson(hit: Hit) -> Answer | None:
 
 def solve_impact(hit: Hit) -> Answer | None:
     """The impulses; None where none fit (or where there are too many contacts to try all combinations)."""
+    if hit.rate.size == 1 and hit.D[0, 0] > 0.0:
+        return _alone(hit)
     found: list[Answer] = []
     size = float(np.abs(hit.rate).max(initial=0.0)) + float(np.abs(hit.D[:, hit.normal] @ hit.given).max(initial=0.0))
     rubs = np.where(hit.given > 0.0, 6.0, 4.0)
@@ -124,6 +126,13 @@ def solve_impact(hit: Hit) -> Answer | None:
     if not found:
         return None
     return Answer(impulse=found[0].impulse, rate=found[0].rate, others=len(found) > 1)
+
+
+def _alone(hit: Hit) -> Answer:
+    """One contact without friction."""
+    least = -np.inf if hit.forced[0] else hit.given[0]
+    impulse = np.maximum((hit.target - hit.rate) / hit.D[0, 0], least)
+    return Answer(impulse=impulse, rate=hit.rate + hit.D[0] * impulse, others=False)
 
 
 def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
@@ -171,6 +180,8 @@ def _try(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
 
 def _solution(A: Floats, b: Floats, size: float) -> Floats | None:
     """Of ``A u = b``, of least norm where A is singular; None where there is none."""
+    if A.shape == (1, 1) and A[0, 0] > 0.0:
+        return np.asarray(b / A[0, 0], dtype=float)
     scale = np.sqrt(np.maximum(np.abs(np.diag(A)), 1e-300))
     try:
         if np.linalg.cond(A / scale[:, None] / scale) < 1e10:

@@ -114,9 +114,12 @@ class Surfaces:
 
     def falling(self, members: Ints, rate: Floats) -> Ints:
         """Open members that are at rest on their surface and would fall into it, the worst first."""
+        found = self.open & (self.gap <= 10.0 * self.noise)
+        found &= np.abs(rate) <= self.still()
+        if not found[members].any():  # accelerations need a call of compiled code
+            return np.zeros(0, np.int64)
         pressed = self.pressed()
-        still, near = np.abs(rate) <= self.still(), self.gap <= 10.0 * self.noise
-        found = self.open & still & near & (pressed > SLIGHT * self.pace())
+        found &= pressed > SLIGHT * self.pace()
         mine = members[found[members]]
         return np.asarray(mine[np.argsort(-pressed[mine])], dtype=np.int64)
 
