@@ -95,19 +95,42 @@ def add_row(mech: Mech, k: Moving, A: Floats, row: int, table: Table, a: int, va
     add_slopes(mech, k, A, row, True, table, a, value)
 
 
+@kernel
+def add_down(mech: Mech, k: Moving, A: Floats, left: Table, a: int, column: int, value: float, slope: float) -> None:
+    """Add ``value slope`` in one column to the rows of the degrees of freedom on which a force on form a acts."""
+    place = mech.place
+    for j in range(left.form_start[a], left.form_start[a + 1]):
+        e = left.form_index[j] - 1
+        if 0 <= e < k.ddy.shape[0]:
+            for i in range(place.y_start[e], place.y_start[e + 1]):
+                force = value * left.form_coefficient[j] * place_slope(place, k, i)
+                add(mech.order, A, place.y_dof[i], column, force * slope)
+
+
 @block
 def add_stiffness(mech: Mech, k: Moving, L: Layers, left: Table, a: int, right: Table, b: int, value: float) -> None:
-    """Add ``value d(form b)`` to the rows of the degrees of freedom on which a force on form a acts."""
+    """Add ``value d(form b)`` to the rows of the degrees of freedom on which a force on form a acts.
+
+    Column by column, as the matrices are kept: of contacts that press on many modes these are most entries.
+    """
     if value == 0.0:
         return
     place = mech.place
     n_y = k.ddy.shape[0]
-    for j in range(left.form_start[a], left.form_start[a + 1]):
-        e = left.form_index[j] - 1
-        if 0 <= e < n_y:
-            for i in range(place.y_start[e], place.y_start[e + 1]):
-                grad = place_slope(place, k, i)
-                add_form(mech, k, L, place.y_dof[i], right, b, value * left.form_coefficient[j] * grad)
+    for j in range(right.form_start[b], right.form_start[b + 1]):
+        e = right.form_index[j] - 1
+        if not 0 <= e < 2 * n_y:
+            continue
+        rate, weight = e >= n_y, right.form_coefficient[j]
+        e -= n_y if rate else 0
+        for i in range(place.y_start[e], place.y_start[e + 1]):
+            at, dof, slope = place.y_at[i], place.y_dof[i], weight * place_slope(place, k, i)
+            if not rate:
+                add_down(mech, k, L.A2, left, a, dof, value, slope)
+            else:
+                add_down(mech, k, L.A1, left, a, dof, value, slope)
+                if at >= 0:
+                    add_down(mech, k, L.A2, left, a, dof, value, weight * k.grad_rate[at])
 
 
 @block
