@@ -106,12 +106,16 @@ def test_few_contacts_on_many_modes_are_a_border():
 
 
 def test_radau_takes_the_band():
-    """Few contacts or many, on many modes or on few; but with nonlinear elements many alone."""
-    for scene in (pad(2, 10), pad(4, 400), fm.models.brake4dof(), fm.models.stick_slip_chain(3)):
-        assert in_a_band(build(scene).problem, None)
+    """Few contacts or many, on many modes or on few; where forces of elements jump many alone."""
     block = fm.Body("m", mass=1.0)
-    cubic = fm.Force("k", block, axis="x", value=-fm.coordinate("m.x") ** 3)
-    assert not in_a_band(build(fm.Scene("s", [block, cubic])).problem, None)
+    x = fm.coordinate("m.x")
+
+    def held_by(force):
+        return fm.Scene("s", [block, fm.Force("k", block, axis="x", value=force)])
+
+    for scene in (pad(2, 10), pad(4, 400), fm.models.brake4dof(), fm.models.stick_slip_chain(3), held_by(-(x**3))):
+        assert in_a_band(build(scene).problem, None)
+    assert not in_a_band(build(held_by(-sympy.Piecewise((x, x > 0.1), (0.0, True)))).problem, None)
 
 
 @pytest.mark.parametrize(

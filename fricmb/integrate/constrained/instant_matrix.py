@@ -53,7 +53,7 @@ def instant_matrix(mech: Mech, k: Moving, w: Instant, y: State, friction: int) -
     ``friction``: NONE leaves the forces of friction at 0, STUCK keeps ports that stick together, ALL is friction.
     """
     order = mech.order
-    if friction == STUCK and all_stick(y):
+    if friction == STUCK and y.lam.shape[0] == 0 and all_stick(y):
         friction = ALL  # the same matrix, and the one that is kept
     if friction == ALL and serves_again(w, y):
         return True

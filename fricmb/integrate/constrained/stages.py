@@ -183,9 +183,11 @@ def accelerations_at(y: State, st: Stages, h: float, i: int) -> None:
     acc = st.acc
     acc[:] = 0.0
     for j in range(st.tab.c.shape[0]):
-        rate, V = st.Ainv[i, j] / h, st.V[j]
+        rate, V = st.Ainv[i, j], st.V[j]
         for a in range(y.v.shape[0]):
             acc[a] += rate * (V[a] - y.v[a])
+    for a in range(y.v.shape[0]):
+        acc[a] /= h
 
 
 @block
@@ -195,7 +197,13 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
     r = st.R[i]
     s = st.tab.c.shape[0]
     accelerations_at(y, st, h, i)
-    stage_positions(y, st, h, i)
+    Q = st.Q[i]
+    for a in range(n):
+        Q[a] = y.q[a]
+    for j in range(s):
+        share, V = h * st.tab.A[i, j], st.V[j]
+        for a in range(n):
+            Q[a] += share * V[a]
     move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
     forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
     pull_back(mech, k, st.x)
@@ -241,11 +249,11 @@ def stage_positions(y: State, st: Stages, h: float, i: int) -> None:
     for a in range(y.q.shape[0]):
         Q[a] = 0.0
     for j in range(st.tab.c.shape[0]):
-        share, V = h * st.tab.A[i, j], st.V[j]
+        share, V = st.tab.A[i, j], st.V[j]
         for a in range(y.q.shape[0]):
             Q[a] += share * V[a]
     for a in range(y.q.shape[0]):
-        Q[a] += y.q[a]
+        Q[a] = y.q[a] + h * Q[a]
 
 
 @kernel

@@ -22,11 +22,11 @@ def in_a_band(problem: Problem, stages: int | None) -> bool:
     """Whether ``radau`` solves steps for all unknowns in a band: with joints, and nearly everything without.
 
     Condensed to the contacts are steps of an even number of stages, and, with few contacts, those of scenes with
-    nonlinear elements: that what rests lets go where forces jump is known to condensed steps alone.
+    elements whose forces bend or jump: that what rests lets go at a jump is known to condensed steps alone.
     """
     if problem.mechanism is None and stages is not None and stages % 2 == 0:
         return False
-    return not problem.elements.table.address.size or bdf_in_a_band(problem, stages)
+    return not problem.bends.table.address.size or bdf_in_a_band(problem, stages)
 
 
 def bdf_in_a_band(problem: Problem, stages: int | None) -> bool:
