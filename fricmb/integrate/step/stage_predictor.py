@@ -78,6 +78,10 @@ def start_on_last(
             for a in range(row0, packed.ports.row[k + 1]):
                 w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
         if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
+            # no equation holds a direction here: carried on from step to step its round-off would grow without end
+            for i in range(tab.c.shape[0]):
+                for a in range(row0, packed.ports.row[k + 1]):
+                    w.n[i, a] = y.n[a]
             continue
         for i in range(tab.c.shape[0]):
             if packed.ports.row[k + 1] - row0 == 1:
