@@ -7,23 +7,26 @@ from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_CONSTANT
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
+from fricmb.integrate.step.stages import Stages
+from fricmb.integrate.step.tableau import largest_in_step
 
 #: Velocities below so many floors of theirs are creep.
 CREEP = 1e3
 
 
 @kernel
-def pushed(packed: Packed, y: State, acc: Accuracy, a: int) -> float:
+def pushed(packed: Packed, y: State, st: Stages, acc: Accuracy, a: int) -> float:
     """Acceleration of the velocity that is moved most, by its own scale, by a unit of force in row a.
 
     What creeps before anything has moved has no scale of its own yet: a steep law's round-off would be seen there.
+    Where nothing has moved at all, what the step itself reaches is the scale.
     """
     top = widest(acc.v)
     most = 0.0
     for i in range(y.v.shape[0]):
         size = packed.structure.mobility[i] * abs(packed.ports.W[i, a])
         if size > 0.0:
-            scale = max(acc.v[i], abs(y.v[i]), CREEP * acc.floor_v[i], 1e-10 * top, 1e-290)
+            scale = max(acc.v[i], largest_in_step(y.v[i], st.V, i), CREEP * acc.floor_v[i], 1e-10 * top, 1e-290)
             most = max(most, size / scale)
     return most
 
@@ -52,6 +55,6 @@ def weigh_forces(packed: Packed, y: State, one: OneStep, acc: Accuracy) -> None:
             continue
         felt.damped[k] = damped(packed, k)
         for a in range(ports.row[k], ports.row[k + 1]):
-            felt.push[a], felt.free[a] = pushed(packed, y, acc, a), ports.D[a, a]
+            felt.push[a], felt.free[a] = pushed(packed, y, one.st, acc, a), ports.D[a, a]
     for a in range(y.z.shape[0]):
         felt.size[a] = max(acc.z[a], abs(y.z[a]), one.noise_z[a], 1e-290)
