@@ -40,7 +40,8 @@ def test_law_runs_and_its_energy_balances(name, d):
 def test_nothing_moves_where_nothing_acts(name, d, method):
     """Nothing has a size here: whatever is measured by the largest so far is measured by 0."""
     sol = fm.simulate(scene_of(getattr(laws, name).example(), d, speed=0.0), t_end=3.0, method=method)
-    assert not sol.q.any()
-    assert not sol.v.any()
+    least = 1e-20 if name == "Offset" else 0.0  # one that pushes on is held by round-off
+    assert np.abs(sol.q).max() <= least
+    assert np.abs(sol.v).max() <= least
     assert not sol.events
     assert sol.stats.n_steps < 60

@@ -1,5 +1,6 @@
 """Functions of time that move faster than the motion are seen: at rest, in slip, under any law, by every method."""
 
+import itertools
 from functools import cache
 
 import numpy as np
@@ -199,3 +200,23 @@ def test_ground_that_sets_in_at_once_has_a_place_before(method):
     # 0.5 m/s^2 from the jump on, until it goes with the belt
     assert sol["block.x"][-1] == pytest.approx(speed * (2.0 - 0.5 * speed / 0.5), abs=1e-5)
     assert sol.events[-1].kind == "stick"
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+def test_ground_that_sets_in_under_a_body_at_rest(rtol, method):
+    """Nothing has moved and has a size when a triangular pulse begins; beside modes that hang on a smooth law."""
+    at, width, size = 13.519, 9.4e-4, 0.06
+    ground = fm.Driven("ground", velocity={"x": size * sympy.Max(0, 1 - sympy.Abs(fm.t - at) / width)})
+    block = fm.Body("block", mass=1.0, axes="x")
+    spring = fm.Spring("spring", block, axis="x", stiffness=1.5)
+    rub = fm.Contact("rub", block, ground, law=fm.laws.TanhRegularised(mu=0.4, v_reg=1e-2), normal_force=1.0, axes="x")
+    sol = fm.simulate(fm.Scene("s", [ground, block, spring, rub]), t_end=16.0, rtol=rtol, method=method)
+
+    def rate(t, y):
+        return [y[1], 0.4 * np.tanh((size * max(0.0, 1 - abs(t - at) / width) - y[1]) / 1e-2) - 1.5 * y[0]]
+
+    y = [0.0, 0.0]
+    for a, b in itertools.pairwise([at - width, at, at + width, 16.0]):
+        y = solve_ivp(rate, (a, b), y, "DOP853", rtol=1e-12, atol=1e-18).y[:, -1]
+    np.testing.assert_allclose([sol.q[0, -1], sol.v[0, -1]], y, rtol=100 * rtol)
