@@ -8,6 +8,7 @@ pulse is too short to be seen.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -16,7 +17,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.problem import Floats, Input, Problem
+from fricmb.integrate.problem import Codes, Floats, Input, Problem
 from fricmb.integrate.run.breakpoints import EPS, count_until
 from fricmb.integrate.signals.jets import bounds
 
@@ -24,6 +25,8 @@ from fricmb.integrate.signals.jets import bounds
 FIRST, MOST, DEEPEST = 64, 200_000, 40
 #: A stretch is halved where that saves so much of its steps; stretches are one where their steps differ by less.
 SAVES, ALIKE = 0.75, 1.4
+#: So many steps of a stretch are worth a look at its quarters.
+MANY = 16
 #: Part of such a step that BDF takes at most: it looks at its ends alone.
 OF_BDF = 0.25
 #: Stretches of a run on which a function without bounds is sampled; round-off of its differences.
@@ -101,9 +104,12 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
         low, high, steps = low[open_], high[open_], steps[open_]
         middle = 0.5 * (low + high)
         left, right = _allowed(given, low, middle, nodes, scale), _allowed(given, middle, high, nodes, scale)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            before, after = 2.0 / steps, 1.0 / left + 1.0 / right
-            better = (after < SAVES * before) | ~np.isfinite(before)
+        better = _saved(2.0, steps, left, right)
+        again = ~better & (high - low > MANY * part * steps)
+        if again.any():  # a bell in the middle of a stretch is in both halves, and each saves little
+            ends = np.linspace(low[again], high[again], 5)
+            quarters = (_allowed(given, a, b, nodes, scale) for a, b in itertools.pairwise(ends))
+            better[again] = _saved(4.0, steps[again], *quarters)
         done.append((low[~better], high[~better], steps[~better]))
         low, high = np.concatenate([low[better], middle[better]]), np.concatenate([middle[better], high[better]])
         steps = np.concatenate([left[better], right[better]])
@@ -114,6 +120,13 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
     # where a function has no bound at all, as a root where it begins, steps are as long as what was looked at
     longest = np.maximum(part * steps[order], np.where(steps[order] == 0.0, high[order] - low[order], 0.0))
     return _merged(LongestSteps(np.append(low[order], t_end), longest))
+
+
+def _saved(count: float, steps: Floats, *parts: Floats) -> Codes:
+    """Whether ``count`` parts of stretches, by the steps allowed in each, are better than the stretches as a whole."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        before, after = count / steps, np.sum([1.0 / part for part in parts], axis=0)
+        return np.asarray((after < SAVES * before) | ~np.isfinite(before))
 
 
 def _allowed(given: Input, low: Floats, high: Floats, nodes: int, scale: float) -> Floats:
