@@ -14,8 +14,8 @@ from fricmb.equations import _code
 from fricmb.integrate.signals.pieces import LOWEST
 from fricmb.signal._symbols import Series
 
-#: Panels are halved so often at most; so many at first for waves, which a bell may hide.
-ROUNDS, MOST = 16, 4096
+#: Panels are halved so often at most; so many at first for waves, which a bell may hide; what these turn by in one.
+ROUNDS, MOST, PHASE = 16, 4096, 5.0
 #: Where closed forms are tried, and how near to the truth they must come in doubles.
 PLACES, NEAR = (-0.73, 0.41, 1.9, 7.3), 1e-12
 #: Integers and fractions beyond it are written as floats.
@@ -162,14 +162,16 @@ def quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str)
     for expression in rate:
         _code.check(expression, title)
     quick, waves = _features(value, t)
-    used = [e for pair in quick for e in pair] + waves
+    used = [e for pair in quick for e in pair] + [e for pair in waves for e in pair]
+    known = all(inner.is_polynomial(t) and sympy.degree(inner, t) <= 2 for inner in _inner(value, t))
     rename, reads = _code.read_arguments([t], parameters, [*rate, t, *used])
     plain = [expression.xreplace(rename) for expression in rate]
     nodes, weights = np.polynomial.legendre.leggauss(10)
     there = sympy.Symbol("there", real=True)
     names = [f"quick{i}" for i in range(len(used))]
     near = [f"abs(edge - {names[2 * i]}), {names[2 * i + 1]}" for i in range(len(quick))]
-    shortest = ", ".join([*names[2 * len(quick) :], "0.5*(high - low)"])
+    turns = zip(names[2 * len(quick) :: 2], names[2 * len(quick) + 1 :: 2], strict=True)
+    swings = [f"abs({b} + {a}*edge) + sqrt(abs({a}))" for b, a in turns]
     lines = [
         *reads,
         *_code.body(plain, ["out[1]", "out[2]"]),
@@ -177,12 +179,13 @@ def quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str)
         f"nodes = {tuple(nodes.tolist())!r}",
         f"weights = {tuple(weights.tolist())!r}",
         "low, high = min(0.0, x0), max(0.0, x0)",
-        f"longest = max((high - low)/{MOST}, min({shortest}))" if waves else "longest = 0.5*(high - low)",
+        f"least, longest = (high - low)/{MOST}, 0.5*(high - low)",
         "part_of, total, size, change = 1.0, 0.0, 0.0, 0.0",
         f"for turn in range({ROUNDS}):",
         "    before, last, total, size, edge, panels = total, change, 0.0, 0.0, low, 0",
         "    while edge < high:",
         "        length = longest",
+        *(f"        length = min(length, max(least, {PHASE}/({swing} + 1e-300)))" for swing in swings),
         *(f"        length = min(length, max({pair}))" for pair in near),
         "        half = 0.5*min(part_of*length, high - edge)",
         "        if edge + 2.0*half <= edge:",
@@ -195,35 +198,50 @@ def quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str)
         "        edge += 2.0*half",
         "        panels += 1",
         "    change = abs(total - before)",
-        "    if turn > 1 and (change <= 4e-16*sqrt(panels)*size or (change <= 1e-6*size and change >= 0.5*last)):",
-        "        break",  # sums of many have more round-off, and so has a time far from 0
+        # sums of many have more round-off, and so has a time far from 0
+        "    settled = change <= 1e-6*size and change >= 0.5*last",
+        f"    if turn > {0 if known else 1} and (settled or change <= 4e-16*sqrt(panels)*size):",
+        "        break",
         "    part_of *= 0.5",
         f"out[0] = (total if x0 > 0.0 else -total) + p[{len(parameters) - 1}]",
     ]
     return _code.module(title, lines)
 
 
-def _features(value: Any, t: Any) -> tuple[list[tuple[Any, Any]], list[Any]]:
-    """Times about which a function is quick, each with the length of that, and lengths that hold throughout.
+def _features(value: Any, t: Any) -> tuple[list[tuple[Any, Any]], list[tuple[Any, Any]]]:
+    """Times about which a function is quick, each with the length of that, and how fast waves turn: at t = 0, and on.
 
     Of functions and powers of what is linear or quadratic in t: the zeros of it and of its slope.
     """
     quick: list[tuple[Any, Any]] = []
-    waves: list[Any] = []
+    waves: list[tuple[Any, Any]] = []
     for node in sympy.preorder_traversal(_exact(value)):
-        is_power = node.is_Pow and not (node.exp.is_Integer and node.exp > 0)
-        inner = node.args[0] if (isinstance(node, sympy.Function) and node.args) or is_power else None
-        if inner is None or not inner.has(t) or not inner.is_polynomial(t) or sympy.degree(inner, t) > 2:
+        inner = _argument(node, t)
+        if inner is None or not inner.is_polynomial(t) or sympy.degree(inner, t) > 2:
             continue
         a, b, c = (sympy.Poly(inner, t).coeff_monomial(t**k) for k in (2, 1, 0))
         if isinstance(node, sympy.sin | sympy.cos):
-            waves.append(3 / (sympy.Abs(b) + 2 * sympy.Abs(a) * sympy.Abs(t)))
+            waves.append((b, 2 * a))
         elif a == 0:
             quick.append((-c / b, 1 / sympy.Abs(b)))
         else:
             apart = b**2 - 4 * a * c
             top, root = -b / (2 * a), sympy.sqrt(sympy.Abs(apart))
-            quick.append((top, root / (2 * sympy.Abs(a)) if is_power else 1 / sympy.sqrt(sympy.Abs(a))))
+            quick.append((top, root / (2 * sympy.Abs(a)) if node.is_Pow else 1 / sympy.sqrt(sympy.Abs(a))))
             if not isinstance(node, sympy.exp):
                 quick += [((-b + sign * root) / (2 * a), 1 / root) for sign in (1, -1)]
-    return [(_in_floats(c), _in_floats(length)) for c, length in dict.fromkeys(quick)], list(dict.fromkeys(waves))
+    quick, waves = ([(_in_floats(a), _in_floats(b)) for a, b in dict.fromkeys(pairs)] for pairs in (quick, waves))
+    return quick, waves
+
+
+def _argument(node: Any, t: Any) -> Any | None:
+    """What a function of t, or a root or quotient, is taken of."""
+    is_power = node.is_Pow and not (node.exp.is_Integer and node.exp > 0)
+    inner = node.args[0] if (isinstance(node, sympy.Function) and node.args) or is_power else None
+    return inner if inner is not None and inner.has(t) else None
+
+
+def _inner(value: Any, t: Any) -> list[Any]:
+    """All of these arguments within an expression."""
+    found = (_argument(node, t) for node in sympy.preorder_traversal(value))
+    return [inner for inner in found if inner is not None]
