@@ -16,6 +16,8 @@ from fricmb.integrate.trajectory import Transitions
 
 #: One instant, as a part of the run, and of the time until the contact's next transition.
 AT_ONCE, BRIEF = 1e-12, 1e-6
+#: The same where slip turns round and ends: what is left of it in a loop of contacts is known to no more.
+AT_REST = 1e-10
 #: What two transitions of a contact at one instant are together; none where slip goes on as before.
 _TOGETHER = {
     (EVENT_SLIP, EVENT_REVERSAL): EVENT_SLIP,
@@ -26,7 +28,7 @@ _TOGETHER = {
 
 def told_once(transitions: Transitions, ends: tuple[float, float]) -> Transitions:
     """The same transitions where none are at one instant; ``ends`` of the run."""
-    if transitions.t.size < 2 or not (np.diff(np.sort(transitions.t)) <= AT_ONCE * (ends[1] - ends[0])).any():
+    if transitions.t.size < 2 or not (np.diff(np.sort(transitions.t)) <= AT_REST * (ends[1] - ends[0])).any():
         return transitions
     kept, kind = np.ones(transitions.t.size, dtype=bool), transitions.kind.copy()
     for c in np.unique(transitions.contact):
@@ -45,7 +47,8 @@ def _join(mine: Ints, t: Floats, ends: tuple[float, float], kept: NDArray[np.boo
             continue
         first, apart = told[-2], t[i] - t[told[-2]]
         pair = int(kind[first]), int(kind[i])
-        if pair not in _TOGETHER or not apart <= min(AT_ONCE * (ends[1] - ends[0]), BRIEF * (following - t[i])):
+        instant = AT_REST if pair == (EVENT_REVERSAL, EVENT_STICK) else AT_ONCE
+        if pair not in _TOGETHER or not apart <= min(instant * (ends[1] - ends[0]), BRIEF * (following - t[i])):
             continue
         both = _TOGETHER[pair]
         kept[told.pop()] = False
