@@ -166,34 +166,26 @@ def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) 
     """
     linear, s = mech.linear, k.s
     n_y, n_u = k.ddy.shape[0], s.ddu.shape[0]
-    X, fy, fu = s.X, k.fy, k.fu
+    X, fy = s.X, k.fy
     for i in range(n_y):
         fy[i] = linear.f[i]
-    for i in range(n_u):
-        fu[i] = linear.f[n_y + i]
     tied = linear.tie.shape[0] > 0
     for e in range(linear.K.shape[0]):
         i, j = linear.Ki[e], linear.Kj[e]
-        x = X[1 + j + (n_y if j >= n_y else 0)]
-        if tied:
-            # stiff springs by the difference of their ends: what they do to both is equal to the last digit
-            x -= linear.tie[e] * X[1 + i + (n_y if i >= n_y else 0)]
         if i < n_y:
+            x = X[1 + j + (n_y if j >= n_y else 0)]
+            if tied:
+                # stiff springs by the difference of their ends: what they do to both is equal to the last digit
+                x -= linear.tie[e] * X[1 + i]
             fy[i] -= linear.K[e] * x
-        else:
-            fu[i - n_y] -= linear.K[e] * x
-    for i in range(linear.alone.shape[0]):
-        if i < n_y:
-            fy[i] -= linear.alone[i] * X[1 + i]
-        else:
-            fu[i - n_y] -= linear.alone[i] * X[1 + i + n_y]
+    for i in range(min(n_y, linear.alone.shape[0])):
+        fy[i] -= linear.alone[i] * X[1 + i]
     for e in range(linear.C.shape[0]):
         i, j = linear.Ci[e], linear.Cj[e]
-        value = linear.C[e] * X[1 + n_y + j + (n_u if j >= n_y else 0)]
         if i < n_y:
-            fy[i] -= value
-        else:
-            fu[i - n_y] -= value
+            fy[i] -= linear.C[e] * X[1 + n_y + j + (n_u if j >= n_y else 0)]
+    if n_u > 0:
+        structure_on_signals(mech, k)
     for e in range(linear.B.shape[0]):
         fy[linear.Bi[e]] += linear.B[e] * X[1 + 2 * n_y + linear.Bj[e]]
     element_forces(mech.elements, mech.spread, s, fy)
@@ -202,9 +194,9 @@ def forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Floats) 
 
 
 @kernel
-def forces_on_signals(mech: Mech, k: Moving, F: Floats) -> None:
-    """Forces on signals, ``k.fu``, at X: of a linear structure and contacts under given loads alone."""
-    linear, port = mech.linear, mech.port
+def structure_on_signals(mech: Mech, k: Moving) -> None:
+    """Forces of the linear structure on signals, ``k.fu``, at X; see :func:`forces`."""
+    linear = mech.linear
     n_y, n_u = k.ddy.shape[0], k.s.ddu.shape[0]
     X, fu = k.s.X, k.fu
     for i in range(n_u):
@@ -222,6 +214,13 @@ def forces_on_signals(mech: Mech, k: Moving, F: Floats) -> None:
         if linear.Ci[e] >= n_y:
             j = linear.Cj[e]
             fu[linear.Ci[e] - n_y] -= linear.C[e] * X[1 + n_y + j + (n_u if j >= n_y else 0)]
+
+
+@kernel
+def forces_on_signals(mech: Mech, k: Moving, F: Floats) -> None:
+    """All forces on signals, ``k.fu``, at X, of a linear structure and contacts under given loads alone."""
+    port, fu, n_y = mech.port, k.fu, k.ddy.shape[0]
+    structure_on_signals(mech, k)
     for c in range(port.joint.shape[0]):
         for a in range(port.row[c], port.row[c + 1]):
             form = port.slip.x_start[c] + 2 * (a - port.row[c])
@@ -269,12 +268,20 @@ def joint_forces(mech: Mech, k: Moving, lam: Floats, F: Floats, N: Floats, g: Fl
 
 
 @kernel
+def slip_at(mech: Mech, k: Moving, c: int, a: int) -> float:
+    """Slip velocity of a contact that is no joint, in its row a, at X."""
+    slip = mech.port.slip
+    form = slip.x_start[c] + 2 * (a - mech.port.row[c]) + 1
+    return float(value_of_form(k, slip, form) - mech.port.w[a])
+
+
+@kernel
 def contact_slip(mech: Mech, k: Moving, g: Floats) -> None:
     """Slip velocities of contacts that are no joints."""
     port = mech.port
     for c in range(port.joint.shape[0]):
         for a in range(port.row[c], port.row[c + 1] if port.joint[c] < 0 else port.row[c]):
-            g[a] = value_of_form(k, port.slip, port.slip.x_start[c] + 2 * (a - port.row[c]) + 1) - port.w[a]
+            g[a] = slip_at(mech, k, c, a)
 
 
 @kernel
@@ -284,11 +291,9 @@ def contact_forces(mech: Mech, k: Moving, F: Floats, N: Floats, g: Floats) -> No
     for c in range(port.joint.shape[0]):
         if port.joint[c] >= 0:
             continue
-        first = port.slip.x_start[c]
         for a in range(port.row[c], port.row[c + 1]):
-            form = first + 2 * (a - port.row[c])
-            g[a] = value_of_form(k, port.slip, form + 1) - port.w[a]
-            scatter(k, port.slip, form, F[a])
+            g[a] = slip_at(mech, k, c, a)
+            scatter(k, port.slip, port.slip.x_start[c] + 2 * (a - port.row[c]), F[a])
         N[c] = load_at(mech, k, c)
         if port.normal[c] == NORMAL_LAW:
             scatter(k, port.normals, port.normals.x_start[c], max(N[c], 0.0) - port.N0[c])
