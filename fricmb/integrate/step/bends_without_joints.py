@@ -16,8 +16,7 @@ from fricmb.integrate.step.knots import AT_AN_END, IN_HISTORY, NEAR, NOWHERE, SL
 from fricmb.integrate.step.law_defect import ROUND_OFF
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.stages import Stages
-from fricmb.integrate.step.tableau import largest_in_step
-from fricmb.integrate.step.weigh_forces import CREEP, pushed
+from fricmb.integrate.step.weigh_forces import felt_speed, pushed
 
 #: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
 SHORT_OF = 4096.0
@@ -52,8 +51,7 @@ def felt_by(packed: Packed, s: Scratch, y: State, st: Stages, acc: Accuracy, h: 
     """Accelerations, by the scale of their velocities, by units of forces (n) and of loads (n_c) into ``free``."""
     ports, top, n = packed.ports, widest(acc.v), y.q.shape[0]
     for i in range(n):
-        scale = max(acc.v[i], largest_in_step(y.v[i], st.V, i), CREEP * acc.floor_v[i], 1e-10 * top, 1e-290)
-        free[i] = packed.structure.mobility[i] / scale
+        free[i] = packed.structure.mobility[i] / felt_speed(y, st, acc, top, i)
     for k in range(ports.var.shape[0]):
         coefficient, most = abs(ports.mu_s[k]) if ports.law[k] != LAW_SMOOTH else 1.0, 0.0
         for a in range(ports.row[k], ports.row[k + 1]):

@@ -71,22 +71,17 @@ def start_on_last(
     carry(w.n, weight, st.line)
     for k in range(y.mode.shape[0]):
         row0 = packed.ports.row[k]
+        turns = y.mode[k] == SLIP and packed.ports.law[k] != LAW_SMOOTH and packed.ports.row[k + 1] - row0 > 1
         for i in range(tab.c.shape[0]):
             # constant values would bring round-off in, times the weights
             if packed.ports.var[k] < 0:
                 w.N[i, k] = y.N[k]
             for a in range(row0, packed.ports.row[k + 1]):
                 w.F[i, a] = y.F[a] if y.mode[k] != OPEN else 0.0
-        if y.mode[k] != SLIP or packed.ports.law[k] == LAW_SMOOTH:
-            # no equation holds a direction here: carried on from step to step its round-off would grow without end
-            for i in range(tab.c.shape[0]):
-                for a in range(row0, packed.ports.row[k + 1]):
+                # no equation holds a direction that does not turn: carried on, its round-off would grow without end
+                if not turns:
                     w.n[i, a] = y.n[a]
-            continue
-        for i in range(tab.c.shape[0]):
-            if packed.ports.row[k + 1] - row0 == 1:
-                w.n[i, row0] = y.n[row0]
-                continue
+        for i in range(tab.c.shape[0] if turns else 0):
             size = np.sqrt(w.n[i, row0] ** 2 + w.n[i, row0 + 1] ** 2)
             if not 0.5 < size < 2.0:
                 return False

@@ -15,19 +15,24 @@ CREEP = 1e3
 
 
 @kernel
-def pushed(packed: Packed, y: State, st: Stages, acc: Accuracy, a: int) -> float:
-    """Acceleration of the velocity that is moved most, by its own scale, by a unit of force in row a.
+def felt_speed(y: State, st: Stages, acc: Accuracy, top: float, i: int) -> float:
+    """What counts as 1 in velocity i where it is asked what a force does; ``top``: the largest of all so far.
 
     What creeps before anything has moved has no scale of its own yet: a steep law's round-off would be seen there.
     Where nothing has moved at all, what the step itself reaches is the scale.
     """
+    return float(max(acc.v[i], largest_in_step(y.v[i], st.V, i), CREEP * acc.floor_v[i], 1e-10 * top, 1e-290))
+
+
+@kernel
+def pushed(packed: Packed, y: State, st: Stages, acc: Accuracy, a: int) -> float:
+    """Acceleration of the velocity that is moved most, by its own scale, by a unit of force in row a."""
     top = widest(acc.v)
     most = 0.0
     for i in range(y.v.shape[0]):
         size = packed.structure.mobility[i] * abs(packed.ports.W[i, a])
         if size > 0.0:
-            scale = max(acc.v[i], largest_in_step(y.v[i], st.V, i), CREEP * acc.floor_v[i], 1e-10 * top, 1e-290)
-            most = max(most, size / scale)
+            most = max(most, size / felt_speed(y, st, acc, top, i))
     return most
 
 
