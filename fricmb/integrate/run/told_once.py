@@ -18,11 +18,11 @@ from fricmb.integrate.trajectory import Transitions
 AT_ONCE, BRIEF = 1e-12, 1e-6
 #: The same where slip turns round and ends: what is left of it in a loop of contacts is known to no more.
 AT_REST = 1e-10
-#: What two transitions of a contact at one instant are together; none where slip goes on as before.
+#: What two transitions of a contact at one instant are together, none where slip goes on as before; and that instant.
 _TOGETHER = {
-    (EVENT_SLIP, EVENT_REVERSAL): EVENT_SLIP,
-    (EVENT_REVERSAL, EVENT_STICK): EVENT_STICK,
-    (EVENT_REVERSAL, EVENT_REVERSAL): None,
+    (EVENT_SLIP, EVENT_REVERSAL): (EVENT_SLIP, AT_ONCE),
+    (EVENT_REVERSAL, EVENT_STICK): (EVENT_STICK, AT_REST),
+    (EVENT_REVERSAL, EVENT_REVERSAL): (None, AT_ONCE),
 }
 
 
@@ -47,10 +47,11 @@ def _join(mine: Ints, t: Floats, ends: tuple[float, float], kept: NDArray[np.boo
             continue
         first, apart = told[-2], t[i] - t[told[-2]]
         pair = int(kind[first]), int(kind[i])
-        instant = AT_REST if pair == (EVENT_REVERSAL, EVENT_STICK) else AT_ONCE
-        if pair not in _TOGETHER or not apart <= min(instant * (ends[1] - ends[0]), BRIEF * (following - t[i])):
+        if pair not in _TOGETHER:
             continue
-        both = _TOGETHER[pair]
+        both, instant = _TOGETHER[pair]
+        if not apart <= min(instant * (ends[1] - ends[0]), BRIEF * (following - t[i])):
+            continue
         kept[told.pop()] = False
         if both is None:
             kept[told.pop()] = False
