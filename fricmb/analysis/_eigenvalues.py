@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -292,10 +293,9 @@ def stability_map(
     top = np.inf if highest is None else positive("stability_map", "highest", highest)
     growth, frequency = np.zeros((2, first.size, second.size))
     unstable = np.zeros((first.size, second.size), dtype=np.int64)
-    for i, a in enumerate(first.tolist()):
-        for j, b in enumerate(second.tolist()):
-            with one_thread():
-                found = steady_at(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
+    with one_thread():
+        for (i, a), (j, b) in itertools.product(enumerate(first.tolist()), enumerate(second.tolist())):
+            found = steady_at(scene, {over[0]: a, over[1]: b}, speeds).eigenpairs()[0]
             found = found[np.abs(found.imag) <= top]
             if not found.size:
                 continue

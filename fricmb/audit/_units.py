@@ -64,10 +64,11 @@ def units_of(rows: Samples, scale: Floats, rtol: float, atol: Any = None) -> Uni
         low, high = np.split(floor if floor.size == 2 * len(q) else np.repeat(np.resize(floor, 2), len(q)), 2)
         q, v = np.maximum(q, low), np.maximum(v, high)
     # what is open all the time, or sticks without a force, has no size of its own, but the round-off of others
-    size, load = _largest(rows.F * scale), float(np.abs(rows.N).max(initial=0.0))
-    F = np.maximum(rtol * size, ROUND_OFF * size.max(initial=load))
+    size = _largest(rows.F * scale)
+    top = float(size.max(initial=np.abs(rows.N).max(initial=0.0)))
+    F = np.maximum(rtol * size, ROUND_OFF * top)
     span = float(rows.t[-1] - rows.t[0]) if rows.t.size else 0.0
-    power = float(size.max(initial=load)) * float(np.abs(rows.g).max(initial=0.0))
+    power = top * float(np.abs(rows.g).max(initial=0.0))
     loss = np.maximum(rtol * _largest(rows.friction_loss), ROUND_OFF * power * span)
     return Units(q=q, v=v, z=rtol * _largest(rows.z), F=F, loss=loss, rtol=rtol)
 

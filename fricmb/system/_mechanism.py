@@ -76,7 +76,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
     for gravity in (part for part in parts if isinstance(part, Gravity)):
         add_gravity(gravity, parts, structure)
     n_y, n_u = len(extended), len(signals.held)
-    elements = structure.elements(n_u)
+    elements, impacts = structure.elements(n_u), impact_law(scene.parts)
     mechanism = Mechanism(
         n=n,
         n_places=n_y - n,
@@ -89,8 +89,8 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         joints=joints.build(n_y, n_u),
         slip=contacts.slip_table(n_y, n_u),
         least_mass=_least_mass(parts, index, n),
-        poisson=impact_law(scene.parts).law == "poisson",
-        in_turn=impact_law(scene.parts).several == "in_turn",
+        poisson=impacts.law == "poisson",
+        in_turn=impacts.several == "in_turn",
     )
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)
