@@ -74,7 +74,7 @@ def _without_bells(value: Any, t: Any) -> tuple[Any, Any]:
 
 
 def _is_elementary(value: Any, t: Any) -> bool:
-    """Whether all functions of t have arguments linear in it, and all powers are of polynomials or functions."""
+    """Whether all functions of t have arguments linear in it, and no power has it in its exponent."""
     for node in sympy.preorder_traversal(value):
         if isinstance(node, sympy.Function) and node.has(t):
             if not node.args[0].is_polynomial(t) or sympy.degree(node.args[0], t) > 1:
@@ -161,9 +161,8 @@ def quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str)
     rate = [value, sympy.diff(value, t)]
     for expression in rate:
         _code.check(expression, title)
-    quick, waves = _features(value, t)
-    used = [e for pair in quick for e in pair] + [e for pair in waves for e in pair]
-    known = all(inner.is_polynomial(t) and sympy.degree(inner, t) <= 2 for inner in _inner(value, t))
+    quick, waves, known = _features(value, t)
+    used = [e for pair in (*quick, *waves) for e in pair]
     rename, reads = _code.read_arguments([t], parameters, [*rate, t, *used])
     plain = [expression.xreplace(rename) for expression in rate]
     nodes, weights = np.polynomial.legendre.leggauss(10)
@@ -208,16 +207,21 @@ def quadrature_kernel(value: Any, t: Any, parameters: Sequence[Any], title: str)
     return _code.module(title, lines)
 
 
-def _features(value: Any, t: Any) -> tuple[list[tuple[Any, Any]], list[tuple[Any, Any]]]:
-    """Times about which a function is quick, each with the length of that, and how fast waves turn: at t = 0, and on.
+def _features(value: Any, t: Any) -> tuple[list[tuple[Any, Any]], list[tuple[Any, Any]], bool]:
+    """Times about which a function is quick, each with the length of that; how fast waves turn: at t = 0, and on.
 
-    Of functions and powers of what is linear or quadratic in t: the zeros of it and of its slope.
+    The last says whether these are all.  Of functions and powers of what is linear or quadratic in t: the zeros of it
+    and of its slope.
     """
     quick: list[tuple[Any, Any]] = []
     waves: list[tuple[Any, Any]] = []
+    known = True
     for node in sympy.preorder_traversal(_exact(value)):
         inner = _argument(node, t)
-        if inner is None or not inner.is_polynomial(t) or sympy.degree(inner, t) > 2:
+        if inner is None:
+            continue
+        if not inner.is_polynomial(t) or sympy.degree(inner, t) > 2:
+            known = False
             continue
         a, b, c = (sympy.Poly(inner, t).coeff_monomial(t**k) for k in (2, 1, 0))
         if isinstance(node, sympy.sin | sympy.cos):
@@ -228,10 +232,10 @@ def _features(value: Any, t: Any) -> tuple[list[tuple[Any, Any]], list[tuple[Any
             apart = b**2 - 4 * a * c
             top, root = -b / (2 * a), sympy.sqrt(sympy.Abs(apart))
             quick.append((top, root / (2 * sympy.Abs(a)) if node.is_Pow else 1 / sympy.sqrt(sympy.Abs(a))))
-            if not isinstance(node, sympy.exp):
+            if not isinstance(node, sympy.exp) and apart != 0:
                 quick += [((-b + sign * root) / (2 * a), 1 / root) for sign in (1, -1)]
     quick, waves = ([(_in_floats(a), _in_floats(b)) for a, b in dict.fromkeys(pairs)] for pairs in (quick, waves))
-    return quick, waves
+    return quick, waves, known
 
 
 def _argument(node: Any, t: Any) -> Any | None:
@@ -239,9 +243,3 @@ def _argument(node: Any, t: Any) -> Any | None:
     is_power = node.is_Pow and not (node.exp.is_Integer and node.exp > 0)
     inner = node.args[0] if (isinstance(node, sympy.Function) and node.args) or is_power else None
     return inner if inner is not None and inner.has(t) else None
-
-
-def _inner(value: Any, t: Any) -> list[Any]:
-    """All of these arguments within an expression."""
-    found = (_argument(node, t) for node in sympy.preorder_traversal(value))
-    return [inner for inner in found if inner is not None]

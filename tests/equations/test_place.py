@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import sympy
+from scipy.integrate import quad
 from scipy.special import erf, fresnel
 
 import fricmb as fm
@@ -70,6 +71,13 @@ def test_chirps_and_beats(time):
     assert place(sympy.sin(a * T**2), time) == pytest.approx(s, abs=1e-13)
     beat = (math.sin(17 * time - 1) - math.sin(-1)) / 34 - (math.sin(23 * time + 1) - math.sin(1)) / 46
     assert place(sympy.sin(20 * T) * sympy.sin(3 * T + 1), time) == pytest.approx(beat, abs=1e-14)
+
+
+def test_a_function_of_a_square():
+    """Its argument has no two zeros to be quick at: they are one, where it turns."""
+    points = [3.2, 3.28, 3.3, 3.32, 3.4]
+    exact = quad(lambda t: math.tanh(((t - 3.3) / 1e-2) ** 2), 0.0, 9.0, points=points, epsabs=1e-14)
+    assert place(sympy.tanh(((T - 3.3) / 1e-2) ** 2), 9.0) == pytest.approx(exact[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
