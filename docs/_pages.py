@@ -262,6 +262,16 @@ def oracle(result) -> str:
     return "\n".join(lines)
 
 
+def impact_error(rows) -> str:
+    """Errors and times of ``tools/impact_error.py`` at one tolerance, a line for each scene."""
+    at = {(row["scene"], row["way"]): row for row in rows if row["rtol"] == 1e-8}
+    lines = [
+        (scene, *(f"{at[scene, way][what]:.2g}" for what in ("error", "ms") for way in ("fricmb", "by hand")))
+        for scene in dict.fromkeys(row["scene"] for row in rows)
+    ]
+    return "\n".join(table(("scene", "error, fricmb", "by hand", "ms, fricmb", "by hand"), lines))
+
+
 def digits(number) -> str:
     """Two digits; a dash where there is none."""
     return "-" if number is None else f"{number:.2g}"

@@ -132,11 +132,13 @@ def reference_pages(app):
         name: json.loads((here.parent / "benchmark" / f"{name}.json").read_text(encoding="utf-8"))
         for name in ("oracle", "oracle_laws")
     }
+    by_hand = json.loads((here.parent / "benchmark" / "impact_error.json").read_text(encoding="utf-8"))
     for name, text in {
         "command_line": _pages.command_line(),
         "models": _pages.model_pages(lambda model: _pictures.write(model, here)),
         "model_parameters": _pages.model_parameters(),
         "law_parameters": _pages.law_parameters(),
+        "impact_error": _pages.impact_error(by_hand),
         **{name: _pages.oracle(result) for name, result in found.items()},
     }.items():
         (here / f"_{name}.md").write_text(text, encoding="utf-8")
