@@ -187,10 +187,10 @@ def test_types_of_public_names_are_links(address, visit):
 
 
 @pytest.mark.slow
-def test_benchmark_shows_one_table_and_folds_the_rest(address, visit):
+def test_benchmark_shows_three_tables_and_folds_the_rest(address, visit):
     page, _ = visit(f"{address}/{SHOWN['benchmark']}")
     shown = "[...document.querySelectorAll('article table')].filter((e) => !e.closest('details'))"
-    assert page.evaluate(f"{shown}.length") == 2  # times, and the other packages
+    assert page.evaluate(f"{shown}.length") == 3  # times, impacts, and the other packages
     assert page.evaluate("document.querySelectorAll('article details').length") >= 6
 
 
