@@ -79,6 +79,15 @@ def test_page_is_read_in_ten_minutes(page):
     assert len(words) <= WORDS
 
 
+def test_decisions_are_short_and_name_ones_that_stand():
+    pages = sorted((ROOT / "docs" / "decisions").glob("0*.md"))
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        assert len(text.split()) <= 450, page.name
+        named = re.findall(r"<(?:/decisions/)?(\d{4}-[a-z-]+)>|\{doc\}`(\d{4}-[a-z-]+)`", text)
+        assert {a or b for a, b in named} <= {other.stem for other in pages}, page.name
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name)
 def test_pictures_say_what_they_show(page):
     text = page.read_text(encoding="utf-8")
