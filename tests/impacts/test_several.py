@@ -116,3 +116,52 @@ def test_a_pad_on_modes_lifts_off_and_comes_back():
     assert len(sol.events.of(kind="open")) >= 1
     assert sol["plate.tip.y"].min() > -0.3 - 1e-9
     assert sol.audit().ok
+
+
+def test_a_block_that_a_stop_and_dry_friction_hold_at_once_rests_for_as_long_as_it_is_pressed():
+    """How they share the load is nothing that equations tell: polynomials through it grew from step to step."""
+    block = fm.Body("block", mass=1.0, velocity={"x": 1.0})
+    scene = fm.Scene("block", [
+        block,
+        fm.Stop("stop", block, axis="x", upper=0.1, restitution=0.0),
+        fm.DryFriction("dry", block, axis="x", static=0.5, kinetic=0.3),
+        fm.Force("push", block, axis="x", value=4.0 - fm.t / 20),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=95.0, rtol=1e-6)
+    (lifts,) = sol.events.of(kind="open")
+    (slips,) = sol.events.of(kind="slip")
+    assert abs(lifts.t - 80.0) < 1e-8
+    assert abs(slips.t - 90.0) < 1e-8
+    assert sol.stats.n_steps < 400
+    # from there on x'' = -0.2 - (t - 90)/20
+    left = 95.0 - slips.t
+    assert abs(sol["block.x"][-1] - (0.1 - 0.2 * left**2 / 2 - left**3 / 120)) < 1e-6
+
+
+def test_a_disc_that_rolls_back_to_a_wall_between_two_slips_comes_to_rest_there():
+    """Its way back has no acceleration: times between impacts alone are a series, of ratio (k - e)/(1 + k), k = J/mR^2."""
+    e, mu, g, speed, inertia = 0.3, 0.4, 9.81, 0.5, 0.5
+    disc = fm.RigidBody(
+        "disc", mass=1.0, inertia=inertia, position=(0.25, 1.0), velocity=(-speed, 0.0), angular_velocity=speed
+    )
+    scene = fm.Scene("disc", [
+        disc,
+        fm.Wheel("floor", disc, radius=1.0, friction=fm.laws.Coulomb(mu_s=mu)),
+        fm.Stop("wall", disc, axis="x", lower=0.0, restitution=e),
+        fm.Gravity("g"),
+    ])  # fmt: skip
+    sol = fm.simulate(scene, t_end=3.0, rtol=1e-8)
+    ratio = (inertia - e) / (1 + inertia)
+    (rest,) = sol.events.of(kind="rest")
+    exact = 0.25 / speed + speed * (e + ratio) ** 2 / (2 * ratio * mu * g * (1 - ratio))
+    assert abs(rest.t - exact) < 1e-9
+    assert abs(rest.t - exact) <= rest.bound
+    assert np.abs(sol.v[:, -1]).max() < 1e-9
+
+
+def test_a_note_says_that_the_order_of_impacts_at_one_instant_matters():
+    balls = [fm.Body(f"b{i}", mass=1.0, position={"x": 2.0 * i}, velocity={"x": 1.0 - i}) for i in range(3)]
+    touch = [fm.Stop(f"t{i}", balls[i + 1], balls[i], axis="x", lower=1.0, restitution=0.5) for i in range(2)]
+    sol = fm.simulate(fm.Scene("balls", [*balls, *touch]), t_end=2.0)
+    (note,) = (note for note in sol.stats.notes if "in_turn" in note)
+    assert "'t0', 't1' are hit at one instant, t = 1" in note

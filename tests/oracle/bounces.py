@@ -24,6 +24,8 @@ LOOKS = 8
 SHORT = 1e-5
 #: Approach below which an impact outside of a series decides nothing.
 GRAZE = 1e-6
+#: Distance and speed of what touches without being pressed: whether it is hit with the others hangs on the last digits.
+NEAR, CALM = 1e-8, 1e-6
 #: Events after which a motion is given up.
 MOST = 4000
 
@@ -175,6 +177,9 @@ class Program(Modes):
         tail = any(self.hits[i] and t - self.hits[i][-1] < 1e3 * SHORT for i in hit)
         if not tail and min(-rates[i] for i in hit) < GRAZE and not all(self.p.surfaces[i].e == 0.0 for i in hit):
             raise OracleError(f"grazes at t = {t}")
+        for j in set(range(self.k)).difference(members):
+            if abs(self.speeds(t, y, j)[0]) <= NEAR and abs(rates[j]) <= CALM:
+                raise OracleError(f"touches, but is not pressed, at t = {t}")
         for i in hit:
             self.motion.impacts.append(Impact(t, self.p.surfaces[i].name, -rates[i]))
             self.hits[i].append(t)

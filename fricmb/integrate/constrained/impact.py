@@ -25,6 +25,8 @@ from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MODES,
 
 #: Energy that an impact may bring by round-off, beside the kinetic energy.
 GAIN = 1e-11
+#: Part of the fastest speed by which speeds behind an impact differ if the order of its contacts matters.
+DIFFER = 1e-6
 #: Impacts at one instant, for each contact, after which the run ends.
 PILE = 8
 
@@ -135,6 +137,8 @@ class Impacts:
         hit, push, reaction, held = self._hit(members, e, forced)
         law = solve_by_poisson if s.mechanism.poisson else solve_impact
         answer = solve_in_turn(hit, law) if s.mechanism.in_turn else law(hit)
+        if not s.mechanism.in_turn and int((touched & s.open).sum()) > 1:
+            self._compare(hit, answer, solve_in_turn(hit, law), members)
         if answer is None:
             names = ", ".join(repr(self.joints.names[j]) for j in members)
             self.failure = f"no impulses satisfy the law of impact at t = {float(y.t):.10g} for {names} together"
@@ -155,6 +159,14 @@ class Impacts:
             s.set_open(j, apart)
         code = self._resume([j for j in members.tolist() if touched[j] or j in forced])
         return (self._hold_again(members) if code == DONE else code), outcome
+
+    def _compare(self, hit: Hit, together: Answer | None, in_turn: Answer | None, members: Ints) -> None:
+        """Note where contacts that were open are hit at one instant, and it matters whether they are so in turn."""
+        if together is None or in_turn is None:
+            return
+        apart = float(np.abs(together.rate - in_turn.rate).max())
+        if apart > DIFFER * float(np.abs(hit.rate).max(initial=0.0)):
+            self.log.depend_on_order(float(self._workspace.y.t), [self.joints.names[j] for j in members.tolist()])
 
     def _hit(self, members: Ints, e: Floats, forced: tuple[int, ...]) -> tuple[Hit, Floats, Floats, Ints]:
         """The problem of the impact, velocities and reactions (of rows held both ways) by its unit impulses."""

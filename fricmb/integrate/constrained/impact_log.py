@@ -35,6 +35,7 @@ class ImpactLog:
         self._rows: list[list[float]] = []
         self._several: list[float] = []
         self._bear: dict[str, None] = {}
+        self._order: dict[float, tuple[str, ...]] = {}
 
     def add(
         self, t: float, members: Ints, rested: Iterable[bool], approach: Floats, outcome: Outcome,
@@ -58,6 +59,10 @@ class ImpactLog:
                 common[1:4] = [0.0, hop.left, hop.bound]
                 self._rows.append([t + hop.left, n_c + j, EVENT_REST, 0.0, 0.0, *common])
 
+    def depend_on_order(self, t: float, names: Iterable[str]) -> None:
+        """Note that these are hit at one instant, and that in turn they would leave with other speeds."""
+        self._order.setdefault(t, tuple(dict.fromkeys(names)))
+
     def bear_impulses(self, names: Iterable[str]) -> None:
         """Note that the friction of these joints takes no part."""
         self._bear |= dict.fromkeys(names)
@@ -71,6 +76,13 @@ class ImpactLog:
             found.append(
                 f"the law of impact has several solutions at t = {self._several[0]:.6g}{more}: the one that sticks most"
                 " is taken"
+            )
+        if self._order:
+            t, hit = next(iter(self._order.items()))
+            more = f" and {len(self._order) - 1} more times" if len(self._order) > 1 else ""
+            found.append(
+                f"{', '.join(map(repr, hit))} are hit at one instant, t = {t:.6g}{more}, to round-off: they share"
+                " the impact; one after the other (fm.ImpactLaw with several='in_turn') they leave with other speeds"
             )
         if self._bear:
             names = ", ".join(map(repr, self._bear))

@@ -30,6 +30,8 @@ LOCATED = 16.0
 NEXT = 10.0
 #: Height of a hop beside the round-off of distances, below which there is none.
 SEEN = 1e3
+#: Part by which the ratio of times between impacts may change from one to the next in a geometric series.
+STEADY = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +88,7 @@ class Bounces:
         self._t: Floats = np.full(n, -np.inf)
         self._falls: Floats = np.zeros(n)
         self._count = np.zeros(n, np.int64)
+        self._times: Floats = np.full((n, 3), np.inf)
         self._latest, self._since = t_start, 0.0
 
     def begin(self, t: float) -> None:
@@ -101,7 +104,9 @@ class Bounces:
         if not leaving.rises > 0.0:
             return Hop(ends=False)
         T = hop_of(gap, leaving.speed, leaving.rises) / (1.0 - min(max(ratio, leaving.e), 0.99))
-        ends = SHORT * leaving.size / max(leaving.rises, pace) >= T and NEXT * self._since >= T
+        # what is about to hit as fast as anything moves has a short way as well
+        slow = leaving.speed >= -SHORT * leaving.size
+        ends = slow and SHORT * leaving.size / max(leaving.rises, pace) >= T and NEXT * self._since >= T
         bound = T + self._rtol * (leaving.t - self._t_start)
         return Hop(ends=bool(ends), left=T, bound=bound)
 
@@ -111,11 +116,12 @@ class Bounces:
         rate = (leaving.falls - self._falls[j]) / since if np.isfinite(since) and since > 0.0 else np.inf
         self._t[j], self._falls[j] = leaving.t, leaving.falls
         self._count[j] += 1
+        self._times[j] = np.append(self._times[j][1:], since)
         if not (leaving.rises > 0.0 and leaving.falls > 0.0):
-            return Hop(ends=False)
+            return self._in_series(leaving)
         ratio = leaving.e * np.sqrt(leaving.falls / leaving.rises)
         if not ratio < 1.0:
-            return Hop(ends=False)
+            return self._in_series(leaving)
         up = leaving.speed / leaving.rises
         T = float(up * (1.0 + np.sqrt(leaving.rises / leaving.falls)) / (1.0 - ratio))
         a = leaving.falls
@@ -126,5 +132,24 @@ class Bounces:
         change = rate * T / a if calm else CALM
         left = T * (1.0 - change / 3.0)
         bound = T * change * change + leaving.noise / leaving.speed / (1.0 - ratio) + (T if lost and not calm else 0.0)
-        bound += LOCATED * EPS * abs(leaving.t) * self._count[j] + self._rtol * (leaving.t - self._t_start)
-        return Hop(ends=True, left=float(left), bound=float(bound))
+        return Hop(ends=True, left=float(left), bound=float(bound) + self._unknown(leaving))
+
+    def _in_series(self, leaving: Leaving) -> Hop:
+        """A bounce on whose way accelerations change: times between impacts alone say how they shrink.
+
+        So do those of a disc that slips on a floor as it leaves a wall, and rolls back to it.
+        """
+        times = self._times[leaving.joint]
+        if not (np.isfinite(times).all() and times.min() > 0.0 and leaving.speed <= SHORT * leaving.size):
+            return Hop(ends=False)
+        before, ratio = times[1:] / times[:-1]
+        if not ratio < 1.0 or abs(ratio - before) > STEADY * ratio:
+            return Hop(ends=False)
+        left = times[-1] * ratio / (1.0 - ratio)
+        bound = left * abs(ratio - before) / (1.0 - ratio) + leaving.noise / leaving.speed / (1.0 - ratio)
+        return Hop(ends=True, left=float(left), bound=float(bound) + self._unknown(leaving))
+
+    def _unknown(self, leaving: Leaving) -> float:
+        """What impacts so far may be off by in time."""
+        located = LOCATED * EPS * abs(leaving.t) * float(self._count[leaving.joint])
+        return located + self._rtol * (leaving.t - self._t_start)

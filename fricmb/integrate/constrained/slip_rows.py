@@ -100,7 +100,7 @@ def spare(mech: Mech, k: Moving, c: int, F: Floats, N: Floats) -> float:
 
 @kernel
 def keep_held(mech: Mech, mode: Codes, now: Floats, F: Floats) -> None:
-    """Predict what holds ports that stick by what it is ``now``, where there are several.
+    """Predict what holds ports that stick by what it is ``now``, where there are several, or joints beside one.
 
     They may hold more than there is to hold.  What no equation determines of their forces is left as predicted, and
     polynomials through its round-off would grow from step to step.
@@ -109,6 +109,7 @@ def keep_held(mech: Mech, mode: Codes, now: Floats, F: Floats) -> None:
     held = 0
     for c in range(mode.shape[0]):
         held += row[c + 1] - row[c] if mode[c] == STICK else 0
+        held += 1 if mode[c] == STICK and mech.port.soft[c] > 0.0 else 0
     for c in range(mode.shape[0] if held > 1 else 0):
         for a in range(row[c], row[c + 1] if mode[c] == STICK else row[c]):
             F[a] = now[a]
