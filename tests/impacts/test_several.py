@@ -139,8 +139,8 @@ def test_a_block_that_a_stop_and_dry_friction_hold_at_once_rests_for_as_long_as_
 
 
 def test_a_disc_that_rolls_back_to_a_wall_between_two_slips_comes_to_rest_there():
-    """Its way back has no acceleration: times between impacts alone are a series, of ratio (k - e)/(1 + k), k = J/mR^2."""
-    e, mu, g, speed, inertia = 0.3, 0.4, 9.81, 0.5, 0.5
+    """Its way back has no acceleration: times between impacts alone are a series, of ratio (k - e)/(1 + k)."""
+    e, mu, g, speed, inertia = 0.3, 0.4, 9.81, 0.5, 0.5  # k = J/mR^2
     disc = fm.RigidBody(
         "disc", mass=1.0, inertia=inertia, position=(0.25, 1.0), velocity=(-speed, 0.0), angular_velocity=speed
     )
